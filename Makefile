@@ -1,0 +1,38 @@
+# make demo · make test · make bench · make bless · make lint
+#
+# Each target sets up what it needs: see scripts/setup.sh.
+
+SHELL := /bin/bash
+# Silences the window-system probe of the Vulkan loader; nothing here opens a window.
+export XDG_RUNTIME_DIR ?= /tmp
+CARGO ?= cargo
+ONLY ?=
+OUT ?= target/demo
+
+.PHONY: demo test bench bless lint setup
+
+demo: setup
+	$(CARGO) run --bin relievo -- demo --out $(OUT)
+	@echo "open $(OUT)/index.html"
+
+test: setup
+	$(CARGO) test
+	$(CARGO) test --no-default-features
+
+bench: setup
+	$(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
+
+# The only way to write a golden.
+bless: setup
+	RELIEVO_BLESS=1 $(CARGO) test --test golden
+
+lint:
+	$(CARGO) fmt --check
+	$(CARGO) clippy --all-targets -- -D warnings
+	$(CARGO) clippy --all-targets --no-default-features -- -D warnings
+	$(CARGO) clippy --all-targets --no-default-features --features gpu -- -D warnings
+	$(CARGO) clippy --all-targets --no-default-features --features cli -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --document-private-items
+
+setup:
+	@scripts/setup.sh

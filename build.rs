@@ -1,0 +1,229 @@
+//! Composes every shader of `kernels/` and `wgsl/render/` with WESL, validates the flat result with naga and
+//! writes it, with a manifest of entry points and bindings, to `OUT_DIR`. An unknown import, an unused
+//! binding or an invalid shader fails the build and names file and line.
+
+fn main() {
+    #[cfg(feature = "gpu")]
+    shaders::build();
+}
+
+#[cfg(feature = "gpu")]
+mod shaders {
+    use std::fmt::Write as _;
+    use std::path::{Path, PathBuf};
+
+    use naga::{AddressSpace, ShaderStage, StorageAccess, TypeInner};
+
+    pub fn build() {
+        let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+        let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets it"));
+        for folder in ["kernels", "wgsl"] {
+            println!("cargo::rerun-if-changed={folder}");
+        }
+        println!("cargo::rerun-if-changed=build.rs");
+        let mut manifest = String::new();
+        let mut all = Vec::new();
+        for (folder, prefix) in [("kernels", ""), ("wgsl/render", "render/")] {
+            for file in shader_files(&root.join(folder)) {
+                let stem = file.strip_prefix(root.join(folder)).expect("found below it").with_extension("");
+                let name = format!("{prefix}{}", stem.display());
+                let shader = Shader::compose(&root, &file, name);
+                let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
+                std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
+                shader.describe(&mut manifest, &path);
+                all.push(shader.constant());
+            }
+        }
+        let list = all.iter().map(|constant| format!("&{constant}")).collect::<Vec<_>>().join(", ");
+        writeln!(manifest, "/// Every shader of the crate.\npub static ALL: &[&Shader] = &[{list}];")
+            .expect("a string");
+        std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
+    }
+
+    fn shader_files(folder: &Path) -> Vec<PathBuf> {
+        let mut files = Vec::new();
+        for entry in std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                files.extend(shader_files(&path));
+            } else if path.extension().is_some_and(|extension| extension == "wgsl") {
+                files.push(path);
+            }
+        }
+        files.sort();
+        files
+    }
+
+    struct Shader {
+        name: String,
+        flat: String,
+        module: naga::Module,
+        info: naga::valid::ModuleInfo,
+    }
+
+    impl Shader {
+        fn compose(root: &Path, file: &Path, name: String) -> Self {
+            let relative = file.strip_prefix(root).expect("below the root");
+            let module_path =
+                format!("package::{}", relative.with_extension("").display()).replace('/', "::");
+            let mut compiler = wesl::Wesl::new(root);
+            // Without mangling the flat shader reads like its sources; a clash of names is a naga error.
+            compiler.set_mangler(wesl::ManglerKind::None);
+            compiler.set_missing_feature_behavior(wesl::Feature::Error);
+            let flat = match compiler.compile(&module_path.parse().expect("a module path")) {
+                Ok(result) => result.to_string(),
+                Err(error) => refuse(relative, &error.to_string()),
+            };
+            let flat = format!("// relievo {name}: generated from {}\n\n{flat}", relative.display());
+            let module = naga::front::wgsl::parse_str(&flat).unwrap_or_else(|error| {
+                let at = error.location(&flat).map_or(0, |location| location.line_number as usize);
+                refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
+            });
+            let mut validator = naga::valid::Validator::new(
+                naga::valid::ValidationFlags::all(),
+                naga::valid::Capabilities::default(),
+            );
+            let info = validator.validate(&module).unwrap_or_else(|error| {
+                let at = error.location(&flat).map_or(0, |location| location.line_number as usize);
+                refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
+            });
+            let shader = Self { name, flat, module, info };
+            shader.refuse_unused_bindings(root, file, relative);
+            shader
+        }
+
+        /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat
+        /// shader lacks is one that nothing uses.
+        fn refuse_unused_bindings(&self, _root: &Path, file: &Path, relative: &Path) {
+            let source = std::fs::read_to_string(file).expect("it was just composed");
+            for (line, text) in source.lines().enumerate() {
+                let Some((_, declaration)) = text.split_once("@binding(") else { continue };
+                let Some(name) = declaration.split(" var").nth(1).and_then(|rest| {
+                    let rest = rest
+                        .split_once('>')
+                        .filter(|_| rest.starts_with('<'))
+                        .map_or(rest, |(_, after)| after);
+                    rest.trim().split(':').next().map(str::trim)
+                }) else {
+                    continue;
+                };
+                let used = self.module.global_variables.iter().any(|(handle, variable)| {
+                    variable.name.as_deref() == Some(name)
+                        && (0..self.module.entry_points.len())
+                            .any(|entry| !self.info.get_entry_point(entry)[handle].is_empty())
+                });
+                if !used {
+                    refuse(relative, &format!("line {}: nothing uses the binding `{name}`", line + 1));
+                }
+            }
+        }
+
+        fn constant(&self) -> String {
+            self.name.replace('/', "_").to_uppercase()
+        }
+
+        fn describe(&self, manifest: &mut String, path: &Path) {
+            let mut entries = String::new();
+            for entry in &self.module.entry_points {
+                let stage = match entry.stage {
+                    ShaderStage::Vertex => "Stage::Vertex",
+                    ShaderStage::Fragment => "Stage::Fragment",
+                    ShaderStage::Compute => "Stage::Compute",
+                    other => panic!("{}: {other:?} stages are not part of WebGPU", self.name),
+                };
+                writeln!(
+                    entries,
+                    "        EntryPoint {{ name: {:?}, stage: {stage}, workgroup_size: {:?} }},",
+                    entry.name, entry.workgroup_size
+                )
+                .expect("a string");
+            }
+            let mut bindings = self.bindings();
+            bindings.sort();
+            let bindings: String = bindings.into_iter().map(|(_, _, text)| text).collect();
+            let overrides = (self.module.overrides.iter())
+                .map(|(_, constant)| format!("{:?}", constant.name.as_deref().unwrap_or_default()))
+                .collect::<Vec<_>>()
+                .join(", ");
+            writeln!(
+                manifest,
+                "/// `{name}`\npub static {constant}: Shader = Shader {{\n    name: {name:?},\n    \
+                 source: include_str!({path:?}),\n    entry_points: &[\n{entries}    ],\n    \
+                 bindings: &[\n{bindings}    ],\n    overrides: &[{overrides}],\n    structs: &[\n{structs}    ],\n}};",
+                name = self.name,
+                constant = self.constant(),
+                structs = self.structs(),
+            )
+            .expect("a string");
+        }
+
+        fn bindings(&self) -> Vec<(u32, u32, String)> {
+            let mut found = Vec::new();
+            for (handle, variable) in self.module.global_variables.iter() {
+                let Some(binding) = &variable.binding else { continue };
+                let kind = match (variable.space, &self.module.types[variable.ty].inner) {
+                    (AddressSpace::Uniform, _) => "BindingKind::Uniform",
+                    (AddressSpace::Storage { access }, _) if access.contains(StorageAccess::STORE) => {
+                        "BindingKind::StorageReadWrite"
+                    }
+                    (AddressSpace::Storage { .. }, _) => "BindingKind::StorageRead",
+                    (_, TypeInner::Image { arrayed: true, .. }) => "BindingKind::TextureArray",
+                    (_, TypeInner::Sampler { .. }) => "BindingKind::Sampler",
+                    (space, _) => panic!(
+                        "{}: binding {:?} in {space:?}: teach build.rs this kind",
+                        self.name, variable.name
+                    ),
+                };
+                let stages = (self.module.entry_points.iter().enumerate())
+                    .filter(|(index, _)| !self.info.get_entry_point(*index)[handle].is_empty())
+                    .map(|(_, entry)| format!("Stage::{:?}", entry.stage))
+                    .collect::<Vec<_>>()
+                    .join(", ");
+                let name = variable.name.as_deref().unwrap_or_default();
+                let (group, binding) = (binding.group, binding.binding);
+                found.push((group, binding, format!(
+                    "        Binding {{ group: {group}, binding: {binding}, name: {name:?}, kind: {kind}, stages: &[{stages}] }},\n"
+                )));
+            }
+            found
+        }
+
+        fn structs(&self) -> String {
+            let mut text = String::new();
+            for (_, ty) in self.module.types.iter() {
+                let (Some(name), TypeInner::Struct { members, span }) = (&ty.name, &ty.inner) else {
+                    continue;
+                };
+                let members = (members.iter())
+                    .map(|member| {
+                        format!("({:?}, {})", member.name.as_deref().unwrap_or_default(), member.offset)
+                    })
+                    .collect::<Vec<_>>()
+                    .join(", ");
+                writeln!(text, "        Struct {{ name: {name:?}, size: {span}, members: &[{members}] }},")
+                    .expect("a string");
+            }
+            text
+        }
+    }
+
+    /// Where a line of the flat shader comes from: the source line of the same text, spaces aside.
+    fn origin(root: &Path, flat: &str, line: usize) -> String {
+        let squeeze = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+        let Some(wanted) = line.checked_sub(1).and_then(|index| flat.lines().nth(index)).map(squeeze) else {
+            return String::new();
+        };
+        for file in ["kernels", "wgsl"].iter().flat_map(|folder| shader_files(&root.join(folder))) {
+            let source = std::fs::read_to_string(&file).unwrap_or_default();
+            if let Some(index) = source.lines().position(|text| squeeze(text) == wanted) {
+                return format!("{}:{}: ", file.strip_prefix(root).unwrap_or(&file).display(), index + 1);
+            }
+        }
+        format!("line {line} of the flat shader: ")
+    }
+
+    fn refuse(file: &Path, what: &str) -> ! {
+        eprintln!("{}: {what}", file.display());
+        std::process::exit(1)
+    }
+}

@@ -1,0 +1,48 @@
+// Windows around the patches of a batch, gathered from the patches themselves and their neighbours.
+
+struct PadParams {
+    size: u32,
+    reach: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: PadParams;
+@group(0) @binding(1) var<storage, read> patches: array<i32>;
+// Nine indices a patch: those around and at it, row by row; 0xffffffff where there is none.
+@group(0) @binding(2) var<storage, read> around: array<u32>;
+@group(0) @binding(3) var<storage, read_write> windows: array<i32>;
+
+const NONE = 0xffffffffu;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let width = params.size + 2u * params.reach;
+    if id.x >= width {
+        return;
+    }
+    let at = vec2<i32>(id.xy) - vec2<i32>(i32(params.reach));
+    windows[(id.z * width + id.y) * width + id.x] = sample_around(id.z, at);
+}
+
+fn sample_around(window: u32, at: vec2<i32>) -> i32 {
+    let last = i32(params.size) - 1;
+    let tile = vec2<i32>(1) + select(vec2<i32>(0), vec2<i32>(1), at > vec2<i32>(last))
+        - select(vec2<i32>(0), vec2<i32>(1), at < vec2<i32>(0));
+    // The tile itself, then the ones beside it in x, in y, and the patch: what is missing is clamped.
+    var source = vec2<i32>(tile.x, tile.y);
+    if around_at(window, source) == NONE {
+        source = vec2<i32>(tile.x, 1);
+    }
+    if around_at(window, source) == NONE {
+        source = vec2<i32>(1, tile.y);
+    }
+    if around_at(window, source) == NONE {
+        source = vec2<i32>(1, 1);
+    }
+    let local = vec2<u32>(clamp(at - last * (source - vec2<i32>(1)), vec2<i32>(0), vec2<i32>(last)));
+    let patch_index = around_at(window, source);
+    return patches[patch_index * params.size * params.size + local.y * params.size + local.x];
+}
+
+fn around_at(window: u32, tile: vec2<i32>) -> u32 {
+    return around[9u * window + u32(3 * tile.y + tile.x)];
+}

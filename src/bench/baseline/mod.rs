@@ -1,0 +1,4 @@
+//! Benchmarks of `kernels/baseline/`.
+
+pub mod copy;
+pub mod words;

@@ -1,0 +1,63 @@
+//! What can go wrong: bad input, files, and the GPU.
+
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// A value that is out of its bounds. Says which one, what it was and what it may be.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{field} = {value}: {bound}")]
+pub struct InputError {
+    /// The field as the user wrote it, with its path where it lies inside something (`zones[2].max`).
+    pub field: String,
+    /// The value that was refused.
+    pub value: String,
+    /// What the field may be.
+    pub bound: String,
+}
+
+impl InputError {
+    /// Names field, value and bound.
+    pub fn new(field: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
+        Self { field: field.into(), value: value.to_string(), bound: bound.into() }
+    }
+}
+
+/// Any failure of the crate.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A value is out of its bounds.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A value in a file is out of its bounds.
+    #[error("{}: {source}", path.display())]
+    InputFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong in it.
+        source: InputError,
+    },
+    /// A file cannot be read, written or understood.
+    #[error("{}: {reason}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The device failed, or there is none.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Gpu(#[from] crate::gpu::GpuError),
+}
+
+impl Error {
+    /// A file that cannot be read, written or understood.
+    pub fn file(path: impl AsRef<Path>, reason: impl Display) -> Self {
+        Self::File { path: path.as_ref().to_owned(), reason: reason.to_string() }
+    }
+
+    /// Whether the user's input is at fault, rather than the machine.
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Input(_) | Self::InputFile { .. } | Self::File { .. })
+    }
+}

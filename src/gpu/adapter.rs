@@ -1,0 +1,108 @@
+//! Choosing an adapter by name or kind.
+
+use super::GpuError;
+
+/// The environment variable that chooses an adapter where [`Options::adapter`] does not.
+pub const ADAPTER_VARIABLE: &str = "RELIEVO_ADAPTER";
+
+/// How to choose an adapter.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Options {
+    /// A kind (`discrete`, `integrated`, `virtual`, `cpu`) or a part of the adapter's name or driver, in any
+    /// case (`llvmpipe`, `swiftshader`, `H200`). Default: the variable `RELIEVO_ADAPTER`, else the fastest
+    /// kind there is.
+    pub adapter: Option<String>,
+}
+
+/// Name, kind and driver of an adapter, as reports and goldens quote them.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct AdapterSummary {
+    /// The adapter's name.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    pub kind: &'static str,
+    /// The driver's name and version.
+    pub driver: String,
+    /// `Vulkan`, `Metal`, `Dx12`, `Gl` or `BrowserWebGpu`.
+    pub backend: String,
+}
+
+impl AdapterSummary {
+    pub(super) fn of(info: &wgpu::AdapterInfo) -> Self {
+        let kind = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete",
+            wgpu::DeviceType::IntegratedGpu => "integrated",
+            wgpu::DeviceType::VirtualGpu => "virtual",
+            wgpu::DeviceType::Cpu => "cpu",
+            wgpu::DeviceType::Other => "other",
+        };
+        let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
+        Self { name: info.name.clone(), kind, driver, backend: format!("{:?}", info.backend) }
+    }
+
+    /// Whether the adapter is a program on the CPU, such as lavapipe or SwiftShader.
+    pub fn is_software(&self) -> bool {
+        self.kind == "cpu"
+    }
+
+    fn matches(&self, wanted: &str) -> bool {
+        let wanted = wanted.to_lowercase();
+        self.kind == wanted
+            || self.name.to_lowercase().contains(&wanted)
+            || self.driver.to_lowercase().contains(&wanted)
+    }
+
+    // Native interfaces before GL, which software rasterizers serve badly; then the fastest kind.
+    fn rank(&self) -> (bool, usize) {
+        let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
+        (self.backend == "Gl", kinds.iter().position(|kind| *kind == self.kind).unwrap_or(kinds.len()))
+    }
+}
+
+impl std::fmt::Display for AdapterSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({}, {}, driver {})", self.name, self.kind, self.backend, self.driver)
+    }
+}
+
+/// Every adapter of this machine, the one that would be chosen first.
+pub fn adapters() -> Vec<AdapterSummary> {
+    let mut all: Vec<_> = (pollster::block_on(enumerate()).iter())
+        .map(|adapter| AdapterSummary::of(&adapter.get_info()))
+        .collect();
+    all.sort_by_key(AdapterSummary::rank);
+    all
+}
+
+async fn enumerate() -> Vec<wgpu::Adapter> {
+    // No validation layers and no GPU-assisted validation: the latter corrupts shaders on lavapipe.
+    let descriptor = wgpu::InstanceDescriptor {
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    };
+    let instance = wgpu::Instance::new(descriptor);
+    instance.enumerate_adapters(wgpu::Backends::all()).await
+}
+
+pub(super) async fn choose(options: &Options) -> Result<wgpu::Adapter, GpuError> {
+    let wanted = (options.adapter.clone())
+        .or_else(|| std::env::var(ADAPTER_VARIABLE).ok())
+        .filter(|wanted| !wanted.trim().is_empty());
+    let mut all: Vec<_> = (enumerate().await.into_iter())
+        .map(|adapter| (AdapterSummary::of(&adapter.get_info()), adapter))
+        .collect();
+    all.sort_by_key(|(summary, _)| summary.rank());
+    let names = all.iter().map(|(summary, _)| format!("`{}`", summary.name)).collect::<Vec<_>>();
+    let found = match &wanted {
+        Some(wanted) => all.into_iter().find(|(summary, _)| summary.matches(wanted)),
+        None => all.into_iter().next(),
+    };
+    found.map(|(_, adapter)| adapter).ok_or_else(|| GpuError::NoAdapter {
+        wanted: wanted.map_or("was found".to_owned(), |wanted| format!("matches `{wanted}`")),
+        seen: if names.is_empty() {
+            "install a Vulkan driver (on Debian: apt-get install mesa-vulkan-drivers)".to_owned()
+        } else {
+            format!("there are {}: name one in RELIEVO_ADAPTER or --adapter", names.join(", "))
+        },
+    })
+}

@@ -1,0 +1,200 @@
+//! Typed device buffers and their readback.
+
+use std::marker::PhantomData;
+
+use encase::internal::WriteInto;
+use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
+
+use super::{Gpu, GpuError};
+
+/// A storage buffer of `len` elements. Usable as storage, vertex and copy source and destination.
+#[derive(Debug, Clone)]
+pub struct Buffer<T> {
+    raw: wgpu::Buffer,
+    len: usize,
+    element: PhantomData<T>,
+}
+
+impl<T: bytemuck::Pod> Buffer<T> {
+    /// A zeroed buffer. An empty one gets room for one element, since WebGPU binds no empty ranges.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] when it is larger than one binding may be, [`GpuError::OutOfMemory`].
+    pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
+        let size = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+        if size > gpu.max_binding() {
+            return Err(GpuError::Limit {
+                pass: label,
+                limit: "maxStorageBufferBindingSize",
+                needed: size,
+                available: gpu.max_binding(),
+                remedy: "split the batch",
+            });
+        }
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::VERTEX
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST;
+        let raw = gpu.scoped(|| {
+            let descriptor =
+                wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+            gpu.device().create_buffer(&descriptor)
+        })?;
+        Ok(Self { raw, len, element: PhantomData })
+    }
+
+    /// A buffer that holds `data`.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn from_slice(gpu: &Gpu, label: &'static str, data: &[T]) -> Result<Self, GpuError> {
+        let buffer = Self::new(gpu, label, data.len())?;
+        buffer.write(gpu, data)?;
+        Ok(buffer)
+    }
+
+    /// Replaces the first `data.len()` elements.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] when `data` is longer than the buffer.
+    pub fn write(&self, gpu: &Gpu, data: &[T]) -> Result<(), GpuError> {
+        gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, bytemuck::cast_slice(data)))
+    }
+
+    /// The elements, once everything submitted so far has run.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
+        let size = (self.len * size_of::<T>()) as u64;
+        let bytes = read_bytes(gpu, &self.raw, size).await?;
+        // The mapped bytes may lie anywhere, so the elements are copied, not cast in place.
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    /// [`Buffer::read`], blocking.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
+        pollster::block_on(self.read(gpu))
+    }
+
+    /// The wgpu buffer.
+    pub fn raw(&self) -> &wgpu::Buffer {
+        &self.raw
+    }
+
+    /// Elements in the buffer.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether it has no elements.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Bytes in the buffer.
+    pub fn bytes(&self) -> u64 {
+        self.raw.size()
+    }
+}
+
+/// A uniform buffer with WGSL's layout of `T`.
+#[derive(Debug, Clone)]
+pub struct Uniform<T> {
+    raw: wgpu::Buffer,
+    value: PhantomData<T>,
+}
+
+impl<T: ShaderSize + WriteInto> Uniform<T> {
+    /// A uniform buffer that holds `value`.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`].
+    pub fn new(gpu: &Gpu, label: &'static str, value: &T) -> Result<Self, GpuError> {
+        let raw = gpu.scoped(|| {
+            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: T::SHADER_SIZE.get().next_multiple_of(16),
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })?;
+        let uniform = Self { raw, value: PhantomData };
+        uniform.write(gpu, value)?;
+        Ok(uniform)
+    }
+
+    /// Replaces the value.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn write(&self, gpu: &Gpu, value: &T) -> Result<(), GpuError> {
+        let bytes = uniform_bytes(value)?;
+        gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, &bytes))
+    }
+
+    /// The wgpu buffer.
+    pub fn raw(&self) -> &wgpu::Buffer {
+        &self.raw
+    }
+}
+
+/// A storage buffer with WGSL's layout of `value`, for structs and arrays of them.
+///
+/// # Errors
+/// As [`Buffer::new`].
+pub fn storage<T: ShaderType + WriteInto>(
+    gpu: &Gpu,
+    label: &'static str,
+    value: &T,
+) -> Result<Buffer<u8>, GpuError> {
+    let mut writer = StorageBuffer::new(Vec::new());
+    writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;
+    Buffer::from_slice(gpu, label, &writer.into_inner())
+}
+
+/// The bytes of `value` in WGSL's uniform layout.
+///
+/// # Errors
+/// [`GpuError::Internal`] when encase cannot write them.
+pub(crate) fn uniform_bytes<T: ShaderSize + WriteInto>(value: &T) -> Result<Vec<u8>, GpuError> {
+    let mut writer = UniformBuffer::new(Vec::new());
+    writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;
+    Ok(writer.into_inner())
+}
+
+/// Copies the first `size` bytes of `buffer` to the host.
+pub(crate) async fn read_bytes(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>, GpuError> {
+    if size == 0 {
+        return Ok(Vec::new());
+    }
+    let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+    let (sender, receiver) = futures_channel::oneshot::channel();
+    let staging = gpu.scoped(|| {
+        let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size: padded,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.encoder("readback");
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, padded);
+        gpu.queue().submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone only when the caller gave up waiting.
+            let _ = sender.send(result);
+        });
+        staging
+    })?;
+    gpu.wait()?;
+    let lost = |reason: String| GpuError::DeviceLost { reason };
+    receiver.await.map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
+    let view = staging.get_mapped_range(..).map_err(|error| lost(error.to_string()))?;
+    let bytes = view[..size as usize].to_vec();
+    drop(view);
+    staging.unmap();
+    Ok(bytes)
+}

@@ -1,0 +1,80 @@
+//! What can go wrong on the device, each with what to do about it.
+
+/// A failure of the device.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter matches what was asked for.
+    #[error("no GPU adapter {wanted}; {seen}")]
+    NoAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// What there is, and what to do.
+        seen: String,
+    },
+    /// The adapter gives no device with WebGPU's default limits.
+    #[error(
+        "adapter `{adapter}` gives no device: {reason}; choose another with RELIEVO_ADAPTER (`relievo info` lists them)"
+    )]
+    NoDevice {
+        /// The adapter's name.
+        adapter: String,
+        /// The driver's words.
+        reason: String,
+    },
+    /// The device is gone: everything made on it is too.
+    #[error("the GPU device was lost ({reason}); create a new `Gpu` and everything on it again")]
+    DeviceLost {
+        /// The driver's words.
+        reason: String,
+    },
+    /// The device has no memory left.
+    #[error("the GPU has no memory left ({reason}); use a smaller batch or drop buffers")]
+    OutOfMemory {
+        /// wgpu's words.
+        reason: String,
+    },
+    /// wgpu refused a call.
+    #[error("wgpu refused a call: {reason}; please report this with the output of `relievo info`")]
+    Validation {
+        /// wgpu's words.
+        reason: String,
+    },
+    /// The driver failed for a reason of its own.
+    #[error("the GPU driver failed: {reason}; `relievo verify` tells which kernels it runs correctly")]
+    Internal {
+        /// wgpu's words.
+        reason: String,
+    },
+    /// A pass needs more than the device's limit.
+    #[error("{pass} needs {limit} = {needed}, and this device allows {available}; {remedy}")]
+    Limit {
+        /// The pass.
+        pass: &'static str,
+        /// WebGPU's name of the limit.
+        limit: &'static str,
+        /// What the pass needs.
+        needed: u64,
+        /// What the device allows.
+        available: u64,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// The device did not answer.
+    #[error(
+        "the GPU did not finish within {seconds} s; the driver may hang: try a smaller batch or another adapter"
+    )]
+    Hung {
+        /// How long we waited.
+        seconds: u64,
+    },
+}
+
+impl From<wgpu::Error> for GpuError {
+    fn from(error: wgpu::Error) -> Self {
+        match error {
+            wgpu::Error::OutOfMemory { source } => Self::OutOfMemory { reason: source.to_string() },
+            wgpu::Error::Validation { description, .. } => Self::Validation { reason: description },
+            wgpu::Error::Internal { description, .. } => Self::Internal { reason: description },
+        }
+    }
+}

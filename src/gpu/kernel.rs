@@ -1,0 +1,212 @@
+//! Compute pipelines and bind groups, laid out by the manifest that `build.rs` wrote.
+
+use super::shaders::{Binding, BindingKind, Shader, Stage};
+use super::{Gpu, GpuError};
+
+/// A compute pipeline of one shader with its override constants set.
+#[derive(Debug, Clone)]
+pub struct Kernel {
+    shader: &'static Shader,
+    pipeline: wgpu::ComputePipeline,
+    layouts: Vec<wgpu::BindGroupLayout>,
+}
+
+/// Something to bind.
+pub type Resource<'a> = wgpu::BindingResource<'a>;
+
+/// Bind groups of one kernel, in order.
+pub type Group = wgpu::BindGroup;
+
+impl Kernel {
+    /// Compiles the pipeline. `overrides` sets override constants by name.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
+        let layouts = layouts(gpu, shader)?;
+        let pipeline = gpu.scoped(|| {
+            gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(shader.name),
+                layout: Some(&pipeline_layout(gpu, shader, &layouts)),
+                module: &module(gpu, shader),
+                entry_point: None,
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: overrides,
+                    // Every kernel writes all of what it reads from workgroup memory.
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            })
+        })?;
+        Ok(Self { shader, pipeline, layouts })
+    }
+
+    /// Binds the resources of one group, in the order of their bindings.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] when they do not fit the shader.
+    pub fn bind(&self, gpu: &Gpu, group: u32, resources: &[Resource<'_>]) -> Result<Group, GpuError> {
+        bind(gpu, self.shader, &self.layouts, group, resources)
+    }
+
+    /// Workgroups for `invocations` in one row, spread over x and y where they exceed the limit of a dimension.
+    pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
+        let groups = self.groups_for(invocations).max(1);
+        let x = groups.min(gpu.device().limits().max_compute_workgroups_per_dimension);
+        [x, groups.div_ceil(x), 1]
+    }
+
+    /// Workgroups for `invocations` along x.
+    pub fn groups_for(&self, invocations: u32) -> u32 {
+        let width = self.shader.entry_points.first().map_or(1, |entry| entry.workgroup_size[0].max(1));
+        invocations.div_ceil(width)
+    }
+}
+
+/// One dispatch with everything bound.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// The pipeline.
+    pub kernel: Kernel,
+    /// Its bind groups, in order.
+    pub groups: Vec<Group>,
+    /// Workgroups along x, y and z.
+    pub workgroups: [u32; 3],
+}
+
+/// Dispatches that belong together: prepared once, recorded as often as wanted without allocation.
+#[derive(Debug, Clone)]
+pub struct Job {
+    label: &'static str,
+    steps: Vec<Step>,
+}
+
+impl Job {
+    /// Checks the steps against the device's limits.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] when a dispatch is too large.
+    pub fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
+        let available = gpu.device().limits().max_compute_workgroups_per_dimension;
+        let needed = steps.iter().flat_map(|step| step.workgroups).max().unwrap_or(0);
+        if needed > available {
+            return Err(GpuError::Limit {
+                pass: label,
+                limit: "maxComputeWorkgroupsPerDimension",
+                needed: needed.into(),
+                available: available.into(),
+                remedy: "split the batch",
+            });
+        }
+        Ok(Self { label, steps })
+    }
+
+    /// Records one compute pass with all steps, in order.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        for step in &self.steps {
+            pass.set_pipeline(&step.kernel.pipeline);
+            for (index, group) in step.groups.iter().enumerate() {
+                pass.set_bind_group(index as u32, group, &[]);
+            }
+            let [x, y, z] = step.workgroups;
+            pass.dispatch_workgroups(x, y, z);
+        }
+    }
+}
+
+/// Compiles a shader.
+pub fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
+    gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(shader.name),
+        source: wgpu::ShaderSource::Wgsl(shader.source.into()),
+    })
+}
+
+/// A pipeline layout of all groups.
+pub fn pipeline_layout(
+    gpu: &Gpu,
+    shader: &Shader,
+    layouts: &[wgpu::BindGroupLayout],
+) -> wgpu::PipelineLayout {
+    gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(shader.name),
+        bind_group_layouts: &layouts.iter().map(Some).collect::<Vec<_>>(),
+        immediate_size: 0,
+    })
+}
+
+/// The bind group layouts of a shader, one for every group up to its last.
+///
+/// # Errors
+/// [`GpuError::Validation`] when the device's limits do not allow them.
+pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
+    let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
+    gpu.scoped(|| {
+        (0..groups)
+            .map(|group| {
+                let entries: Vec<_> = shader
+                    .bindings
+                    .iter()
+                    .filter(|binding| binding.group == group)
+                    .map(layout_entry)
+                    .collect();
+                gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                    label: Some(shader.name),
+                    entries: &entries,
+                })
+            })
+            .collect()
+    })
+}
+
+/// Binds the resources of one group, in the order of their bindings.
+///
+/// # Errors
+/// [`GpuError::Validation`] when they do not fit the shader.
+pub fn bind(
+    gpu: &Gpu,
+    shader: &Shader,
+    layouts: &[wgpu::BindGroupLayout],
+    group: u32,
+    resources: &[Resource<'_>],
+) -> Result<Group, GpuError> {
+    let entries: Vec<_> = (shader.bindings.iter().filter(|binding| binding.group == group))
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry {
+            binding: binding.binding,
+            resource: resource.clone(),
+        })
+        .collect();
+    gpu.scoped(|| {
+        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(shader.name),
+            layout: &layouts[group as usize],
+            entries: &entries,
+        })
+    })
+}
+
+fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let visibility = (binding.stages.iter())
+        .map(|stage| match stage {
+            Stage::Vertex => wgpu::ShaderStages::VERTEX,
+            Stage::Fragment => wgpu::ShaderStages::FRAGMENT,
+            Stage::Compute => wgpu::ShaderStages::COMPUTE,
+        })
+        .collect();
+    let ty = match binding.kind {
+        BindingKind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+        BindingKind::StorageRead => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+        BindingKind::StorageReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        BindingKind::TextureArray => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        },
+        BindingKind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+    };
+    wgpu::BindGroupLayoutEntry { binding: binding.binding, visibility, ty, count: None }
+}

@@ -1,0 +1,178 @@
+//! The device: choosing an adapter or embedding in a program that has one, typed buffers, readback, kernels
+//! and timing. The only module that calls wgpu's `create_*` functions.
+//!
+//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing here
+//! panics or aborts.
+
+mod adapter;
+mod buffer;
+mod error;
+mod kernel;
+pub mod shaders;
+mod timer;
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+pub use adapter::{AdapterSummary, Options, adapters};
+pub use buffer::{Buffer, Uniform, storage};
+pub use error::GpuError;
+pub use kernel::{Group, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout};
+pub use timer::{Measurement, TimedBy, Timer};
+
+/// How long a wait for the device may take before it counts as hung.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// What the handlers of an own device have heard.
+#[derive(Debug, Default)]
+struct Heard {
+    lost: Option<String>,
+    error: Option<GpuError>,
+}
+
+/// A device and its queue, with what relievo needs to know of the adapter. Clones share the device.
+#[derive(Debug, Clone)]
+pub struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    summary: AdapterSummary,
+    heard: Arc<Mutex<Heard>>,
+}
+
+impl Gpu {
+    /// Opens a device of its own, without a window.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
+    /// refuses WebGPU's default limits.
+    pub fn headless(options: &Options) -> Result<Self, GpuError> {
+        pollster::block_on(Self::headless_async(options))
+    }
+
+    /// [`Gpu::headless`] for programs that must not block, a browser among them.
+    ///
+    /// # Errors
+    /// As [`Gpu::headless`].
+    pub async fn headless_async(options: &Options) -> Result<Self, GpuError> {
+        let adapter = adapter::choose(options).await?;
+        let summary = AdapterSummary::of(&adapter.get_info());
+        let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("relievo"),
+            required_features: adapter.features() & wanted,
+            required_limits: wgpu::Limits::default(),
+            ..Default::default()
+        };
+        let (device, queue) = (adapter.request_device(&descriptor).await).map_err(|error| {
+            GpuError::NoDevice { adapter: summary.name.clone(), reason: error.to_string() }
+        })?;
+        let heard = Arc::new(Mutex::new(Heard::default()));
+        listen(&device, &heard);
+        Ok(Self { device, queue, summary, heard })
+    }
+
+    /// Embeds in a program that has its own device. Its error handlers are left alone; relievo's own calls
+    /// are wrapped in error scopes.
+    pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let summary = AdapterSummary::of(&device.adapter_info());
+        Self { device, queue, summary, heard: Arc::default() }
+    }
+
+    /// The wgpu device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The wgpu queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// Name, kind and driver of the adapter.
+    pub fn adapter(&self) -> &AdapterSummary {
+        &self.summary
+    }
+
+    /// The largest storage binding in bytes.
+    pub fn max_binding(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
+    /// A command encoder.
+    pub fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+    }
+
+    /// Records with `record`, submits, and waits until the device has finished.
+    ///
+    /// # Errors
+    /// Whatever the device reports: see [`GpuError`].
+    pub fn run(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<(), GpuError> {
+        self.scoped(|| {
+            let mut encoder = self.encoder(label);
+            record(&mut encoder);
+            self.queue.submit([encoder.finish()]);
+        })?;
+        self.wait()
+    }
+
+    /// Waits until everything submitted so far has run.
+    ///
+    /// # Errors
+    /// A lost device or an error that was reported meanwhile, or [`GpuError::Hung`].
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        let polled = self.device.poll(poll);
+        self.check()?;
+        polled.map(|_| ()).map_err(|_| GpuError::Hung { seconds: PATIENCE.as_secs() })
+    }
+
+    /// The first error that the device has reported outside a call that returned it.
+    ///
+    /// # Errors
+    /// That error.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let mut heard = self.heard.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(reason) = &heard.lost {
+            return Err(GpuError::DeviceLost { reason: reason.clone() });
+        }
+        heard.error.take().map_or(Ok(()), Err)
+    }
+
+    /// Runs `work` and returns the errors that wgpu reports for it.
+    ///
+    /// # Errors
+    /// Out of memory, validation and internal errors caused by `work`.
+    pub fn scoped<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
+        self.check()?;
+        // A browser resolves error scopes only after the calling task has returned: there, errors reach the
+        // device's handler.
+        if cfg!(target_arch = "wasm32") {
+            return Ok(work());
+        }
+        let scopes =
+            [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation]
+                .map(|filter| self.device.push_error_scope(filter));
+        let done = work();
+        let mut first = None;
+        for scope in scopes.into_iter().rev() {
+            let error = pollster::block_on(scope.pop());
+            first = first.or(error);
+        }
+        first.map_or(Ok(done), |error| Err(GpuError::from(error)))
+    }
+}
+
+fn listen(device: &wgpu::Device, heard: &Arc<Mutex<Heard>>) {
+    let on_error = heard.clone();
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        let mut heard = on_error.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        heard.error.get_or_insert_with(|| GpuError::from(error));
+    }));
+    let on_loss = heard.clone();
+    device.set_device_lost_callback(move |reason, message| {
+        let mut heard = on_loss.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        heard.lost.get_or_insert(format!("{reason:?}: {message}"));
+    });
+}

@@ -1,0 +1,4 @@
+//! Twins of `kernels/baseline/`.
+
+pub mod copy;
+pub mod words;

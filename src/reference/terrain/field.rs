@@ -1,0 +1,81 @@
+//! Whole fields on the CPU: the twins in the order of a recipe.
+
+use rayon::prelude::*;
+
+use crate::InputError;
+use crate::reference::terrain as twin;
+use crate::terrain::border::neighbours;
+use crate::terrain::config::{Border, Config};
+use crate::terrain::features::Features;
+use crate::terrain::height::Window;
+use crate::terrain::pad::surrounds;
+use crate::terrain::recipe::Recipe;
+
+/// The final heights of `patches`, each with `margin` samples around it: rows of patchSize + 2·margin.
+/// Patches are made in parallel on rayon's threads.
+///
+/// # Errors
+/// [`InputError`] as [`Recipe::validate`].
+pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<Vec<i32>>, InputError> {
+    recipe.validate(patches, margin)?;
+    let reach = recipe.reach(margin);
+    let windows = generate(&recipe.config, &recipe.features, patches, reach);
+    Ok(windows
+        .into_par_iter()
+        .zip(patches)
+        .map(|(window, patch)| finish(recipe, *patch, reach, window))
+        .collect())
+}
+
+/// The windows of `patches` before despiking and erosion.
+pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<i32>> {
+    if config.border == Border::Seamless {
+        let window =
+            |patch: &[i32; 2]| twin::height::height(config, features, Window { patch: *patch, reach });
+        return patches.par_iter().map(window).collect();
+    }
+    let mut fields: Vec<_> =
+        patches.par_iter().map(|patch| twin::wrap::wrap(config, features, *patch)).collect();
+    let size = config.patch_size as usize;
+    if let Border::Blend(width) = config.border {
+        for (index, around) in neighbours(patches).into_iter().enumerate() {
+            let (earlier, rest) = fields.split_at_mut(index);
+            let around = around.map(|neighbour| neighbour.map(|index| earlier[index].as_slice()));
+            twin::border::border(&mut rest[0], size, width, around);
+        }
+    }
+    (surrounds(config, patches).into_par_iter())
+        .map(|around| {
+            twin::pad::pad(
+                size,
+                reach as usize,
+                around.map(|tile| tile.map(|index| fields[index].as_slice())),
+            )
+        })
+        .collect()
+}
+
+fn finish(recipe: &Recipe, patch: [i32; 2], reach: u32, mut window: Vec<i32>) -> Vec<i32> {
+    let config = &recipe.config;
+    let mut width = Window { patch, reach }.width(config) as usize;
+    if let Some(despike) = recipe.despike {
+        let injected = injected_points(config, &recipe.features, Window { patch, reach });
+        window = twin::despike::despike(&window, width, despike.fixed_threshold(), |x, y| {
+            injected.binary_search(&(y as u32, x as u32)).is_ok()
+        });
+        width -= 2;
+    }
+    if let Some(thermal) = recipe.thermal {
+        for _ in 0..thermal.iterations {
+            window = twin::thermal::thermal(&window, width, thermal.fixed_threshold(config.terrain_scale));
+            width -= 2;
+        }
+    }
+    window
+}
+
+/// (row, column) of every injected point of a window, sorted.
+fn injected_points(config: &Config, features: &Features, window: Window) -> Vec<(u32, u32)> {
+    let points = features.on_lattice(Features::world_of(config, window.patch), window.lattice(config), false);
+    points.into_iter().map(|(x, y, _)| (y, x)).collect()
+}

@@ -1,0 +1,9 @@
+//! A blend of two height fields: twin of `kernels/terrain/morph.wgsl`.
+
+/// `from + ⌊(to − from)·time / 65536⌋` at every point.
+pub fn morph(from: &[i32], to: &[i32], time: u32) -> Vec<i32> {
+    from.iter()
+        .zip(to)
+        .map(|(&from, &to)| from + ((i64::from(to - from) * i64::from(time)) >> 16) as i32)
+        .collect()
+}

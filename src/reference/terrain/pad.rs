@@ -1,0 +1,36 @@
+//! Windows around patches: twin of `kernels/terrain/pad.wgsl`.
+
+/// The window of `size` + 2·`reach` samples a row around a patch, given the nine patches around and at it.
+/// The middle one must be there.
+pub fn pad(size: usize, reach: usize, around: [Option<&[i32]>; 9]) -> Vec<i32> {
+    let width = size + 2 * reach;
+    let mut window = Vec::with_capacity(width * width);
+    for row in 0..width {
+        for column in 0..width {
+            window.push(sample(size, around, column as i64 - reach as i64, row as i64 - reach as i64));
+        }
+    }
+    window
+}
+
+fn sample(size: usize, around: [Option<&[i32]>; 9], x: i64, y: i64) -> i32 {
+    let last = size as i64 - 1;
+    let tile = |i: i64| {
+        if i < 0 {
+            0
+        } else if i > last {
+            2
+        } else {
+            1
+        }
+    };
+    let (column, row) = (tile(x), tile(y));
+    // The tile itself, then the ones beside it in x, in y, and the patch: what is missing is clamped.
+    for (column, row) in [(column, row), (column, 1), (1, row), (1, 1)] {
+        if let Some(patch) = around[3 * row + column] {
+            let local = |i: i64, tile: usize| (i - last * (tile as i64 - 1)).clamp(0, last) as usize;
+            return patch[local(y, row) * size + local(x, column)];
+        }
+    }
+    0
+}

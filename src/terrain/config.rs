@@ -1,0 +1,362 @@
+//! What terrain is made of: B table 4.6's JSON with relievo's optional fields (spec section 1.1).
+
+use std::path::Path;
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use crate::terrain::blend::{MAX_ZONES, Zone};
+use crate::{Error, InputError};
+
+/// Bits below the point of a height: 1/65536 of a unit.
+pub const HEIGHT_ONE: f64 = 65_536.0;
+
+/// World coordinates along the edge of a patch.
+pub const PATCH_EDGE: i64 = 4096;
+
+/// No height ever exceeds this (2^30 − 1): sums of two and differences still fit `i32`.
+pub const HEIGHT_LIMIT: i64 = (1 << 30) - 1;
+
+/// The distribution of random offsets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Offset {
+    /// Uniform in [−r, r).
+    #[default]
+    Signed,
+    /// Uniform in [0, r), as in B.
+    Positive,
+    /// The sum of four uniforms in [−r, r): nearly Gaussian.
+    Gaussian,
+}
+
+impl Offset {
+    /// The value of the shaders' `DISTRIBUTION`.
+    pub fn code(self) -> u32 {
+        match self {
+            Self::Signed => 0,
+            Self::Positive => 1,
+            Self::Gaussian => 2,
+        }
+    }
+}
+
+/// What happens at a patch's borders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Border {
+    /// A patch is a window onto the diamond-square of the whole plane: neighbours agree bit for bit and in
+    /// slope, in whatever order they are made.
+    #[default]
+    Seamless,
+    /// A patch by itself, whose neighbours wrap around (B section 3.3.1).
+    Wrap,
+    /// `wrap`, then a transition of this many samples towards neighbours that already exist (B section
+    /// 3.3.1). The only mode whose result depends on the order of generation.
+    Blend(u32),
+}
+
+/// A validated terrain configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Config {
+    /// Samples along a patch's edge: 2^n + 1, n in 1..=12.
+    pub patch_size: u32,
+    /// Range of the random variation at the coarsest level, in height units; ≥ 0.
+    pub scale_factor: f64,
+    /// Any text. The same seed is the same world at every resolution.
+    pub seed: String,
+    /// H ≥ 0: the range shrinks by 2^−H a level. Default 1.
+    pub roughness: f64,
+    /// k in 0..=8: the coarsest lattice lies 2^k patches apart. Default 0. `seamless` only.
+    pub coarse_levels: u32,
+    /// Distribution of the offsets. Default `signed`.
+    pub offset: Offset,
+    /// Border mode. Default `seamless`.
+    pub border: Border,
+    /// Heights of the corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1). Default 0. `wrap` and `blend` only.
+    pub corners: [f64; 4],
+    /// World units between neighbouring samples, > 0. Default 1.
+    pub terrain_scale: f64,
+    /// Height zones for colouring, 1 to 32. Default four: sand, grass, hill and snow.
+    pub zones: Vec<Zone>,
+}
+
+/// `Config` as it stands in JSON.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+struct Raw {
+    patch_size: serde_json::Number,
+    scale_factor: f64,
+    seed: String,
+    #[serde(default)]
+    roughness: Option<f64>,
+    #[serde(default)]
+    coarse_levels: Option<serde_json::Number>,
+    #[serde(default)]
+    offset: Offset,
+    #[serde(default)]
+    border: RawBorder,
+    #[serde(default)]
+    corners: Option<RawCorners>,
+    #[serde(default)]
+    terrain_scale: Option<f64>,
+    #[serde(default)]
+    zones: Option<Vec<Zone>>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "border is \"seamless\", \"wrap\" or {\"blend\": samples}")]
+enum RawBorder {
+    Named(NamedBorder),
+    Blend(BlendWidth),
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum NamedBorder {
+    Seamless,
+    Wrap,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BlendWidth {
+    blend: serde_json::Number,
+}
+
+impl Default for RawBorder {
+    fn default() -> Self {
+        Self::Named(NamedBorder::Seamless)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "corners is a height or an array of four heights")]
+enum RawCorners {
+    All(f64),
+    Each([f64; 4]),
+}
+
+impl Config {
+    /// B's three parameters; the rest at their defaults.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Config::validate`].
+    pub fn new(patch_size: u32, scale_factor: f64, seed: &str) -> Result<Self, InputError> {
+        let config = Self {
+            patch_size,
+            scale_factor,
+            seed: seed.to_owned(),
+            roughness: 1.0,
+            coarse_levels: 0,
+            offset: Offset::Signed,
+            border: Border::Seamless,
+            corners: [0.0; 4],
+            terrain_scale: 1.0,
+            zones: Zone::defaults(scale_factor, Offset::Signed),
+        };
+        config.validate()?;
+        Ok(config)
+    }
+
+    /// Reads B's JSON.
+    ///
+    /// # Errors
+    /// [`InputError`] for text that is not such JSON, unknown keys, and values out of bounds.
+    pub fn from_json(text: &str) -> Result<Self, InputError> {
+        let raw: Raw = serde_json::from_str(text).map_err(|error| json_error("config", &error))?;
+        let border = match raw.border {
+            RawBorder::Named(NamedBorder::Seamless) => Border::Seamless,
+            RawBorder::Named(NamedBorder::Wrap) => Border::Wrap,
+            RawBorder::Blend(width) => Border::Blend(whole("border.blend", &width.blend, 1, 4096)?),
+        };
+        let config = Self {
+            patch_size: whole("patchSize", &raw.patch_size, 3, 4097)?,
+            scale_factor: raw.scale_factor,
+            seed: raw.seed,
+            roughness: raw.roughness.unwrap_or(1.0),
+            coarse_levels: raw.coarse_levels.map_or(Ok(0), |levels| whole("coarseLevels", &levels, 0, 8))?,
+            offset: raw.offset,
+            border,
+            corners: raw.corners.map_or([0.0; 4], |corners| match corners {
+                RawCorners::All(height) => [height; 4],
+                RawCorners::Each(heights) => heights,
+            }),
+            terrain_scale: raw.terrain_scale.unwrap_or(1.0),
+            zones: raw.zones.unwrap_or_else(|| Zone::defaults(raw.scale_factor, raw.offset)),
+        };
+        config.validate()?;
+        Ok(config)
+    }
+
+    /// Reads a JSON file. Texture paths in its zones are relative to it.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it cannot be read, [`Error::InputFile`] as [`Config::from_json`].
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        let text = read_text(path)?;
+        let mut config =
+            Self::from_json(&text).map_err(|source| Error::InputFile { path: path.to_owned(), source })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for zone in &mut config.zones {
+            zone.resolve_texture(folder);
+        }
+        Ok(config)
+    }
+
+    /// Checks every bound. Called by whatever takes a `Config`.
+    ///
+    /// # Errors
+    /// The first [`InputError`].
+    pub fn validate(&self) -> Result<(), InputError> {
+        let size = self.patch_size;
+        if !(3..=4097).contains(&size) || !(size - 1).is_power_of_two() {
+            return Err(InputError::new(
+                "patchSize",
+                size,
+                "must be 2^n + 1 with n in 1..=12 (3, 5, 9, … 4097)",
+            ));
+        }
+        finite("scaleFactor", self.scale_factor, 0.0, f64::MAX)?;
+        finite("roughness", self.roughness, 0.0, f64::MAX)?;
+        if self.coarse_levels > 8 {
+            return Err(InputError::new("coarseLevels", self.coarse_levels, "must be in 0..=8"));
+        }
+        finite("terrainScale", self.terrain_scale, 1e-6, 1e6)?;
+        for (index, &corner) in self.corners.iter().enumerate() {
+            finite(&format!("corners[{index}]"), corner, -HEIGHT_LIMIT as f64, HEIGHT_LIMIT as f64)?;
+        }
+        self.validate_border()?;
+        if self.zones.is_empty() || self.zones.len() > MAX_ZONES {
+            let bound = format!("must hold 1 to {MAX_ZONES} zones");
+            return Err(InputError::new("zones", format!("[{} zones]", self.zones.len()), bound));
+        }
+        for (index, zone) in self.zones.iter().enumerate() {
+            zone.validate(&format!("zones[{index}]"))?;
+        }
+        self.check_overflow(0, false)
+    }
+
+    fn validate_border(&self) -> Result<(), InputError> {
+        if self.border == Border::Seamless {
+            if self.corners != [0.0; 4] {
+                let bound = "only the borders \"wrap\" and \"blend\" have corners";
+                return Err(InputError::new("corners", format!("{:?}", self.corners), bound));
+            }
+        } else if self.coarse_levels != 0 {
+            let bound = "must be 0 unless border is \"seamless\": a patch by itself has nothing coarser";
+            return Err(InputError::new("coarseLevels", self.coarse_levels, bound));
+        }
+        match self.border {
+            Border::Blend(width) if width == 0 || width >= self.patch_size => {
+                let bound = format!("must be in 1..={} (patchSize − 1)", self.patch_size - 1);
+                Err(InputError::new("border.blend", width, bound))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses heights that could leave 2^30 − 1 (spec section 1.2, overflow), given the largest absolute
+    /// feature height in 1/65536 units.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `scaleFactor`.
+    pub fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
+        let corner =
+            self.corners.iter().map(|height| (height.abs() * HEIGHT_ONE).round()).fold(0.0, f64::max);
+        let feature = largest_feature as f64;
+        let mut bound = match self.border {
+            Border::Seamless => self.range(0) + feature,
+            Border::Wrap | Border::Blend(_) => corner + feature,
+        };
+        for level in 0..self.levels() {
+            bound += 2.0 * (self.range(level) + if additive { feature } else { 0.0 });
+        }
+        if bound > HEIGHT_LIMIT as f64 {
+            let reach = bound / HEIGHT_ONE;
+            let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
+            let bound = format!(
+                "heights could reach {reach:.0} units with these ranges, corners and features; the bound is {most:.0}"
+            );
+            return Err(InputError::new("scaleFactor", self.scale_factor, bound));
+        }
+        Ok(())
+    }
+
+    /// n of `patch_size` = 2^n + 1.
+    pub fn exponent(&self) -> u32 {
+        (self.patch_size - 1).ilog2()
+    }
+
+    /// Subdivisions from the coarsest lattice to the samples: L = n + k.
+    pub fn levels(&self) -> u32 {
+        self.exponent() + self.coarse_levels
+    }
+
+    /// World coordinates between neighbouring samples.
+    pub fn sample_spacing(&self) -> i64 {
+        PATCH_EDGE >> self.exponent()
+    }
+
+    /// r_l: the range of offsets at a level, in 1/65536 units, rounded to nearest, ties to even.
+    pub fn level_range(&self, level: u32) -> u32 {
+        self.range(level) as u32
+    }
+
+    // `libm::exp2` is pure Rust, so that no C library decides a bit.
+    fn range(&self, level: u32) -> f64 {
+        (self.scale_factor * libm::exp2(-self.roughness * f64::from(level)) * HEIGHT_ONE).round_ties_even()
+    }
+
+    /// The key of the hash: the first eight bytes of the seed's SHA-256 as two little-endian words.
+    pub fn key(&self) -> [u32; 2] {
+        let digest = Sha256::digest(self.seed.as_bytes());
+        let word =
+            |at: usize| u32::from_le_bytes([digest[at], digest[at + 1], digest[at + 2], digest[at + 3]]);
+        [word(0), word(4)]
+    }
+
+    /// Corner heights in 1/65536 units.
+    pub fn fixed_corners(&self) -> [i32; 4] {
+        self.corners.map(|height| (height * HEIGHT_ONE).round_ties_even() as i32)
+    }
+}
+
+/// A number that must be finite and in `low..=high`.
+pub(crate) fn finite(field: &str, value: f64, low: f64, high: f64) -> Result<(), InputError> {
+    if value.is_finite() && (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let bound = match (low > -f64::MAX, high < f64::MAX) {
+        (true, true) => format!("must be a number in {low}..={high}"),
+        (true, false) => format!("must be a finite number ≥ {low}"),
+        _ => "must be a finite number".to_owned(),
+    };
+    Err(InputError::new(field, value, bound))
+}
+
+/// A JSON number that must be whole and in `low..=high`.
+pub(crate) fn whole(
+    field: &str,
+    number: &serde_json::Number,
+    low: u32,
+    high: u32,
+) -> Result<u32, InputError> {
+    (number.as_u64().or_else(|| {
+        number.as_f64().filter(|value| value.fract() == 0.0 && *value >= 0.0).map(|value| value as u64)
+    }))
+    .and_then(|value| u32::try_from(value).ok())
+    .filter(|value| (low..=high).contains(value))
+    .ok_or_else(|| InputError::new(field, number, format!("must be a whole number in {low}..={high}")))
+}
+
+/// A serde error as field, value and bound.
+pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
+    let place = format!("line {} column {}", error.line(), error.column());
+    InputError::new(what, place, error.to_string())
+}
+
+/// A text file.
+pub(crate) fn read_text(path: &Path) -> Result<String, Error> {
+    std::fs::read_to_string(path).map_err(|error| Error::file(path, error))
+}

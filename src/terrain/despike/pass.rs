@@ -1,0 +1,70 @@
+//! `kernels/terrain/despike.wgsl`.
+
+use encase::ShaderType;
+
+use super::Despike;
+use crate::Error;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::terrain::features::{FeatureGrid, FeatureIndex};
+use crate::terrain::fields::Fields;
+
+/// `DespikeParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct DespikeParams {
+    pub features: FeatureGrid,
+    pub in_width: u32,
+    pub threshold: i32,
+}
+
+/// Removes spikes.
+#[derive(Debug, Clone)]
+pub struct DespikePass {
+    kernel: Kernel,
+}
+
+impl DespikePass {
+    /// Compiles the pipeline. `with_features` says whether there are points to leave alone.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, with_features: bool) -> Result<Self, GpuError> {
+        let constants = [("FEATURES", f64::from(u8::from(with_features)))];
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_DESPIKE, &constants)? })
+    }
+
+    /// Prepares despiking of `windows` into `cropped`, one sample smaller on every side. Grid 0 of
+    /// `features` covers the windows.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for a threshold out of bounds; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        despike: Despike,
+        windows: &Fields,
+        features: &FeatureIndex,
+        cropped: &Fields,
+    ) -> Result<Job, Error> {
+        despike.validate()?;
+        let params = DespikeParams {
+            features: features.grid(0),
+            in_width: windows.width,
+            threshold: despike.fixed_threshold(),
+        };
+        let uniform = Uniform::new(gpu, "despike", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            windows.heights.raw().as_entire_binding(),
+            cropped.heights.raw().as_entire_binding(),
+        ];
+        let step = Step {
+            kernel: self.kernel.clone(),
+            groups: vec![
+                self.kernel.bind(gpu, 0, &resources)?,
+                self.kernel.bind(gpu, 1, &features.resources())?,
+            ],
+            workgroups: windows.workgroups(&self.kernel, 1),
+        };
+        Ok(Job::new(gpu, "terrain/despike", vec![step])?)
+    }
+}

@@ -1,0 +1,219 @@
+//! Injected heights (B section 3.3.1 and 4.4): reading them, and finding those that a window sees.
+
+#[cfg(feature = "gpu")]
+mod index;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::terrain::config::{Border, Config, HEIGHT_ONE, PATCH_EDGE, json_error, read_text};
+use crate::{Error, InputError};
+
+#[cfg(feature = "gpu")]
+pub use index::{FeatureGrid, FeatureIndex};
+
+/// What injection does to a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FeatureMode {
+    /// Injected points stay as they are.
+    #[default]
+    Keep,
+    /// The computed value is added to them.
+    Additive,
+}
+
+impl FeatureMode {
+    /// The value of the shaders' `FEATURES`; 0 stands for no features.
+    pub fn code(self) -> u32 {
+        match self {
+            Self::Keep => 1,
+            Self::Additive => 2,
+        }
+    }
+}
+
+/// One feature file: B's JSON.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct FeatureFile {
+    /// The patch.
+    pub patch_coordinates: [i32; 2],
+    /// x, y and height of one point after the other; x and y count samples of the patch.
+    pub precomputed_heights: Vec<f64>,
+}
+
+impl FeatureFile {
+    /// Reads B's JSON.
+    ///
+    /// # Errors
+    /// [`InputError`] for text that is not such JSON.
+    pub fn from_json(text: &str) -> Result<Self, InputError> {
+        serde_json::from_str(text).map_err(|error| json_error("features", &error))
+    }
+
+    /// Reads a JSON file.
+    ///
+    /// # Errors
+    /// [`Error::File`] or [`Error::InputFile`].
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        Self::from_json(&read_text(path)?)
+            .map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    }
+
+    /// The points, checked against the patch.
+    fn points(&self, config: &Config) -> Result<Vec<(i32, i32, i32)>, InputError> {
+        let values = &self.precomputed_heights;
+        if !values.len().is_multiple_of(3) {
+            let bound = "its length must be a multiple of 3 (x, y, height, …)";
+            return Err(InputError::new("precomputedHeights", format!("[{} numbers]", values.len()), bound));
+        }
+        let last = f64::from(config.patch_size - 1);
+        let field = |index: usize| format!("precomputedHeights[{index}]");
+        let mut points = Vec::with_capacity(values.len() / 3);
+        for (point, triple) in values.chunks_exact(3).enumerate() {
+            for (axis, &value) in triple[..2].iter().enumerate() {
+                if !(value.fract() == 0.0 && (0.0..=last).contains(&value)) {
+                    let bound = format!("must be a whole number in 0..={last} (patchSize − 1)");
+                    return Err(InputError::new(field(3 * point + axis), value, bound));
+                }
+            }
+            let height = (triple[2] * HEIGHT_ONE).round_ties_even();
+            if height.is_nan() || height.abs() > f64::from(1 << 30) {
+                let bound = "must be a finite height below 16384 in size";
+                return Err(InputError::new(field(3 * point + 2), triple[2], bound));
+            }
+            points.push((triple[0] as i32, triple[1] as i32, height as i32));
+        }
+        Ok(points)
+    }
+}
+
+/// Injected heights of a world, keyed so that a window finds its own.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Features {
+    /// What injection does.
+    pub mode: FeatureMode,
+    // In `seamless` the one world is (0, 0); otherwise each patch is a world of its own. Points are keyed
+    // (Y, X) in world coordinates, which start at the patch in the latter case.
+    worlds: BTreeMap<[i32; 2], BTreeMap<(i64, i64), i32>>,
+}
+
+impl Features {
+    /// Checks and collects feature files.
+    ///
+    /// # Errors
+    /// [`InputError`] for a coordinate outside the patch, a list whose length is no multiple of 3, heights
+    /// that are not finite or could overflow, and a lattice point that is given two heights.
+    pub fn new(config: &Config, files: &[FeatureFile], mode: FeatureMode) -> Result<Self, InputError> {
+        config.validate()?;
+        let mut features = Self { mode, worlds: BTreeMap::new() };
+        for file in files {
+            features.add(config, file)?;
+        }
+        features.check(config)?;
+        Ok(features)
+    }
+
+    /// Adds one file. Call [`Features::check`] after the last.
+    ///
+    /// # Errors
+    /// As [`Features::new`].
+    pub fn add(&mut self, config: &Config, file: &FeatureFile) -> Result<(), InputError> {
+        let [px, py] = file.patch_coordinates;
+        let spacing = config.sample_spacing();
+        let seamless = config.border == Border::Seamless;
+        let world = self.worlds.entry(if seamless { [0, 0] } else { [px, py] }).or_default();
+        let origin = if seamless { [i64::from(px) * PATCH_EDGE, i64::from(py) * PATCH_EDGE] } else { [0, 0] };
+        for (index, (x, y, height)) in file.points(config)?.into_iter().enumerate() {
+            let key = (origin[1] + i64::from(y) * spacing, origin[0] + i64::from(x) * spacing);
+            let earlier = world.insert(key, height);
+            if let Some(earlier) = earlier.filter(|earlier| *earlier != height) {
+                let bound = format!(
+                    "patch ({px}, {py}) point ({x}, {y}) already has the height {}; a lattice point has one",
+                    f64::from(earlier) / HEIGHT_ONE
+                );
+                let field = format!("precomputedHeights[{}]", 3 * index + 2);
+                return Err(InputError::new(field, f64::from(height) / HEIGHT_ONE, bound));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses heights that could overflow together with the configuration's ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Config::check_overflow`].
+    pub fn check(&self, config: &Config) -> Result<(), InputError> {
+        config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
+    }
+
+    /// Whether nothing is injected anywhere.
+    pub fn is_empty(&self) -> bool {
+        self.worlds.values().all(BTreeMap::is_empty)
+    }
+
+    /// The number of injected points.
+    pub fn len(&self) -> usize {
+        self.worlds.values().map(BTreeMap::len).sum()
+    }
+
+    /// How features are injected, if there are any.
+    pub fn injection(&self) -> Option<FeatureMode> {
+        (!self.is_empty()).then_some(self.mode)
+    }
+
+    fn largest(&self) -> i64 {
+        self.worlds
+            .values()
+            .flat_map(BTreeMap::values)
+            .map(|height| i64::from(*height).abs())
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// The injected points of a square lattice: first sample `origin`, `width` samples `spacing` apart, in
+    /// world coordinates of `world`; as (column, row, height), row by row. Points that lie on the lattice of
+    /// twice the spacing are left out if `new_only`.
+    pub fn on_lattice(&self, world: [i32; 2], lattice: Lattice, new_only: bool) -> Vec<(u32, u32, i32)> {
+        let Some(points) = self.worlds.get(&world) else { return Vec::new() };
+        let Lattice { origin, width, spacing } = lattice;
+        let end = |start: i64| start + i64::from(width.max(1) - 1) * spacing;
+        let mut found = Vec::new();
+        for (&(y, x), &height) in points.range((origin[1], i64::MIN)..=(end(origin[1]), i64::MAX)) {
+            let on = |value: i64, step: i64| value.rem_euclid(step) == 0;
+            let inside = (origin[0]..=end(origin[0])).contains(&x) && on(x, spacing) && on(y, spacing);
+            let old = on(x, 2 * spacing) && on(y, 2 * spacing);
+            if inside && !(new_only && old) {
+                let index = |value: i64, start: i64| ((value - start) / spacing) as u32;
+                found.push((index(x, origin[0]), index(y, origin[1]), height));
+            }
+        }
+        found
+    }
+
+    /// The world that a patch lives in: see [`Features::on_lattice`].
+    pub fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
+        if config.border == Border::Seamless { [0, 0] } else { patch }
+    }
+}
+
+impl Lattice {
+    /// The lattice with one point more on every side.
+    pub fn grown(self) -> Self {
+        Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
+    }
+}
+
+/// A square lattice in world coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lattice {
+    /// The first point, (X, Y); a multiple of `spacing`.
+    pub origin: [i64; 2],
+    /// Points along an edge.
+    pub width: u32,
+    /// World coordinates between neighbours.
+    pub spacing: i64,
+}

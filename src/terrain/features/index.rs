@@ -1,0 +1,112 @@
+//! Features on the device: a bit a point and the rank of its value, a grid a level
+//! (`wgsl/terrain/features.wgsl`).
+
+use crate::gpu::{Buffer, Gpu, GpuError};
+
+/// One grid of the index, as shaders see it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, encase::ShaderType)]
+pub struct FeatureGrid {
+    /// Points along an edge of the window.
+    pub width: u32,
+    /// Words a row; a row covers one point more than the window on both sides.
+    pub words_per_row: u32,
+    /// Words a window.
+    pub words_per_window: u32,
+    /// The first window's first word.
+    pub start: u32,
+}
+
+/// The index of a batch of windows: several grids of different widths, and the values.
+#[derive(Debug, Clone)]
+pub struct FeatureIndex {
+    grids: Vec<FeatureGrid>,
+    words: Buffer<[u32; 2]>,
+    heights: Buffer<i32>,
+}
+
+impl FeatureIndex {
+    /// Room for `windows` windows with grids of these widths, and for `capacity` values in all. A capacity of
+    /// 0 takes no memory and serves kernels that are compiled without features.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
+    pub fn new(gpu: &Gpu, widths: &[u32], windows: u32, capacity: usize) -> Result<Self, GpuError> {
+        let mut start = 0;
+        let grids = (widths.iter())
+            .map(|&width| {
+                let words_per_row = (width + 2).div_ceil(32);
+                let grid = FeatureGrid {
+                    width,
+                    words_per_row,
+                    words_per_window: words_per_row * (width + 2),
+                    start,
+                };
+                start += grid.words_per_window * windows;
+                grid
+            })
+            .collect();
+        let words = if capacity == 0 { 0 } else { start as usize };
+        Ok(Self {
+            grids,
+            words: Buffer::new(gpu, "feature words", words)?,
+            heights: Buffer::new(gpu, "feature heights", capacity)?,
+        })
+    }
+
+    /// Replaces the features. `points(grid, window)` gives (column, row, height) sorted by row, then column,
+    /// relative to one point before the window's first.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] when there are more than the index has room for.
+    pub fn write(
+        &self,
+        gpu: &Gpu,
+        windows: u32,
+        points: impl Fn(usize, u32) -> Vec<(u32, u32, i32)>,
+    ) -> Result<(), GpuError> {
+        if self.words.is_empty() {
+            return Ok(());
+        }
+        let mut words = vec![[0_u32; 2]; self.words.len()];
+        let mut heights = Vec::new();
+        for (index, grid) in self.grids.iter().enumerate() {
+            for window in 0..windows {
+                let start = grid.start + window * grid.words_per_window;
+                for (column, row, height) in points(index, window) {
+                    let word = &mut words[(start + row * grid.words_per_row + column / 32) as usize];
+                    if word[0] == 0 {
+                        word[1] = heights.len() as u32;
+                    }
+                    word[0] |= 1 << (column % 32);
+                    heights.push(height);
+                }
+            }
+        }
+        if heights.len() > self.heights.len() {
+            return Err(GpuError::Limit {
+                pass: "terrain features",
+                limit: "the capacity given at set-up",
+                needed: heights.len() as u64,
+                available: self.heights.len() as u64,
+                remedy: "prepare the job with more room for features",
+            });
+        }
+        self.words.write(gpu, &words)?;
+        self.heights.write(gpu, &heights)
+    }
+
+    /// Grid `index`, in the order of the widths.
+    pub fn grid(&self, index: usize) -> FeatureGrid {
+        self.grids[index]
+    }
+
+    /// The resources of bind group 1.
+    pub fn resources(&self) -> [wgpu::BindingResource<'_>; 2] {
+        [self.words.raw().as_entire_binding(), self.heights.raw().as_entire_binding()]
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.words.bytes() + self.heights.bytes()
+    }
+}

@@ -1,0 +1,159 @@
+//! Whole fields on the device: the kernels in the order of a recipe. The GPU side of
+//! [`crate::reference::terrain::field`].
+
+use crate::Error;
+use crate::gpu::{Gpu, GpuError};
+use crate::terrain::border::{BorderPass, neighbours};
+use crate::terrain::config::Border;
+use crate::terrain::despike::DespikePass;
+use crate::terrain::features::{FeatureIndex, Features};
+use crate::terrain::fields::Fields;
+use crate::terrain::height::{HeightJob, HeightPass, HeightScratch, Window};
+use crate::terrain::pad::{PadPass, surrounds};
+use crate::terrain::recipe::Recipe;
+use crate::terrain::thermal::ThermalPass;
+use crate::terrain::wrap::{WrapJob, WrapPass};
+
+/// Makes the fields of one recipe.
+#[derive(Debug, Clone)]
+pub struct Generator {
+    recipe: Recipe,
+    height: HeightPass,
+    wrap: WrapPass,
+    border: BorderPass,
+    pad: PadPass,
+    despike: DespikePass,
+    thermal: ThermalPass,
+}
+
+impl Generator {
+    /// Checks the recipe and compiles its pipelines.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for a recipe out of bounds; [`GpuError`].
+    pub fn new(gpu: &Gpu, recipe: Recipe) -> Result<Self, Error> {
+        recipe.validate(&[], 0)?;
+        let (offset, injection) = (recipe.config.offset, recipe.features.injection());
+        Ok(Self {
+            height: HeightPass::new(gpu, offset, injection)?,
+            wrap: WrapPass::new(gpu, offset, injection)?,
+            border: BorderPass::new(gpu)?,
+            pad: PadPass::new(gpu)?,
+            despike: DespikePass::new(gpu, injection.is_some())?,
+            thermal: ThermalPass::new(gpu)?,
+            recipe,
+        })
+    }
+
+    /// Patches that one part of the result may hold.
+    pub fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
+        let width = u64::from(self.recipe.config.patch_size + 2 * self.recipe.reach(margin));
+        (gpu.max_binding() / (4 * width * width)).clamp(1, 65_535) as usize
+    }
+
+    /// The final heights of `patches` with `margin` samples around each, in parts that fit one storage binding;
+    /// `progress` hears of the patches done. Waits for the device.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
+    pub fn generate(
+        &self,
+        gpu: &Gpu,
+        patches: &[[i32; 2]],
+        margin: u32,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<Vec<Fields>, Error> {
+        self.recipe.validate(patches, margin)?;
+        let reach = self.recipe.reach(margin);
+        if self.recipe.config.border != Border::Seamless {
+            let fields = self.by_themselves(gpu, patches, reach)?;
+            progress(patches.len());
+            return Ok(fields);
+        }
+        let mut parts = Vec::new();
+        for part in patches.chunks(self.patches_per_part(gpu, margin)) {
+            let windows = self.windows(gpu, part, reach)?;
+            parts.push(self.finish(gpu, part, reach, windows)?);
+            progress(part.len());
+        }
+        Ok(parts)
+    }
+
+    fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Fields, Error> {
+        let (config, features) = (&self.recipe.config, &self.recipe.features);
+        let count = patches.len() as u32;
+        let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * reach, count)?;
+        debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, reach));
+        let scratch = HeightScratch::new(gpu, config, count, reach)?;
+        let capacity = features.len().saturating_mul(patches.len()).min(windows.heights.len() * 2);
+        let job = self.height.prepare(gpu, config, [count, reach], capacity, &windows.heights, &scratch)?;
+        job.set(gpu, patches, features)?;
+        gpu.run("terrain/height", |encoder| job.record(encoder))?;
+        Ok(windows)
+    }
+
+    fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Vec<Fields>, Error> {
+        let (config, features) = (&self.recipe.config, &self.recipe.features);
+        let (size, count) = (config.patch_size, patches.len() as u32);
+        let fields = Fields::new(gpu, "terrain/wrap: all patches of a grid", size, count)?;
+        let scratch =
+            crate::gpu::Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))?;
+        let job = self.wrap.prepare(gpu, config, count, features.len(), &fields.heights, &scratch)?;
+        job.set(gpu, patches, features)?;
+        gpu.run("terrain/wrap", |encoder| job.record(encoder))?;
+        if let Border::Blend(width) = config.border {
+            let job = self.border.prepare(gpu, size, width, &neighbours(patches), &fields.heights)?;
+            gpu.run("terrain/border", |encoder| job.record(encoder))?;
+        }
+        let all = surrounds(config, patches);
+        let per_part = self.patches_per_part(gpu, reach);
+        let mut parts = Vec::new();
+        for (part, around) in patches.chunks(per_part).zip(all.chunks(per_part)) {
+            let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, part.len() as u32)?;
+            let job = self.pad.prepare(gpu, [size, reach], around, &fields.heights, &windows.heights)?;
+            gpu.run("terrain/pad", |encoder| job.record(encoder))?;
+            parts.push(self.finish(gpu, part, reach, windows)?);
+        }
+        Ok(parts)
+    }
+
+    /// Despikes and erodes windows, in turn between them and a second buffer as large.
+    fn finish(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32, windows: Fields) -> Result<Fields, Error> {
+        if self.recipe.despike.is_none() && self.recipe.thermal.is_none() {
+            return Ok(windows);
+        }
+        let (mut current, mut other) =
+            (windows.clone(), Fields::new(gpu, "terrain windows", windows.width, windows.count)?);
+        if let Some(despike) = self.recipe.despike {
+            let features = self.injected(gpu, patches, reach)?;
+            let job = self.despike.prepare(gpu, despike, &current, &features, &other)?;
+            gpu.run("terrain/despike", |encoder| job.record(encoder))?;
+            (current, other) = (other.cropped(1), current.cropped(1));
+        }
+        if let Some(thermal) = self.recipe.thermal {
+            let scale = self.recipe.config.terrain_scale;
+            let job = self.thermal.prepare(gpu, thermal, scale, &current, &other)?;
+            gpu.run("terrain/thermal", |encoder| job.record(encoder))?;
+            let result = if thermal.iterations % 2 == 0 { current } else { other };
+            current = result.cropped(thermal.iterations);
+        }
+        Ok(current)
+    }
+
+    /// An index of every injected point of the windows.
+    fn injected(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<FeatureIndex, GpuError> {
+        let (config, features) = (&self.recipe.config, &self.recipe.features);
+        let width = config.patch_size + 2 * reach;
+        let points = |window: u32| {
+            let patch = patches[window as usize];
+            let lattice = Window { patch, reach }.lattice(config).grown();
+            features.on_lattice(Features::world_of(config, patch), lattice, false)
+        };
+        let count = patches.len() as u32;
+        let capacity = (0..count).map(|window| points(window).len()).sum::<usize>();
+        let capacity = if features.is_empty() { 0 } else { capacity.max(1) };
+        let index = FeatureIndex::new(gpu, &[width], count, capacity)?;
+        index.write(gpu, count, |_, window| points(window))?;
+        Ok(index)
+    }
+}

@@ -1,0 +1,389 @@
+//! `kernels/terrain/height.wgsl` over the levels of a batch of windows.
+
+use encase::ShaderType;
+use glam::UVec2;
+
+use super::Window;
+use crate::Error;
+use crate::InputError;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::terrain::config::{Border, Config, Offset};
+use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features, Lattice};
+use crate::terrain::fields::Fields;
+
+/// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
+const CELL_ROWS_SOFTWARE: u32 = 32;
+const CELL_ROWS_HARDWARE: u32 = 2;
+
+/// `Level` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct Level {
+    pub key: UVec2,
+    pub fine_width: u32,
+    pub fine_points: u32,
+    pub coarse_width: u32,
+    pub coarse_points: u32,
+    pub fine_spacing: u32,
+    pub fine_range: u32,
+    pub base_range: u32,
+    pub blocks_per_row: u32,
+    pub blocks: u32,
+    pub windows: u32,
+    #[shader(align(16))]
+    pub fine_features: FeatureGrid,
+    #[shader(align(16))]
+    pub base_features: FeatureGrid,
+}
+
+/// Diamond-square heights of `seamless` windows. Compiled for one distribution and one way of injection.
+#[derive(Debug, Clone)]
+pub struct HeightPass {
+    first: Kernel,
+    next: Kernel,
+    cell_rows: u32,
+    with_features: bool,
+}
+
+impl HeightPass {
+    /// Compiles the pipelines. `features` is how features are injected; without it there are none.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
+        let rows = if gpu.adapter().is_software() { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
+        Self::with_cell_rows(gpu, offset, features, rows)
+    }
+
+    /// [`HeightPass::new`] with a chosen number of coarse rows a thread.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn with_cell_rows(
+        gpu: &Gpu,
+        offset: Offset,
+        features: Option<FeatureMode>,
+        cell_rows: u32,
+    ) -> Result<Self, GpuError> {
+        let kernel = |first: bool| {
+            let constants = [
+                ("CELL_ROWS", f64::from(cell_rows)),
+                ("FIRST", f64::from(u8::from(first))),
+                ("DISTRIBUTION", f64::from(offset.code())),
+                ("FEATURES", features.map_or(0.0, |mode| f64::from(mode.code()))),
+            ];
+            Kernel::new(gpu, &shaders::TERRAIN_HEIGHT, &constants)
+        };
+        Ok(Self { first: kernel(true)?, next: kernel(false)?, cell_rows, with_features: features.is_some() })
+    }
+
+    /// Prepares generation of `count` windows with `reach` into `output`, which holds
+    /// [`HeightJob::output_points`] heights. There is room for `feature_capacity` injected points, counted once
+    /// in every window that sees them.
+    ///
+    /// # Errors
+    /// [`InputError`] for a configuration that is not `seamless` or out of bounds; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        config: &Config,
+        [count, reach]: [u32; 2],
+        feature_capacity: usize,
+        output: &Buffer<i32>,
+        scratch: &HeightScratch,
+    ) -> Result<HeightJob, Error> {
+        config.validate()?;
+        if config.border != Border::Seamless {
+            let value = format!("{:?}", config.border).to_lowercase();
+            return Err(
+                InputError::new("border", value, "must be \"seamless\" for windows of the plane").into()
+            );
+        }
+        let widths = level_widths(config, reach);
+        check_length("output", output, HeightJob::output_points(config, count, reach))?;
+        scratch.check(&widths, count)?;
+        let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
+        let features = FeatureIndex::new(gpu, &widths, count, capacity)?;
+        let origins: Vec<_> = (0..widths.len())
+            .map(|_| Buffer::new(gpu, "window origins", count as usize))
+            .collect::<Result<_, _>>()?;
+        let mut steps = Vec::new();
+        for level in 0..config.levels() as usize {
+            // The last level goes to the output, those before it to the scratch buffers in turn.
+            let below = config.levels() as usize - 1 - level;
+            let coarse = &scratch.buffers[below % 2];
+            let fine = if below == 0 { output } else { &scratch.buffers[(below + 1) % 2] };
+            let kernel = if level == 0 { &self.first } else { &self.next };
+            let params = self.level(config, &widths, level, &features, count);
+            let uniform = Uniform::new(gpu, "terrain level", &params)?;
+            let resources = [
+                uniform.raw().as_entire_binding(),
+                origins[level + 1].raw().as_entire_binding(),
+                coarse.raw().as_entire_binding(),
+                fine.raw().as_entire_binding(),
+            ];
+            let groups = vec![kernel.bind(gpu, 0, &resources)?, kernel.bind(gpu, 1, &features.resources())?];
+            let workgroups = kernel.spread(gpu, params.blocks * count);
+            steps.push(Step { kernel: kernel.clone(), groups, workgroups });
+        }
+        let job = Job::new(gpu, "terrain/height", steps)?;
+        Ok(HeightJob { config: config.clone(), count, reach, widths, origins, features, job })
+    }
+
+    fn level(
+        &self,
+        config: &Config,
+        widths: &[u32],
+        level: usize,
+        features: &FeatureIndex,
+        count: u32,
+    ) -> Level {
+        let (coarse_width, fine_width) = (widths[level], widths[level + 1]);
+        let cells = fine_width / 2 + 1;
+        let blocks_per_row = cells.div_ceil(4);
+        Level {
+            key: config.key().into(),
+            fine_width,
+            fine_points: fine_width * fine_width,
+            coarse_width,
+            coarse_points: coarse_width * coarse_width,
+            fine_spacing: (config.sample_spacing() << (config.levels() as usize - level - 1)) as u32,
+            fine_range: config.level_range(level as u32),
+            base_range: config.level_range(0),
+            blocks_per_row,
+            blocks: blocks_per_row * cells.div_ceil(self.cell_rows),
+            windows: count,
+            fine_features: features.grid(level + 1),
+            base_features: features.grid(0),
+        }
+    }
+}
+
+fn check_length(what: &str, buffer: &Buffer<i32>, needed: usize) -> Result<(), InputError> {
+    if buffer.len() >= needed {
+        return Ok(());
+    }
+    Err(InputError::new(what, format!("[{} heights]", buffer.len()), format!("must hold at least {needed}")))
+}
+
+/// Points along an edge at every level, enough for windows of any alignment; the base lattice first.
+fn level_widths(config: &Config, reach: u32) -> Vec<u32> {
+    let mut widths = vec![config.patch_size + 2 * reach];
+    for _ in 0..config.levels() {
+        widths.push((widths[widths.len() - 1] - 1) / 2 + 3);
+    }
+    widths.reverse();
+    widths
+}
+
+/// A batch of any size: split where it exceeds the largest storage binding (128 MiB by default), in one
+/// recording.
+#[derive(Debug, Clone)]
+pub struct HeightBatch {
+    jobs: Vec<HeightJob>,
+    fields: Vec<Fields>,
+    scratch: HeightScratch,
+}
+
+impl HeightBatch {
+    /// Allocates everything for `count` windows with `reach`, with room for `feature_capacity` injected points
+    /// in each part.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`HeightPass::prepare`]; [`GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        pass: &HeightPass,
+        config: &Config,
+        [count, reach]: [u32; 2],
+        feature_capacity: usize,
+    ) -> Result<Self, Error> {
+        let window = 4 * HeightJob::output_points(config, 1, reach) as u64;
+        // A dispatch has at most 65,535 windows.
+        let largest = (gpu.max_binding() / window).clamp(1, 65_535) as u32;
+        let parts = count.div_ceil(largest).max(1);
+        let scratch = HeightScratch::new(gpu, config, count.div_ceil(parts), reach)?;
+        let (mut jobs, mut fields) = (Vec::new(), Vec::new());
+        for part in 0..parts {
+            let size = count * (part + 1) / parts - count * part / parts;
+            let output = Fields::new(gpu, "terrain heights", config.patch_size + 2 * reach, size)?;
+            jobs.push(pass.prepare(
+                gpu,
+                config,
+                [size, reach],
+                feature_capacity,
+                &output.heights,
+                &scratch,
+            )?);
+            fields.push(output);
+        }
+        Ok(Self { jobs, fields, scratch })
+    }
+
+    /// Chooses the patches, in order over the parts, and features of the next recordings.
+    ///
+    /// # Errors
+    /// As [`HeightJob::set`].
+    pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
+        let mut rest = patches;
+        for (job, fields) in self.jobs.iter().zip(&self.fields) {
+            let (part, after) = rest.split_at(rest.len().min(fields.count as usize));
+            job.set(gpu, part, features)?;
+            rest = after;
+        }
+        if rest.is_empty() {
+            return Ok(());
+        }
+        let bound = format!("must be at most {}, the batch's count", patches.len() - rest.len());
+        Err(InputError::new("patches", patches.len(), bound).into())
+    }
+
+    /// Records the generation of all windows.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.jobs.iter().for_each(|job| job.record(encoder));
+    }
+
+    /// The heights, part by part.
+    pub fn fields(&self) -> &[Fields] {
+        &self.fields
+    }
+
+    /// Bytes of heights and scratch on the device, features aside.
+    pub fn bytes(&self) -> u64 {
+        self.fields.iter().map(|fields| fields.heights.bytes()).sum::<u64>() + self.scratch.bytes()
+    }
+}
+
+/// Room for the levels before the last: about a third of the output. Jobs of one shape may share it.
+#[derive(Debug, Clone)]
+pub struct HeightScratch {
+    // Level L − 1, L − 3, … in the first, L − 2, L − 4, … in the second.
+    buffers: [Buffer<i32>; 2],
+}
+
+impl HeightScratch {
+    /// Scratch for `count` windows with `reach`.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
+    pub fn new(gpu: &Gpu, config: &Config, count: u32, reach: u32) -> Result<Self, GpuError> {
+        let [first, second] = Self::points(&level_widths(config, reach), count);
+        let buffer = |points| Buffer::new(gpu, "terrain scratch", points);
+        Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
+    }
+
+    // Widths fall from level to level, and the smallest windows stay five wide.
+    fn points(widths: &[u32], count: u32) -> [usize; 2] {
+        [2, 3].map(|back| {
+            widths.len().checked_sub(back).map_or(0, |level| widths[level] as usize).pow(2) * count as usize
+        })
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.iter().map(Buffer::bytes).sum()
+    }
+
+    fn check(&self, widths: &[u32], count: u32) -> Result<(), InputError> {
+        let needed = Self::points(widths, count);
+        self.buffers
+            .iter()
+            .zip(needed)
+            .try_for_each(|(buffer, needed)| check_length("scratch", buffer, needed))
+    }
+}
+
+/// Generation of a batch of windows, prepared: set the patches, then record as often as wanted.
+#[derive(Debug, Clone)]
+pub struct HeightJob {
+    config: Config,
+    count: u32,
+    reach: u32,
+    widths: Vec<u32>,
+    origins: Vec<Buffer<[i32; 2]>>,
+    features: FeatureIndex,
+    job: Job,
+}
+
+impl HeightJob {
+    /// Heights that the output must hold.
+    pub fn output_points(config: &Config, count: u32, reach: u32) -> usize {
+        let width = (config.patch_size + 2 * reach) as usize;
+        count as usize * width * width
+    }
+
+    /// Chooses the patches and features of the next recordings: at most `count` patches.
+    ///
+    /// # Errors
+    /// [`InputError`] for patches out of bounds; [`GpuError::Limit`] for more features than there is room for.
+    pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
+        if patches.len() > self.count as usize {
+            let bound = format!("must be at most {}, the batch's count", self.count);
+            return Err(InputError::new("patches", patches.len(), bound).into());
+        }
+        let mut origins = vec![Vec::with_capacity(patches.len()); self.widths.len()];
+        for &patch in patches {
+            let window = Window { patch, reach: self.reach };
+            window.validate(&self.config)?;
+            for (level, spans) in window.levels(&self.config).into_iter().enumerate() {
+                origins[level].push(spans.map(|span| span.first as i32));
+            }
+        }
+        for (buffer, origins) in self.origins.iter().zip(&origins) {
+            buffer.write(gpu, origins)?;
+        }
+        self.features.write(gpu, patches.len() as u32, |level, window| {
+            let spacing = self.config.sample_spacing() << (self.config.levels() as usize - level);
+            let origin = origins[level][window as usize].map(|first| i64::from(first) * spacing);
+            let lattice = Lattice { origin, width: self.widths[level], spacing };
+            features.on_lattice([0, 0], lattice.grown(), level > 0)
+        })?;
+        Ok(())
+    }
+
+    /// Records the generation of all windows.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.job.record(encoder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::height::Span;
+
+    /// A scratch buffer is as large as the largest level that it ever holds.
+    #[test]
+    fn scratch_holds_every_level() {
+        for (exponent, coarse_levels, reach) in
+            [(1, 0, 0), (1, 8, 0), (2, 3, 0), (2, 8, 1), (12, 8, 40), (5, 0, 0)]
+        {
+            let size = (1 << exponent) + 1;
+            let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
+            let widths = level_widths(&config, reach);
+            let points = HeightScratch::points(&widths, 1);
+            for (back, width) in widths.iter().rev().enumerate().skip(1) {
+                let room = points[(back + 1) % 2];
+                assert!(
+                    (*width as usize).pow(2) <= room,
+                    "2^{exponent}+1 k={coarse_levels}: {width}² > {room}"
+                );
+            }
+        }
+    }
+
+    /// Uniform widths cover every window, whatever its alignment.
+    #[test]
+    fn level_widths_cover_every_alignment() {
+        for (size, coarse_levels, reach) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {
+            let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
+            let widths = level_widths(&config, reach);
+            for patch in -300..300 {
+                let levels = Window { patch: [patch, 1 - patch], reach }.levels(&config);
+                for (spans, width) in levels.iter().zip(&widths) {
+                    let fits = |span: &Span| span.width() <= *width as usize;
+                    assert!(spans.iter().all(fits), "size {size} patch {patch}: {spans:?} exceeds {width}");
+                }
+            }
+        }
+    }
+}

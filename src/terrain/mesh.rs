@@ -1,0 +1,186 @@
+//! Explicit meshes of height fields (B section 4.4), for those who want one: relievo itself draws straight from
+//! the heights. And height queries on the CPU.
+
+use std::io::{self, Write};
+
+use crate::terrain::config::HEIGHT_ONE;
+
+/// A square field of heights on the CPU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightField {
+    heights: Vec<i32>,
+    size: usize,
+    /// World units between neighbouring samples.
+    spacing: f64,
+}
+
+impl HeightField {
+    /// A field of `size`² heights in 1/65536 units, samples `terrain_scale` apart; `None` when the lengths do
+    /// not fit or there are fewer than 2×2 samples.
+    pub fn new(heights: Vec<i32>, size: usize, terrain_scale: f64) -> Option<Self> {
+        (size >= 2 && heights.len() == size * size).then_some(Self { heights, size, spacing: terrain_scale })
+    }
+
+    /// Samples along an edge.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The height of a sample, in units; `None` outside the field.
+    pub fn point(&self, x: usize, y: usize) -> Option<f64> {
+        (x < self.size && y < self.size).then(|| f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE)
+    }
+
+    /// The height at world position (x, z) relative to the first sample, bilinear between samples; `None`
+    /// outside the field.
+    pub fn height_at(&self, x: f64, z: f64) -> Option<f64> {
+        let last = (self.size - 1) as f64;
+        let (column, row) = (x / self.spacing, z / self.spacing);
+        if !((0.0..=last).contains(&column) && (0.0..=last).contains(&row)) {
+            return None;
+        }
+        let cell = |at: f64| (at as usize).min(self.size - 2);
+        let (i, j) = (cell(column), cell(row));
+        let (u, v) = (column - i as f64, row - j as f64);
+        let corner =
+            |dx: usize, dy: usize| f64::from(self.heights[(j + dy) * self.size + i + dx]) / HEIGHT_ONE;
+        let top = corner(0, 0) * (1.0 - u) + corner(1, 0) * u;
+        let bottom = corner(0, 1) * (1.0 - u) + corner(1, 1) * u;
+        Some(top * (1.0 - v) + bottom * v)
+    }
+
+    /// A mesh: positions (x east, y up, z south), texture coordinates over the patch, and one triangle strip.
+    pub fn mesh(&self) -> Mesh {
+        let last = (self.size - 1) as f32;
+        let (mut positions, mut uvs) = (Vec::new(), Vec::new());
+        for y in 0..self.size {
+            for x in 0..self.size {
+                let height = f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE;
+                positions.push([
+                    (x as f64 * self.spacing) as f32,
+                    height as f32,
+                    (y as f64 * self.spacing) as f32,
+                ]);
+                uvs.push([x as f32 / last, y as f32 / last]);
+            }
+        }
+        Mesh { positions, uvs, strip: strip(self.size) }
+    }
+}
+
+/// Indices of one triangle strip over a grid of `size`² points: rows are joined by degenerate triangles. Front
+/// faces look up.
+pub fn strip(size: usize) -> Vec<u32> {
+    let mut indices = Vec::new();
+    for row in 0..size - 1 {
+        let first = (row * size) as u32;
+        if row > 0 {
+            indices.push(first);
+        }
+        for x in 0..size as u32 {
+            indices.extend([first + x, first + size as u32 + x]);
+        }
+        if row + 2 < size {
+            indices.push(first + 2 * size as u32 - 1);
+        }
+    }
+    indices
+}
+
+/// A triangle-strip mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// World units: x east, y up, z south.
+    pub positions: Vec<[f32; 3]>,
+    /// 0 to 1 over the patch.
+    pub uvs: Vec<[f32; 2]>,
+    /// Indices of one strip.
+    pub strip: Vec<u32>,
+}
+
+impl Mesh {
+    /// The strip's triangles without the degenerate ones, counter-clockwise seen from above.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        (self.strip.windows(3).enumerate())
+            .map(|(index, triple)| {
+                if index % 2 == 0 {
+                    [triple[0], triple[1], triple[2]]
+                } else {
+                    [triple[1], triple[0], triple[2]]
+                }
+            })
+            .filter(|[a, b, c]| a != b && b != c && a != c)
+            .collect()
+    }
+
+    /// Writes Wavefront OBJ.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_obj(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, "# relievo terrain: {} points", self.positions.len())?;
+        for [x, y, z] in &self.positions {
+            writeln!(out, "v {x} {y} {z}")?;
+        }
+        for [u, v] in &self.uvs {
+            // OBJ's texture origin is the bottom.
+            writeln!(out, "vt {u} {}", 1.0 - v)?;
+        }
+        for [a, b, c] in self.triangles() {
+            let corner = |index: u32| format!("{0}/{0}", index + 1);
+            writeln!(out, "f {} {} {}", corner(a), corner(b), corner(c))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp() -> HeightField {
+        // Height = 2·column + row, in units.
+        let heights = (0..9).map(|i| (2 * (i % 3) + i / 3) * 65_536).collect();
+        HeightField::new(heights, 3, 0.5).expect("nine heights")
+    }
+
+    #[test]
+    fn queries_are_bilinear_and_know_their_bounds() {
+        let field = ramp();
+        assert_eq!(field.point(2, 1), Some(5.0));
+        assert_eq!(field.point(3, 0), None);
+        assert_eq!(field.height_at(0.25, 0.75), Some(2.5));
+        assert_eq!(field.height_at(1.0, 1.0), Some(6.0));
+        assert_eq!(field.height_at(1.0001, 0.0), None);
+        assert_eq!(field.height_at(f64::NAN, 0.0), None);
+    }
+
+    #[test]
+    fn the_strip_covers_every_cell_once_and_faces_up() {
+        for size in [2, 3, 5, 17] {
+            let field = HeightField::new(vec![0; size * size], size, 1.0).expect("square");
+            let mesh = field.mesh();
+            let triangles = mesh.triangles();
+            assert_eq!(triangles.len(), 2 * (size - 1) * (size - 1));
+            let mut cells = std::collections::HashMap::new();
+            for triangle in triangles {
+                let [a, b, c] = triangle.map(|index| glam::Vec3::from(mesh.positions[index as usize]));
+                assert!((b - a).cross(c - a).y > 0.0, "size {size}: {triangle:?} faces down");
+                let centre = (a + b + c) / 3.0;
+                *cells.entry((centre.x as usize, centre.z as usize)).or_insert(0) += 1;
+            }
+            assert_eq!(cells.len(), (size - 1) * (size - 1));
+            assert!(cells.values().all(|count| *count == 2));
+        }
+    }
+
+    #[test]
+    fn obj_has_every_point_and_face() {
+        let mut text = Vec::new();
+        ramp().mesh().write_obj(&mut text).expect("a vector takes everything");
+        let text = String::from_utf8(text).expect("ASCII");
+        let count = |prefix: &str| text.lines().filter(|line| line.starts_with(prefix)).count();
+        assert_eq!((count("v "), count("vt "), count("f ")), (9, 9, 8));
+        assert!(text.contains("v 0.5 3 0.5"));
+    }
+}

@@ -1,0 +1,21 @@
+//! Seeded terrain: integer heights that are the same bits on every device (B section 3.3 and 4.4).
+
+pub mod blend;
+pub mod border;
+pub mod config;
+pub mod despike;
+pub mod export;
+pub mod features;
+#[cfg(feature = "gpu")]
+pub mod fields;
+#[cfg(feature = "gpu")]
+pub mod generator;
+pub mod height;
+pub mod mesh;
+pub mod morph;
+pub mod normals;
+pub mod pad;
+pub mod recipe;
+pub mod texture;
+pub mod thermal;
+pub mod wrap;

@@ -1,0 +1,66 @@
+//! `kernels/terrain/thermal.wgsl`, an iteration a dispatch.
+
+use encase::ShaderType;
+
+use super::Thermal;
+use crate::Error;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::terrain::fields::Fields;
+
+/// `ThermalParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct ThermalParams {
+    pub in_width: u32,
+    pub threshold: i32,
+}
+
+/// Erodes slopes.
+#[derive(Debug, Clone)]
+pub struct ThermalPass {
+    kernel: Kernel,
+}
+
+impl ThermalPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_THERMAL, &[])? })
+    }
+
+    /// Prepares all iterations, in turn between `windows` and `other`, which is as large. An iteration crops
+    /// one sample on every side; the result lies in `windows` if their number is even, else in `other`.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for parameters out of bounds; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        thermal: Thermal,
+        terrain_scale: f64,
+        windows: &Fields,
+        other: &Fields,
+    ) -> Result<Job, Error> {
+        thermal.validate()?;
+        let threshold = thermal.fixed_threshold(terrain_scale);
+        let mut steps = Vec::new();
+        for iteration in 0..thermal.iterations {
+            let (from, to) = if iteration % 2 == 0 { (windows, other) } else { (other, windows) };
+            let at = windows.cropped(iteration);
+            let uniform = Uniform::new(gpu, "thermal", &ThermalParams { in_width: at.width, threshold })?;
+            let resources = [
+                uniform.raw().as_entire_binding(),
+                from.heights.raw().as_entire_binding(),
+                to.heights.raw().as_entire_binding(),
+            ];
+            let groups = vec![self.kernel.bind(gpu, 0, &resources)?];
+            steps.push(Step {
+                kernel: self.kernel.clone(),
+                groups,
+                workgroups: at.workgroups(&self.kernel, 1),
+            });
+        }
+        Ok(Job::new(gpu, "terrain/thermal", steps)?)
+    }
+}

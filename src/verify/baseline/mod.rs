@@ -1,0 +1,4 @@
+//! Parity of `kernels/baseline/`.
+
+pub mod copy;
+pub mod words;

@@ -1,0 +1,101 @@
+//! Comparators: exact for integers, bounded for floats, levels a channel for images. Each is seen to fail on
+//! planted faults in `tests/parity.rs`.
+
+use std::fmt::Debug;
+
+use serde::Serialize;
+
+/// What a comparison found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// Whether every value is within the bound.
+    pub holds: bool,
+    /// Values compared.
+    pub values: usize,
+    /// The largest error.
+    pub error: f64,
+    /// What it may be.
+    pub bound: f64,
+    /// What error and bound count.
+    pub unit: &'static str,
+    /// The first value out of bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<String>,
+}
+
+impl Comparison {
+    /// A comparison that fails whatever the values.
+    pub fn failed(values: usize, fault: String) -> Self {
+        Self { holds: false, values, error: f64::INFINITY, bound: 0.0, unit: "none", fault: Some(fault) }
+    }
+}
+
+fn compare<T: Copy + Debug>(
+    actual: &[T],
+    expected: &[T],
+    unit: &'static str,
+    bound: f64,
+    error: impl Fn(T, T) -> f64,
+) -> Comparison {
+    if actual.len() != expected.len() || expected.is_empty() {
+        let fault = format!("{} values instead of {}", actual.len(), expected.len());
+        return Comparison::failed(actual.len(), fault);
+    }
+    let (mut worst, mut first, mut wrong) = (0.0, None, 0);
+    for (index, (&actual, &expected)) in actual.iter().zip(expected).enumerate() {
+        let error = error(actual, expected);
+        worst = f64::max(worst, error);
+        // A NaN is never within a bound.
+        if error.is_nan() || error > bound {
+            worst = if error.is_nan() { f64::INFINITY } else { worst };
+            wrong += 1;
+            first.get_or_insert((index, actual, expected));
+        }
+    }
+    let values = actual.len();
+    let fault = first.map(|(index, actual, expected)| {
+        format!("{wrong} of {values} values; first at {index}: {actual:?} instead of {expected:?}")
+    });
+    Comparison { holds: wrong == 0, values, error: worst, bound, unit, fault }
+}
+
+/// Integers: every bit.
+pub fn exact<T: Copy + Debug + PartialEq>(actual: &[T], expected: &[T]) -> Comparison {
+    compare(
+        actual,
+        expected,
+        "wrong values",
+        0.0,
+        |actual, expected| if actual == expected { 0.0 } else { 1.0 },
+    )
+}
+
+/// Floats: an absolute bound.
+pub fn absolute(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
+    compare(actual, expected, "absolute", bound.into(), |actual, expected| {
+        (f64::from(actual) - f64::from(expected)).abs()
+    })
+}
+
+/// Floats: units in the last place of the expected value.
+pub fn ulps(actual: &[f32], expected: &[f32], bound: u32) -> Comparison {
+    compare(actual, expected, "ulp", bound.into(), |actual, expected| {
+        if actual.is_nan() || expected.is_nan() {
+            return f64::NAN;
+        }
+        // Ordered integers: neighbours differ by one, and both zeros are zero.
+        let ordered = |value: f32| {
+            let bits = i64::from(value.to_bits() & 0x7fff_ffff);
+            if value.is_sign_negative() { -bits } else { bits }
+        };
+        (ordered(actual) - ordered(expected)).abs() as f64
+    })
+}
+
+/// Images: the largest difference of any of four 8-bit channels.
+pub fn levels(actual: &[u32], expected: &[u32], bound: u8) -> Comparison {
+    compare(actual, expected, "levels of 255", bound.into(), |actual, expected| {
+        let pairs = actual.to_le_bytes().into_iter().zip(expected.to_le_bytes());
+        pairs.map(|(actual, expected)| f64::from(actual.abs_diff(expected))).fold(0.0, f64::max)
+    })
+}

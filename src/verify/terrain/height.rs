@@ -1,0 +1,119 @@
+//! Parity of `kernels/terrain/height.wgsl`.
+
+use serde_json::json;
+
+use super::{config, scattered};
+use crate::Error;
+use crate::reference::terrain::height::height;
+use crate::terrain::config::{Config, Offset};
+use crate::terrain::features::{FeatureMode, Features};
+use crate::terrain::height::{HeightJob, HeightPass, HeightScratch, Window};
+use crate::verify::{Cases, compare::exact, poison::Poisoned};
+
+/// Every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
+/// sizes.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for offset in ["signed", "positive", "gaussian"] {
+        let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
+        let pass = HeightPass::new(cases.gpu, code, None)?;
+        for exponent in 1..=12 {
+            // The largest sizes once: time goes into variety.
+            let levels =
+                if exponent <= 8 { 0..=8 } else { 0..=u32::from(offset == "signed" && exponent <= 10) };
+            for coarse_levels in levels.filter(|_| exponent <= 11 || offset == "signed") {
+                let config = config(&json!({
+                    "patchSize": (1 << exponent) + 1, "scaleFactor": 40.0, "seed": format!("{offset}{exponent}"),
+                    "offset": offset, "coarseLevels": coarse_levels, "roughness": 0.9,
+                }))?;
+                let odd = coarse_levels as i32 * 3 - 7;
+                check(cases, &pass, &config, &Features::default(), &[[odd, 5 - odd]], 0)?;
+            }
+        }
+    }
+    windows_and_batches(cases)?;
+    with_features(cases)?;
+    block_sizes(cases)
+}
+
+fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let pass = HeightPass::new(cases.gpu, Offset::Signed, None)?;
+    for (size, coarse_levels, reach) in
+        [(3, 0, 1), (5, 1, 2), (17, 2, 3), (33, 3, 40), (65, 8, 7), (129, 0, 64), (257, 0, 1)]
+    {
+        let config = config(&json!({
+            "patchSize": size, "scaleFactor": 12.5, "seed": "windows", "coarseLevels": coarse_levels,
+        }))?;
+        let patches: Vec<_> = (0..7).map(|i| [3 * i - 10, -i * i]).collect();
+        check(cases, &pass, &config, &Features::default(), &patches, reach)?;
+    }
+    // The last patches whose world coordinates fit.
+    let config = config(&json!({"patchSize": 9, "scaleFactor": 40.0, "seed": "far"}))?;
+    let far = [[524_285, -524_287], [-524_287, 524_285]];
+    check(cases, &pass, &config, &Features::default(), &far, 0)
+}
+
+fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for mode in [FeatureMode::Keep, FeatureMode::Additive] {
+        let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(mode))?;
+        for (case, (size, coarse_levels, reach)) in
+            [(3, 0, 0), (5, 0, 1), (17, 1, 0), (33, 0, 0), (33, 2, 5), (129, 0, 3), (257, 0, 0)]
+                .into_iter()
+                .enumerate()
+        {
+            let config = config(&json!({
+                "patchSize": size, "scaleFactor": 40.0, "seed": "features", "coarseLevels": coarse_levels,
+            }))?;
+            let features = scattered(&config, [2, -3], mode, case as u32)?;
+            let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [9, 9]];
+            check(cases, &pass, &config, &features, &patches, reach)?;
+        }
+    }
+    Ok(())
+}
+
+fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for rows in [1, 2, 3, 4, 8, 16, 64] {
+        let pass = HeightPass::with_cell_rows(cases.gpu, Offset::Signed, None, rows)?;
+        for size in [3, 9, 33, 129] {
+            let config =
+                config(&json!({"patchSize": size, "scaleFactor": 1.0, "seed": format!("{rows} rows")}))?;
+            check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1)?;
+        }
+    }
+    Ok(())
+}
+
+fn check(
+    cases: &mut Cases<'_>,
+    pass: &HeightPass,
+    config: &Config,
+    features: &Features,
+    patches: &[[i32; 2]],
+    reach: u32,
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let count = patches.len() as u32;
+    let output = Poisoned::new(gpu, HeightJob::output_points(config, count, reach))?;
+    let scratch = HeightScratch::new(gpu, config, count, reach)?;
+    let capacity = features.len() * patches.len();
+    let job = pass.prepare(gpu, config, [count, reach], capacity, &output.buffer, &scratch)?;
+    job.set(gpu, patches, features)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let expected: Vec<i32> =
+        patches.iter().flat_map(|&patch| height(config, features, Window { patch, reach })).collect();
+    let name = format!(
+        "{size}×{size} {offset:?} k={k} reach {reach} × {count} at {at:?}{features}",
+        size = config.patch_size,
+        offset = config.offset,
+        k = config.coarse_levels,
+        at = patches[0],
+        features = features
+            .injection()
+            .map_or(String::new(), |mode| format!(" {mode:?} {} features", features.len())),
+    );
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    Ok(())
+}

@@ -1,0 +1,28 @@
+// Exact integer arithmetic of terrain heights (i32, Q15.16). No operation here can overflow for heights
+// within the bound that the host checks (2^30 - 1), so every device gives the same bits.
+
+// The mean of four, rounded half up.
+fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
+    return mean_of_sums(a + b, c + d);
+}
+
+// The same from the sums of two pairs. With sums 2p + x and 2q + y it is floor((p + q + 1 + x & y) / 2), and
+// for heights of at most 2^30 - 1 nothing in that overflows.
+fn mean_of_sums(first: vec4<i32>, second: vec4<i32>) -> vec4<i32> {
+    let one = vec4<u32>(1u);
+    let carry = (first & second & vec4<i32>(1)) + vec4<i32>(1);
+    return ((first >> one) + (second >> one) + carry) >> one;
+}
+
+// The high word of the 64-bit product.
+fn multiply_high(a: vec4<u32>, b: u32) -> vec4<u32> {
+    let low = vec4<u32>(0xffffu);
+    let half = vec4<u32>(16u);
+    let a_low = a & low;
+    let a_high = a >> half;
+    let b_low = b & 0xffffu;
+    let b_high = b >> 16u;
+    let middle = a_high * b_low + ((a_low * b_low) >> half);
+    let carry = a_low * b_high + (middle & low);
+    return a_high * b_high + (middle >> half) + (carry >> half);
+}

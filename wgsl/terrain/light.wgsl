@@ -1,0 +1,13 @@
+// A directional light over terrain, in linear light.
+
+struct Light {
+    // Unit vector towards the light.
+    direction: vec3<f32>,
+    // What faces away from the light still gets, 0..1.
+    ambient: f32,
+}
+
+fn lit(light: Light, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<f32> {
+    let facing = max(0.0, dot(normal, light.direction));
+    return albedo * (light.ambient + (1.0 - light.ambient) * facing);
+}

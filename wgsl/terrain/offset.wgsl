@@ -1,0 +1,27 @@
+// The random offset of a height (i32, Q15.16) from the words drawn for its world coordinates.
+import package::wgsl::hash::Words;
+import package::wgsl::terrain::fixed::multiply_high;
+
+const OFFSET_SIGNED = 0u;
+const OFFSET_POSITIVE = 1u;
+const OFFSET_GAUSSIAN = 2u;
+
+// `range` is at most 2^30, so that its double fits.
+fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
+    if distribution == OFFSET_POSITIVE {
+        return vec4<i32>(multiply_high(words.first, range));
+    }
+    var uniform_word = words.first;
+    if distribution == OFFSET_GAUSSIAN {
+        uniform_word = sum_of_halves(words);
+    }
+    return vec4<i32>(multiply_high(uniform_word, 2u * range)) - vec4<i32>(i32(range));
+}
+
+// The sum of four 16-bit uniforms (nearly Gaussian), scaled to 32 bits and centred on 2^31.
+fn sum_of_halves(words: Words) -> vec4<u32> {
+    let low = vec4<u32>(0xffffu);
+    let half = vec4<u32>(16u);
+    let sum = (words.first & low) + (words.first >> half) + (words.second & low) + (words.second >> half);
+    return (sum << vec4<u32>(14u)) + vec4<u32>(0x8000u);
+}

@@ -1,0 +1,50 @@
+// Weights of height zones (B section 3.3.1, equation 3.6), to import into any material shader.
+//
+//     var fold = zone_fold();
+//     for (var z = 0u; z < count; z++) { fold = zone_folded(fold, z, zones[z], height); }
+//     for (var z = 0u; z < count; z++) { color += zone_share(fold, z, zones[z], height, additive) * … }
+
+struct Zone {
+    // Height units, max > min.
+    min: f32,
+    max: f32,
+}
+
+// What the shares need to know of all zones.
+struct ZoneFold {
+    total: f32,
+    nearest: u32,
+    distance: f32,
+}
+
+// B's weight: 1 at max, 0 at max ± (max − min).
+fn zone_weight(zone: Zone, height: f32) -> f32 {
+    let range = zone.max - zone.min;
+    return max(0.0, (range - abs(height - zone.max)) / range);
+}
+
+fn zone_fold() -> ZoneFold {
+    return ZoneFold(0.0, 0u, 3.0e38);
+}
+
+fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold {
+    let distance = abs(height - zone.max) - (zone.max - zone.min);
+    let nearer = distance < fold.distance;
+    return ZoneFold(
+        fold.total + zone_weight(zone, height),
+        select(fold.nearest, index, nearer),
+        select(fold.distance, distance, nearer));
+}
+
+// The zone's part of the colour. Normalized shares sum to 1, and where all weights are 0 the nearest zone
+// has 1; additive ones are the weights as they are.
+fn zone_share(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
+    let weight = zone_weight(zone, height);
+    if additive {
+        return weight;
+    }
+    if fold.total > 0.0 {
+        return weight / fold.total;
+    }
+    return select(0.0, 1.0, index == fold.nearest);
+}
