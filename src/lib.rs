@@ -9,6 +9,8 @@ pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod render;
 pub mod terrain;
 #[cfg(feature = "gpu")]
 pub mod verify;

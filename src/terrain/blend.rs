@@ -12,6 +12,8 @@ use crate::terrain::config::{Offset, finite};
 
 #[cfg(feature = "gpu")]
 pub use pass::BlendPass;
+#[cfg(feature = "gpu")]
+pub(crate) use pass::{Light, ZoneRange};
 
 /// The most zones that a configuration may have.
 pub const MAX_ZONES: usize = 32;

@@ -25,33 +25,30 @@ struct FeatureWord {
 @group(1) @binding(0) var<storage, read> feature_words: array<FeatureWord>;
 @group(1) @binding(1) var<storage, read> feature_heights: array<i32>;
 
-// The word that holds the point, and the point's bit in it; no bit for a point that the grid does not cover.
-struct FeaturePlace {
-    word: FeatureWord,
-    bit: u32,
+// The word that holds the point; for points beyond the grid, one at its rim.
+fn feature_word(grid: FeatureGrid, window: u32, at: vec2<i32>) -> FeatureWord {
+    let place = vec2<u32>(clamp(at + vec2<i32>(1), vec2<i32>(0), vec2<i32>(i32(grid.width) + 1)));
+    return feature_words[
+        grid.start + window * grid.words_per_window + place.y * grid.words_per_row + place.x / 32u];
 }
 
-fn feature_place(grid: FeatureGrid, window: u32, at: vec2<i32>) -> FeaturePlace {
+// The point's bit in its word; none beyond the grid.
+fn feature_bit(grid: FeatureGrid, at: vec2<i32>) -> u32 {
     let place = vec2<u32>(at + vec2<i32>(1));
-    if any(place >= vec2<u32>(grid.width + 2u)) {
-        return FeaturePlace(FeatureWord(0u, 0u), 0u);
-    }
-    let index = grid.start + window * grid.words_per_window + place.y * grid.words_per_row + place.x / 32u;
-    return FeaturePlace(feature_words[index], 1u << (place.x % 32u));
+    return select(0u, 1u << (place.x % 32u), all(place < vec2<u32>(grid.width + 2u)));
 }
 
 fn has_feature(grid: FeatureGrid, window: u32, at: vec2<i32>) -> bool {
-    let place = feature_place(grid, window, at);
-    return (place.word.mask & place.bit) != 0u;
+    return (feature_word(grid, window, at).mask & feature_bit(grid, at)) != 0u;
 }
 
 // The height of a point after injection, given the computed one.
 fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
-    let place = feature_place(grid, window, at);
-    if (place.word.mask & place.bit) == 0u {
+    let word = feature_word(grid, window, at);
+    let bit = feature_bit(grid, at);
+    if (word.mask & bit) == 0u {
         return height;
     }
-    let rank = countOneBits(place.word.mask & (place.bit - 1u));
-    let value = feature_heights[place.word.first_value + rank];
+    let value = feature_heights[word.first_value + countOneBits(word.mask & (bit - 1u))];
     return select(height + value, value, FEATURES == FEATURES_KEEP);
 }

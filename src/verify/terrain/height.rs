@@ -6,7 +6,7 @@ use super::{config, scattered};
 use crate::Error;
 use crate::reference::terrain::height::height;
 use crate::terrain::config::{Config, Offset};
-use crate::terrain::features::{FeatureMode, Features};
+use crate::terrain::features::{FeatureFile, FeatureMode, Features};
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch, Window};
 use crate::verify::{Cases, compare::exact, poison::Poisoned};
 
@@ -70,6 +70,15 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [9, 9]];
             check(cases, &pass, &config, &features, &patches, reach)?;
         }
+    }
+    // Every point of a patch, whose windows end anywhere in a word.
+    let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(FeatureMode::Additive))?;
+    for (size, reach) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
+        let config = config(&json!({"patchSize": size, "scaleFactor": 4.0, "seed": "dense"}))?;
+        let points = (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
+        let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: points.collect() };
+        let features = Features::new(&config, &[file], FeatureMode::Additive)?;
+        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], reach)?;
     }
     Ok(())
 }

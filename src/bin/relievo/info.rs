@@ -1,0 +1,42 @@
+//! `relievo info`
+
+use std::process::ExitCode;
+
+use relievo::Error;
+use relievo::gpu::{TimedBy, Timer, adapters, shaders};
+
+use crate::Context;
+
+pub fn run(context: &Context) -> Result<ExitCode, Error> {
+    println!("relievo {}", env!("CARGO_PKG_VERSION"));
+    println!("\nadapters (choose with --adapter or RELIEVO_ADAPTER):");
+    for adapter in adapters() {
+        println!("  {adapter}");
+    }
+    let gpu = context.gpu()?;
+    println!("\nchosen: {}", gpu.adapter());
+    let timing = match Timer::new(&gpu)?.timed_by() {
+        TimedBy::Timestamp => "the device's timestamps",
+        TimedBy::Wall => "wall time (the adapter has no timestamps)",
+    };
+    println!("timing: {timing}");
+    let limits = gpu.device().limits();
+    println!("limits (WebGPU's defaults suffice for every pass):");
+    for (name, value) in [
+        ("maxStorageBufferBindingSize", limits.max_storage_buffer_binding_size),
+        ("maxBufferSize", limits.max_buffer_size),
+        ("maxTextureDimension2D", limits.max_texture_dimension_2d.into()),
+        ("maxComputeInvocationsPerWorkgroup", limits.max_compute_invocations_per_workgroup.into()),
+        ("maxComputeWorkgroupsPerDimension", limits.max_compute_workgroups_per_dimension.into()),
+        ("maxStorageBuffersPerShaderStage", limits.max_storage_buffers_per_shader_stage.into()),
+    ] {
+        println!("  {name:<34} {value}");
+    }
+    println!("\npasses:");
+    for shader in shaders::ALL {
+        let entries: Vec<_> = shader.entry_points.iter().map(|entry| entry.name).collect();
+        let overrides = if shader.overrides.is_empty() { String::new() } else { format!("  [{}]", shader.overrides.join(", ")) };
+        println!("  {:<18} {}{overrides}", shader.name, entries.join(" + "));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,62 @@
+//! Output files that appear whole or not at all: they are written beside their place, then renamed.
+
+use std::path::{Path, PathBuf};
+
+use relievo::Error;
+
+/// Files of one folder, staged until all are written.
+pub struct Staged {
+    folder: PathBuf,
+    stage: tempfile::TempDir,
+    names: Vec<String>,
+}
+
+impl Staged {
+    /// Stages files for `folder`, which is made when they are published.
+    pub fn new(folder: &Path) -> Result<Self, Error> {
+        if folder.exists() && !folder.is_dir() {
+            return Err(Error::file(folder, "is not a folder"));
+        }
+        // Beside the folder, on the same file system, so that renaming is atomic.
+        let parent = folder.ancestors().skip(1).find(|parent| parent.is_dir() || parent.as_os_str().is_empty());
+        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let stage = tempfile::Builder::new().prefix(".relievo-").tempdir_in(parent);
+        let stage = stage.map_err(|error| Error::file(parent, error))?;
+        Ok(Self { folder: folder.to_owned(), stage, names: Vec::new() })
+    }
+
+    /// Where to write the file that will be `name`.
+    pub fn path(&mut self, name: impl Into<String>) -> PathBuf {
+        let name = name.into();
+        let path = self.stage.path().join(&name);
+        self.names.push(name);
+        path
+    }
+
+    /// Moves every file to its place.
+    pub fn publish(self) -> Result<(), Error> {
+        std::fs::create_dir_all(&self.folder).map_err(|error| Error::file(&self.folder, error))?;
+        for name in &self.names {
+            let to = self.folder.join(name);
+            std::fs::rename(self.stage.path().join(name), &to).map_err(|error| Error::file(&to, error))?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes one file whole or not at all.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().ok_or_else(|| Error::file(path, "is not a file name"))?;
+    let mut staged = Staged::new(folder)?;
+    let name = name.to_string_lossy().into_owned();
+    relievo::terrain::export::write_bytes(&staged.path(name), bytes)?;
+    staged.publish()
+}
+
+/// A value as indented JSON.
+pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Error> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| Error::file("JSON", error))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}

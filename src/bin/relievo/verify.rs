@@ -1,0 +1,78 @@
+//! `relievo verify`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use relievo::Error;
+use relievo::verify::{CaseResult, Report, run};
+
+use crate::Context;
+use crate::output::{json, write_file};
+
+/// Runs every kernel against its CPU twin on your adapter and says what holds. Exits 1 when something does not.
+#[derive(Args)]
+pub struct Verify {
+    /// Only kernels whose name contains this, such as `terrain/height` or `thermal`.
+    #[arg(long, value_name = "STEM")]
+    only: Option<String>,
+    /// Writes every case with its error and bound.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl Verify {
+    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+        let gpu = context.gpu()?;
+        println!("adapter: {}", gpu.adapter());
+        let spinner = indicatif::ProgressBar::new_spinner();
+        let report = run(&gpu, self.only.as_deref(), &mut |case: &CaseResult| {
+            spinner.set_message(format!("{} {}", case.stem, case.case));
+            spinner.tick();
+        })?;
+        spinner.finish_and_clear();
+        print!("{}", summary(&report));
+        if let Some(path) = &self.json {
+            write_file(path, &json(&report)?)?;
+        }
+        Ok(if report.holds { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    }
+}
+
+/// A line a kernel and kind of comparison, and every fault.
+fn summary(report: &Report) -> String {
+    let mut groups: Vec<(&str, &str, Vec<&CaseResult>)> = Vec::new();
+    for case in &report.cases {
+        let unit = case.comparison.unit;
+        match groups.iter_mut().find(|(stem, group, _)| *stem == case.stem && *group == unit) {
+            Some((_, _, cases)) => cases.push(case),
+            None => groups.push((case.stem, unit, vec![case])),
+        }
+    }
+    let mut text = format!("{:<18} {:>6} {:>12} {:>11} {:>11}  {}\n", "kernel", "cases", "values", "error", "bound", "");
+    for (stem, unit, cases) in &groups {
+        let values: usize = cases.iter().map(|case| case.comparison.values).sum();
+        let error = cases.iter().map(|case| case.comparison.error).fold(0.0, f64::max);
+        let bound = cases.iter().map(|case| case.comparison.bound).fold(0.0, f64::max);
+        let holds = if cases.iter().all(|case| case.comparison.holds) { "holds" } else { "FAILS" };
+        text += &format!(
+            "{stem:<18} {:>6} {values:>12} {:>11} {:>11}  {unit}: {holds}\n",
+            cases.len(),
+            number(error),
+            number(bound)
+        );
+    }
+    for case in report.cases.iter().filter(|case| !case.comparison.holds) {
+        text += &format!("FAILS {} {}: {}\n", case.stem, case.case, case.comparison.fault.as_deref().unwrap_or(""));
+    }
+    let failed = report.cases.iter().filter(|case| !case.comparison.holds).count();
+    text += &match failed {
+        0 => format!("all {} cases hold\n", report.cases.len()),
+        _ => format!("{failed} of {} cases fail: do not trust this driver with these kernels\n", report.cases.len()),
+    };
+    text
+}
+
+fn number(value: f64) -> String {
+    if value == 0.0 || value >= 1.0 { format!("{value}") } else { format!("{value:.2e}") }
+}

@@ -1,0 +1,57 @@
+//! A perspective camera: right-handed, +Y up, depth 0 (near) to 1 (far).
+
+use glam::{Mat4, Vec3, camera};
+
+use crate::InputError;
+
+/// A perspective camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where it is, world units.
+    pub eye: Vec3,
+    /// What it looks at.
+    pub target: Vec3,
+    /// Vertical field of view, radians.
+    pub field_of_view: f32,
+    /// Distance of the near plane, > 0.
+    pub near: f32,
+    /// Distance of the far plane, > near.
+    pub far: f32,
+}
+
+impl Camera {
+    /// A camera that sees a box from a low angle, from the south.
+    pub fn framing(low: Vec3, high: Vec3) -> Self {
+        let (centre, extent) = ((low + high) / 2.0, (high - low).max(Vec3::splat(1e-3)));
+        let field_of_view: f32 = 0.7;
+        // The footprint's circle fills the height of the picture; looking down at it makes it flatter.
+        let radius = extent.length() / 2.0;
+        let distance = 0.64 * radius / (field_of_view / 2.0).sin();
+        let eye = centre + Vec3::new(-0.30, 0.52, 0.80).normalize() * distance;
+        Self { eye, target: centre, field_of_view, near: distance / 1000.0, far: 2.0 * distance + 2.0 * radius }
+    }
+
+    /// The matrix from world to clip space.
+    ///
+    /// # Errors
+    /// [`InputError`] when eye and target coincide or planes and angle are no camera.
+    pub fn clip_from_world(&self, aspect: f32) -> Result<Mat4, InputError> {
+        let refuse = |field: &str, value: &dyn std::fmt::Debug, bound: &str| {
+            Err(InputError::new(field, format!("{value:?}"), bound))
+        };
+        if !self.eye.is_finite() || !self.target.is_finite() || self.eye == self.target {
+            return refuse("camera.eye", &self.eye, "must be finite and differ from the target");
+        }
+        if !(self.near > 0.0 && self.far > self.near && self.far.is_finite()) {
+            return refuse("camera.near", &(self.near, self.far), "must satisfy 0 < near < far");
+        }
+        if !(self.field_of_view > 0.0 && self.field_of_view < std::f32::consts::PI && aspect > 0.0) {
+            return refuse("camera.field_of_view", &self.field_of_view, "must be in 0..π, and the aspect positive");
+        }
+        let forward = (self.target - self.eye).normalize();
+        // Straight down has no up: north stands in.
+        let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
+        let view = camera::rh::view::look_at_mat4(self.eye, self.target, up);
+        Ok(camera::rh::proj::directx::perspective(self.field_of_view, aspect, self.near, self.far) * view)
+    }
+}

@@ -1,0 +1,118 @@
+//! An off-screen colour and depth target, and its readback.
+
+use crate::gpu::{Gpu, GpuError};
+
+/// The colour format of [`Target`].
+pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// The depth format that every pass here expects.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// An sRGB image with depth, to draw into without a window.
+#[derive(Debug, Clone)]
+pub struct Target {
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+}
+
+impl Target {
+    /// A target of `size` pixels.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] when it is larger than a texture may be, [`GpuError::OutOfMemory`].
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let available = gpu.device().limits().max_texture_dimension_2d;
+        if size.iter().any(|edge| *edge == 0 || *edge > available) {
+            return Err(GpuError::Limit {
+                pass: "target",
+                limit: "maxTextureDimension2D",
+                needed: u64::from(size[0].max(size[1])),
+                available: available.into(),
+                remedy: "draw a smaller image (at least one pixel)",
+            });
+        }
+        let texture = |format, usage| {
+            gpu.device().create_texture(&wgpu::TextureDescriptor {
+                label: Some("target"),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        gpu.scoped(|| Self {
+            color: texture(COLOR_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC),
+            depth: texture(DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+        })
+    }
+
+    /// Width over height.
+    pub fn aspect(&self) -> f32 {
+        self.color.width() as f32 / self.color.height() as f32
+    }
+
+    /// Clears to `sky` (linear) and the far plane, draws with `draw`, and waits.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn draw(
+        &self,
+        gpu: &Gpu,
+        sky: [f64; 3],
+        draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) -> Result<(), GpuError> {
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        gpu.run("draw", |encoder| {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("draw"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view(&self.color),
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color { r: sky[0], g: sky[1], b: sky[2], a: 1.0 }),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &view(&self.depth),
+                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                    stencil_ops: None,
+                }),
+                ..Default::default()
+            });
+            draw(&mut pass);
+        })
+    }
+
+    /// The image: RGBA, sRGB, row by row.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
+        let (width, height) = (self.color.width(), self.color.height());
+        let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = crate::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize)?;
+        gpu.run("readback", |encoder| {
+            encoder.copy_texture_to_buffer(
+                self.color.as_image_copy(),
+                wgpu::TexelCopyBufferInfo {
+                    buffer: buffer.raw(),
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(pitch),
+                        rows_per_image: None,
+                    },
+                },
+                wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            );
+        })?;
+        let rows = buffer.read_blocking(gpu)?;
+        let pixels = rows.chunks_exact(pitch as usize).flat_map(|row| &row[..4 * width as usize]).copied().collect();
+        image::RgbaImage::from_raw(width, height, pixels)
+            .ok_or_else(|| GpuError::Internal { reason: "the image that was read back has the wrong size".to_owned() })
+    }
+}

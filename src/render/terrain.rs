@@ -1,0 +1,296 @@
+//! Draws terrain fields into the caller's render pass, straight from their heights: no mesh, no index buffer.
+
+use encase::ShaderType;
+use glam::{IVec2, Mat4, Vec2};
+
+use crate::gpu::{
+    Buffer, Gpu, GpuError, Group, Uniform, bind, layouts, module, pipeline_layout, shaders, storage,
+};
+use crate::render::camera::Camera;
+use crate::render::target::DEPTH_FORMAT;
+use crate::terrain::blend::{Light, Shading, Zone, ZoneRange};
+use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::fields::Fields;
+use crate::terrain::texture::{TEXTURE_SIZE, Texture};
+use crate::{Error, InputError};
+
+/// `View` of the shader.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct View {
+    pub clip_from_world: Mat4,
+    pub light: Light,
+    pub zone_count: u32,
+    pub additive: u32,
+}
+
+/// `FieldParams` of the shader.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct FieldParams {
+    pub in_width: u32,
+    pub size: u32,
+    pub spacing: f32,
+    pub run: f32,
+    pub tiling: f32,
+}
+
+/// `Place` of the shader.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct Place {
+    pub origin: IVec2,
+    pub uv: Vec2,
+}
+
+/// How terrain is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Style {
+    /// Zone textures and light.
+    #[default]
+    Textured,
+    /// Triangle edges over dark ground.
+    Wireframe,
+}
+
+/// The pipeline.
+#[derive(Debug, Clone)]
+pub struct TerrainRenderer {
+    pipeline: wgpu::RenderPipeline,
+    layouts: Vec<wgpu::BindGroupLayout>,
+}
+
+impl TerrainRenderer {
+    /// Compiles the pipeline for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<Self, GpuError> {
+        let shader = &shaders::RENDER_TERRAIN;
+        let layouts = layouts(gpu, shader)?;
+        let constants = [("WIREFRAME", f64::from(u8::from(style == Style::Wireframe)))];
+        let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let pipeline = gpu.scoped(|| {
+            let module = module(gpu, shader);
+            gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(shader.name),
+                layout: Some(&pipeline_layout(gpu, shader, &layouts)),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: options(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology: wgpu::PrimitiveTopology::TriangleStrip,
+                    ..Default::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Less),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: options(),
+                    targets: &[Some(color.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        })?;
+        Ok(Self { pipeline, layouts })
+    }
+
+    /// Binds materials and a view of them.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn scene(&self, gpu: &Gpu, materials: &Materials, shading: &Shading) -> Result<TerrainScene, GpuError> {
+        let view = View {
+            clip_from_world: Mat4::IDENTITY,
+            light: Light { direction: shading.light.into(), ambient: shading.ambient },
+            zone_count: materials.zone_count,
+            additive: shading.weights.code(),
+        };
+        let uniform = Uniform::new(gpu, "view", &view)?;
+        let texture = materials.textures.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            materials.zones.raw().as_entire_binding(),
+            wgpu::BindingResource::TextureView(&texture),
+            wgpu::BindingResource::Sampler(&materials.sampler),
+        ];
+        let group = bind(gpu, &shaders::RENDER_TERRAIN, &self.layouts, 0, &resources)?;
+        Ok(TerrainScene { renderer: self.clone(), view, uniform, group, parts: Vec::new() })
+    }
+}
+
+/// Zone ranges and textures on the device.
+#[derive(Debug, Clone)]
+pub struct Materials {
+    zones: Buffer<u8>,
+    zone_count: u32,
+    textures: wgpu::Texture,
+    sampler: wgpu::Sampler,
+}
+
+impl Materials {
+    /// Uploads zones and their textures, one each.
+    ///
+    /// # Errors
+    /// [`InputError`] when their numbers differ; [`GpuError`].
+    pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[Texture]) -> Result<Self, Error> {
+        if zones.is_empty() || zones.len() != textures.len() {
+            let bound = format!("must be one for each of the {} zones", zones.len());
+            return Err(InputError::new("textures", textures.len(), bound).into());
+        }
+        let ranges: Vec<_> = (zones.iter())
+            .map(|zone| ZoneRange { min: zone.min as f32, max: zone.max as f32 })
+            .collect();
+        let zone_buffer = storage(gpu, "zones", &ranges)?;
+        let (textures, sampler) = gpu.scoped(|| (upload(gpu, textures), sampler(gpu)))?;
+        Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
+    }
+}
+
+fn upload(gpu: &Gpu, layers: &[Texture]) -> wgpu::Texture {
+    let size = |level: u32| wgpu::Extent3d {
+        width: TEXTURE_SIZE >> level,
+        height: TEXTURE_SIZE >> level,
+        depth_or_array_layers: 1,
+    };
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("zone textures"),
+        size: wgpu::Extent3d { depth_or_array_layers: layers.len() as u32, ..size(0) },
+        mip_level_count: TEXTURE_SIZE.ilog2() + 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8UnormSrgb,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (layer, image) in layers.iter().enumerate() {
+        for (level, texels) in image.mips.iter().enumerate() {
+            let to = wgpu::TexelCopyTextureInfo {
+                mip_level: level as u32,
+                origin: wgpu::Origin3d { z: layer as u32, ..Default::default() },
+                ..texture.as_image_copy()
+            };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * (TEXTURE_SIZE >> level)),
+                rows_per_image: None,
+            };
+            gpu.queue().write_texture(to, texels, layout, size(level as u32));
+        }
+    }
+    texture
+}
+
+fn sampler(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("zone textures"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// Fields of one buffer, bound.
+#[derive(Debug, Clone)]
+struct Part {
+    group: Group,
+    vertices: u32,
+    instances: u32,
+}
+
+/// Terrain to draw: add fields, set the camera, then draw in any render pass.
+#[derive(Debug, Clone)]
+pub struct TerrainScene {
+    renderer: TerrainRenderer,
+    view: View,
+    uniform: Uniform<View>,
+    group: Group,
+    parts: Vec<Part>,
+}
+
+impl TerrainScene {
+    /// Adds the fields of `patches`, which reach at least one sample beyond them. World position 0 is the first
+    /// sample of patch `origin`.
+    ///
+    /// # Errors
+    /// [`InputError`] for fields without a margin, or patches so far from the origin that `f32` cannot tell
+    /// their samples apart; [`GpuError`].
+    pub fn add(
+        &mut self,
+        gpu: &Gpu,
+        config: &Config,
+        fields: &Fields,
+        patches: &[[i32; 2]],
+        origin: [i32; 2],
+    ) -> Result<(), Error> {
+        let size = config.patch_size;
+        if fields.width < size + 2 || (fields.width - size) % 2 != 0 || patches.len() > fields.count as usize {
+            let bound = format!("must be {size} and an even margin, for each of {} patches", patches.len());
+            return Err(InputError::new("fields.width", fields.width, bound).into());
+        }
+        let tiles = 10.0 * config.terrain_scale;
+        let places = patches.iter().map(|patch| place(size, tiles, *patch, origin)).collect::<Result<Vec<_>, _>>()?;
+        let params = FieldParams {
+            in_width: fields.width,
+            size,
+            spacing: config.terrain_scale as f32,
+            run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
+            tiling: (tiles / f64::from(size - 1)) as f32,
+        };
+        let uniform = Uniform::new(gpu, "field", &params)?;
+        let places = storage(gpu, "places", &places)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            fields.heights.raw().as_entire_binding(),
+            places.raw().as_entire_binding(),
+        ];
+        let group = bind(gpu, &shaders::RENDER_TERRAIN, &self.renderer.layouts, 1, &resources)?;
+        self.parts.push(Part { group, vertices: 2 * size, instances: (size - 1) * patches.len() as u32 });
+        Ok(())
+    }
+
+    /// Chooses the camera of the next submission.
+    ///
+    /// # Errors
+    /// [`InputError`] for what is no camera; [`GpuError`].
+    pub fn set_camera(&mut self, gpu: &Gpu, camera: &Camera, aspect: f32) -> Result<(), Error> {
+        self.view.clip_from_world = camera.clip_from_world(aspect)?;
+        Ok(self.uniform.write(gpu, &self.view)?)
+    }
+
+    /// Draws everything that was added.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.renderer.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        for part in &self.parts {
+            pass.set_bind_group(1, &part.group, &[]);
+            pass.draw(0..part.vertices, 0..part.instances);
+        }
+    }
+}
+
+fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Place, InputError> {
+    let edge = i64::from(size) - 1;
+    let samples = [0, 1].map(|axis| (i64::from(patch[axis]) - i64::from(origin[axis])) * edge);
+    // Positions are whole samples, exact in f32 up to 2^24.
+    if samples.iter().any(|sample| sample.abs() + edge > 1 << 24) {
+        let bound = format!("must lie within 2^24 samples of the origin {origin:?} to be drawn");
+        return Err(InputError::new("patchCoordinates", format!("{patch:?}"), bound));
+    }
+    let uv = patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32);
+    Ok(Place { origin: IVec2::new(samples[0] as i32, samples[1] as i32), uv: Vec2::from(uv) })
+}
