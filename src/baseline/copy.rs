@@ -56,3 +56,11 @@ impl CopyPass {
         Ok(Job::new(gpu, "baseline/copy", vec![step])?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(copy_params_layout: CopyParams = BASELINE_COPY "CopyParams");
+}

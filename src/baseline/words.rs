@@ -56,3 +56,11 @@ impl WordsPass {
         Ok(Job::new(gpu, "baseline/words", vec![step])?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(words_params_layout: WordsParams = BASELINE_WORDS "WordsParams");
+}

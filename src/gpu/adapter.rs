@@ -52,10 +52,10 @@ impl AdapterSummary {
             || self.driver.to_lowercase().contains(&wanted)
     }
 
-    // Native interfaces before GL, which software rasterizers serve badly; then the fastest kind.
-    fn rank(&self) -> (bool, usize) {
+    // The fastest kind first.
+    fn rank(&self) -> usize {
         let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
-        (self.backend == "Gl", kinds.iter().position(|kind| *kind == self.kind).unwrap_or(kinds.len()))
+        kinds.iter().position(|kind| *kind == self.kind).unwrap_or(kinds.len())
     }
 }
 
@@ -75,13 +75,19 @@ pub fn adapters() -> Vec<AdapterSummary> {
 }
 
 async fn enumerate() -> Vec<wgpu::Adapter> {
+    // GL only where there is nothing else: its drivers serve compute badly, and look for a window system.
+    let native = enumerate_on(wgpu::Backends::all() - wgpu::Backends::GL).await;
+    if native.is_empty() { enumerate_on(wgpu::Backends::GL).await } else { native }
+}
+
+async fn enumerate_on(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     // No validation layers and no GPU-assisted validation: the latter corrupts shaders on lavapipe.
     let descriptor = wgpu::InstanceDescriptor {
+        backends,
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     };
-    let instance = wgpu::Instance::new(descriptor);
-    instance.enumerate_adapters(wgpu::Backends::all()).await
+    wgpu::Instance::new(descriptor).enumerate_adapters(backends).await
 }
 
 pub(super) async fn choose(options: &Options) -> Result<wgpu::Adapter, GpuError> {

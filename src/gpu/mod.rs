@@ -8,6 +8,8 @@ mod adapter;
 mod buffer;
 mod error;
 mod kernel;
+#[cfg(test)]
+pub(crate) mod layout;
 pub mod shaders;
 mod timer;
 

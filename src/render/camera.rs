@@ -26,9 +26,11 @@ impl Camera {
         let field_of_view: f32 = 0.7;
         // The footprint's circle fills the height of the picture; looking down at it makes it flatter.
         let radius = extent.length() / 2.0;
-        let distance = 0.64 * radius / (field_of_view / 2.0).sin();
+        let distance = 0.72 * radius / (field_of_view / 2.0).sin();
         let eye = centre + Vec3::new(-0.30, 0.52, 0.80).normalize() * distance;
-        Self { eye, target: centre, field_of_view, near: distance / 1000.0, far: 2.0 * distance + 2.0 * radius }
+        // The near edge takes more of the picture than the far one.
+        let target = centre + Vec3::new(-0.03, -0.10, 0.05) * radius;
+        Self { eye, target, field_of_view, near: distance / 1000.0, far: 2.0 * distance + 2.0 * radius }
     }
 
     /// The matrix from world to clip space.
@@ -46,7 +48,11 @@ impl Camera {
             return refuse("camera.near", &(self.near, self.far), "must satisfy 0 < near < far");
         }
         if !(self.field_of_view > 0.0 && self.field_of_view < std::f32::consts::PI && aspect > 0.0) {
-            return refuse("camera.field_of_view", &self.field_of_view, "must be in 0..π, and the aspect positive");
+            return refuse(
+                "camera.field_of_view",
+                &self.field_of_view,
+                "must be in 0..π, and the aspect positive",
+            );
         }
         let forward = (self.target - self.eye).normalize();
         // Straight down has no up: north stands in.

@@ -1,9 +1,11 @@
 //! Drawing: a camera, an off-screen target, and passes that draw into the caller's render pass.
 
 pub mod camera;
+pub mod picture;
 pub mod target;
 pub mod terrain;
 
 pub use camera::Camera;
+pub use picture::Picture;
 pub use target::Target;
 pub use terrain::{Materials, Style, TerrainRenderer, TerrainScene};

@@ -44,7 +44,10 @@ impl Target {
             })
         };
         gpu.scoped(|| Self {
-            color: texture(COLOR_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC),
+            color: texture(
+                COLOR_FORMAT,
+                wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            ),
             depth: texture(DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
         })
     }
@@ -79,7 +82,10 @@ impl Target {
                 })],
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: &view(&self.depth),
-                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(1.0),
+                        store: wgpu::StoreOp::Discard,
+                    }),
                     stencil_ops: None,
                 }),
                 ..Default::default()
@@ -111,8 +117,10 @@ impl Target {
             );
         })?;
         let rows = buffer.read_blocking(gpu)?;
-        let pixels = rows.chunks_exact(pitch as usize).flat_map(|row| &row[..4 * width as usize]).copied().collect();
-        image::RgbaImage::from_raw(width, height, pixels)
-            .ok_or_else(|| GpuError::Internal { reason: "the image that was read back has the wrong size".to_owned() })
+        let pixels =
+            rows.chunks_exact(pitch as usize).flat_map(|row| &row[..4 * width as usize]).copied().collect();
+        image::RgbaImage::from_raw(width, height, pixels).ok_or_else(|| GpuError::Internal {
+            reason: "the image that was read back has the wrong size".to_owned(),
+        })
     }
 }

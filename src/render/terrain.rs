@@ -107,7 +107,12 @@ impl TerrainRenderer {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn scene(&self, gpu: &Gpu, materials: &Materials, shading: &Shading) -> Result<TerrainScene, GpuError> {
+    pub fn scene(
+        &self,
+        gpu: &Gpu,
+        materials: &Materials,
+        shading: &Shading,
+    ) -> Result<TerrainScene, GpuError> {
         let view = View {
             clip_from_world: Mat4::IDENTITY,
             light: Light { direction: shading.light.into(), ambient: shading.ambient },
@@ -149,9 +154,8 @@ impl Materials {
             let bound = format!("must be one for each of the {} zones", zones.len());
             return Err(InputError::new("textures", textures.len(), bound).into());
         }
-        let ranges: Vec<_> = (zones.iter())
-            .map(|zone| ZoneRange { min: zone.min as f32, max: zone.max as f32 })
-            .collect();
+        let ranges: Vec<_> =
+            (zones.iter()).map(|zone| ZoneRange { min: zone.min as f32, max: zone.max as f32 }).collect();
         let zone_buffer = storage(gpu, "zones", &ranges)?;
         let (textures, sampler) = gpu.scoped(|| (upload(gpu, textures), sampler(gpu)))?;
         Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
@@ -238,12 +242,16 @@ impl TerrainScene {
         origin: [i32; 2],
     ) -> Result<(), Error> {
         let size = config.patch_size;
-        if fields.width < size + 2 || (fields.width - size) % 2 != 0 || patches.len() > fields.count as usize {
+        if fields.width < size + 2
+            || !(fields.width - size).is_multiple_of(2)
+            || patches.len() > fields.count as usize
+        {
             let bound = format!("must be {size} and an even margin, for each of {} patches", patches.len());
             return Err(InputError::new("fields.width", fields.width, bound).into());
         }
         let tiles = 10.0 * config.terrain_scale;
-        let places = patches.iter().map(|patch| place(size, tiles, *patch, origin)).collect::<Result<Vec<_>, _>>()?;
+        let places =
+            patches.iter().map(|patch| place(size, tiles, *patch, origin)).collect::<Result<Vec<_>, _>>()?;
         let params = FieldParams {
             in_width: fields.width,
             size,
@@ -293,4 +301,14 @@ fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Pla
     }
     let uv = patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32);
     Ok(Place { origin: IVec2::new(samples[0] as i32, samples[1] as i32), uv: Vec2::from(uv) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(view_layout: View = RENDER_TERRAIN "View");
+    layout_test!(field_params_layout: FieldParams = RENDER_TERRAIN "FieldParams");
+    layout_test!(place_layout: Place = RENDER_TERRAIN "Place");
 }

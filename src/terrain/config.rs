@@ -227,6 +227,7 @@ impl Config {
             finite(&format!("corners[{index}]"), corner, -HEIGHT_LIMIT as f64, HEIGHT_LIMIT as f64)?;
         }
         self.validate_border()?;
+        self.check_overflow(0, false)?;
         if self.zones.is_empty() || self.zones.len() > MAX_ZONES {
             let bound = format!("must hold 1 to {MAX_ZONES} zones");
             return Err(InputError::new("zones", format!("[{} zones]", self.zones.len()), bound));
@@ -234,7 +235,7 @@ impl Config {
         for (index, zone) in self.zones.iter().enumerate() {
             zone.validate(&format!("zones[{index}]"))?;
         }
-        self.check_overflow(0, false)
+        Ok(())
     }
 
     fn validate_border(&self) -> Result<(), InputError> {

@@ -35,7 +35,9 @@ impl Bench {
         })?;
         spinner.finish_and_clear();
         print!("{}", table(&summary.rows));
-        println!("`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn.");
+        println!(
+            "`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn."
+        );
         if let Some(path) = &self.json {
             write_file(path, &json(&summary)?)?;
             println!("written to {}", path.display());

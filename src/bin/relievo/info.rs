@@ -35,7 +35,11 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
     println!("\npasses:");
     for shader in shaders::ALL {
         let entries: Vec<_> = shader.entry_points.iter().map(|entry| entry.name).collect();
-        let overrides = if shader.overrides.is_empty() { String::new() } else { format!("  [{}]", shader.overrides.join(", ")) };
+        let overrides = if shader.overrides.is_empty() {
+            String::new()
+        } else {
+            format!("  [{}]", shader.overrides.join(", "))
+        };
         println!("  {:<18} {}{overrides}", shader.name, entries.join(" + "));
     }
     Ok(ExitCode::SUCCESS)

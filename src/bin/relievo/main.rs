@@ -17,7 +17,6 @@ mod verify;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use relievo::Error;
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
 ///
@@ -60,7 +59,7 @@ pub struct Context {
 #[cfg(feature = "gpu")]
 impl Context {
     /// Opens the chosen adapter.
-    fn gpu(&self) -> Result<relievo::gpu::Gpu, Error> {
+    fn gpu(&self) -> Result<relievo::gpu::Gpu, relievo::Error> {
         Ok(relievo::gpu::Gpu::headless(&self.options)?)
     }
 }

@@ -18,7 +18,8 @@ impl Staged {
             return Err(Error::file(folder, "is not a folder"));
         }
         // Beside the folder, on the same file system, so that renaming is atomic.
-        let parent = folder.ancestors().skip(1).find(|parent| parent.is_dir() || parent.as_os_str().is_empty());
+        let parent =
+            folder.ancestors().skip(1).find(|parent| parent.is_dir() || parent.as_os_str().is_empty());
         let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let stage = tempfile::Builder::new().prefix(".relievo-").tempdir_in(parent);
         let stage = stage.map_err(|error| Error::file(parent, error))?;
@@ -45,6 +46,7 @@ impl Staged {
 }
 
 /// Writes one file whole or not at all.
+#[cfg(feature = "gpu")]
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = path.file_name().ok_or_else(|| Error::file(path, "is not a file name"))?;

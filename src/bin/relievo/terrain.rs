@@ -61,7 +61,13 @@ pub struct Terrain {
     #[arg(long, value_name = "ITERATIONS")]
     thermal: Option<u32>,
     /// The steepest slope that thermal erosion leaves alone, in degrees.
-    #[arg(long, value_name = "DEGREES", default_value_t = 35.0, requires = "thermal", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 35.0,
+        requires = "thermal",
+        allow_hyphen_values = true
+    )]
     talus: f64,
     /// Replaces points further than TAU (height units) from the mean of their neighbours by it.
     #[arg(long, value_name = "TAU", allow_hyphen_values = true)]
@@ -156,25 +162,49 @@ struct Made {
     notes: Vec<String>,
 }
 
+/// What the demo shows of a terrain.
+#[cfg(feature = "gpu")]
+pub struct Pictures {
+    pub view: Option<image::RgbaImage>,
+    pub map: image::RgbaImage,
+    pub seconds: [f64; 2],
+}
+
 impl Terrain {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let plan = self.plan()?;
         let staged = Staged::new(&self.out)?;
-        let made = match self.backend {
-            Backend::Cpu => self.on_cpu(&plan, context)?,
-            Backend::Gpu => self.on_gpu(&plan, context)?,
-        };
+        let made = self.make(&plan, context)?;
         self.write(&plan, &made, staged)?;
         Ok(ExitCode::SUCCESS)
+    }
+
+    fn make(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
+        match self.backend {
+            Backend::Cpu => self.on_cpu(plan, context),
+            Backend::Gpu => self.on_gpu(plan, context),
+        }
+    }
+
+    /// The view, the map, and the seconds that heights and pictures took.
+    #[cfg(feature = "gpu")]
+    pub fn pictures(&self, context: &Context) -> Result<Pictures, Error> {
+        let plan = self.plan()?;
+        let made = self.make(&plan, context)?;
+        let Seconds { generate, render } = made.seconds;
+        Ok(Pictures { map: mosaic(&plan, &made.maps), view: made.view, seconds: [generate, render] })
     }
 
     fn plan(&self) -> Result<Plan, Error> {
         let config = Config::from_file(&self.config)?;
         let grid = pair::<u32>("patches", &self.patches, 'x', "must be columns x rows, such as 3x3")?;
         let origin = pair::<i32>("origin", &self.origin, ',', "must be two patch coordinates, such as -1,2")?;
-        let size = pair::<u32>("size", &self.size, 'x', "must be width x height in pixels, such as 1280x720")?;
+        let size =
+            pair::<u32>("size", &self.size, 'x', "must be width x height in pixels, such as 1280x720")?;
         if size.iter().any(|edge| !(1..=4096).contains(edge)) {
-            return Err(InputError::new("size", &self.size, "must be 1 to 4096 pixels along each edge").into());
+            return Err(
+                InputError::new("size", &self.size, "must be 1 to 4096 pixels along each edge").into()
+            );
         }
         let patches = grid_patches(&config, grid, origin, &self.patches, self.reach())?;
         let features = self.read_features(&config, grid, origin)?;
@@ -214,7 +244,9 @@ impl Terrain {
             let image = HeightImage::from_file(path)?;
             let range = match &self.heights_range {
                 Some(text) => height_range(text)?,
-                None => image.range.unwrap_or(HeightRange { low: -config.scale_factor, high: config.scale_factor }),
+                None => image
+                    .range
+                    .unwrap_or(HeightRange { low: -config.scale_factor, high: config.scale_factor }),
             };
             for file in image.features(config, origin, grid, every, range)? {
                 add(path, &file)?;
@@ -250,12 +282,18 @@ impl Terrain {
 
     #[cfg(not(feature = "gpu"))]
     fn on_gpu(&self, _: &Plan, _: &Context) -> Result<Made, Error> {
-        Err(InputError::new("backend", "gpu", "must be cpu: this program was built without the feature `gpu`").into())
+        Err(InputError::new(
+            "backend",
+            "gpu",
+            "must be cpu: this program was built without the feature `gpu`",
+        )
+        .into())
     }
 
     #[cfg(not(feature = "gpu"))]
     fn view_of_cpu_heights(&self, _: &Plan, _: &Context, made: &mut Made) -> Result<(), Error> {
-        made.notes.push("terrain.png was not made: this program was built without the feature `gpu`".to_owned());
+        made.notes
+            .push("terrain.png was not made: this program was built without the feature `gpu`".to_owned());
         Ok(())
     }
 
@@ -309,16 +347,12 @@ impl Terrain {
 #[cfg(feature = "gpu")]
 mod on_device {
     use relievo::gpu::{Buffer, Gpu, GpuError};
-    use relievo::render::{Camera, Materials, Style, Target, TerrainRenderer, target::COLOR_FORMAT};
+    use relievo::render::{Picture, Style, picture::framing};
     use relievo::terrain::blend::BlendPass;
-    use relievo::terrain::config::HEIGHT_ONE;
     use relievo::terrain::fields::Fields;
     use relievo::terrain::generator::Generator;
 
     use super::*;
-
-    /// Linear light of the sky.
-    const SKY: [f64; 3] = [0.36, 0.55, 0.80];
 
     impl Terrain {
         pub(super) fn on_gpu(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
@@ -368,26 +402,15 @@ mod on_device {
             parts: &[Fields],
             windows: &[Vec<i32>],
         ) -> Result<image::RgbaImage, Error> {
-            let config = &plan.recipe.config;
-            let style = if self.wireframe { Style::Wireframe } else { Style::Textured };
-            let materials = Materials::new(gpu, &config.zones, &plan.textures)?;
-            let renderer = TerrainRenderer::new(gpu, COLOR_FORMAT, style)?;
-            let mut scene = renderer.scene(gpu, &materials, &plan.shading)?;
-            let mut rest = plan.patches.as_slice();
-            for part in parts {
-                let (here, after) = rest.split_at(part.count as usize);
-                scene.add(gpu, config, part, here, plan.patches[0])?;
-                rest = after;
-            }
-            // Drawn at twice the size and averaged: one sample a pixel crawls with jagged edges.
-            let available = gpu.device().limits().max_texture_dimension_2d;
-            let scale = if plan.size.iter().all(|edge| 2 * edge <= available) { 2 } else { 1 };
-            let target = Target::new(gpu, plan.size.map(|edge| scale * edge))?;
-            scene.set_camera(gpu, &camera(plan, windows), target.aspect())?;
-            target.draw(gpu, SKY, |pass| scene.draw(pass))?;
-            let image = target.read(gpu)?;
-            let filter = image::imageops::FilterType::Triangle;
-            Ok(if scale == 1 { image } else { image::imageops::resize(&image, plan.size[0], plan.size[1], filter) })
+            let picture = Picture {
+                config: &plan.recipe.config,
+                textures: &plan.textures,
+                shading: plan.shading,
+                style: if self.wireframe { Style::Wireframe } else { Style::Textured },
+                camera: framing(&plan.recipe.config, plan.grid, windows.iter().flatten()),
+                size: plan.size,
+            };
+            picture.draw(gpu, parts, &plan.patches)
         }
 
         /// Draws heights that the CPU made, where there is an adapter.
@@ -424,15 +447,6 @@ mod on_device {
         let all = part.heights.read_blocking(gpu)?;
         Ok(all.chunks_exact(points).take(part.count as usize).map(<[i32]>::to_vec).collect())
     }
-
-    fn camera(plan: &Plan, windows: &[Vec<i32>]) -> Camera {
-        let config = &plan.recipe.config;
-        let heights = || windows.iter().flatten().map(|height| f64::from(*height) / HEIGHT_ONE);
-        let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
-        let edge = |patches: u32| f64::from(patches) * f64::from(config.patch_size - 1) * config.terrain_scale;
-        let corner = |x: f64, y: f64, z: f64| glam::DVec3::new(x, y, z).as_vec3();
-        Camera::framing(corner(0.0, low, 0.0), corner(edge(plan.grid[0]), high, edge(plan.grid[1])))
-    }
 }
 
 /// The patches of a grid, row by row, if they fit memory.
@@ -464,9 +478,8 @@ fn grid_patches(
         return Err(InputError::new("patches", text, bound).into());
     }
     let coordinate = |origin: i32, index: u32, axis: usize| {
-        i32::try_from(i64::from(origin) + i64::from(index)).map_err(|_| {
-            InputError::new(format!("origin[{axis}]"), origin, "patch coordinates must fit i32")
-        })
+        i32::try_from(i64::from(origin) + i64::from(index))
+            .map_err(|_| InputError::new(format!("origin[{axis}]"), origin, "patch coordinates must fit i32"))
     };
     let mut patches = Vec::new();
     for (y, x) in (0..grid[1]).flat_map(|y| (0..grid[0]).map(move |x| (y, x))) {
@@ -490,7 +503,8 @@ fn mosaic(plan: &Plan, maps: &[Vec<u32>]) -> image::RgbaImage {
     image
 }
 
-fn save(path: &std::path::Path, image: &image::RgbaImage) -> Result<(), Error> {
+/// Writes a PNG.
+pub fn save(path: &std::path::Path, image: &image::RgbaImage) -> Result<(), Error> {
     image.save_with_format(path, image::ImageFormat::Png).map_err(|error| Error::file(path, error))
 }
 
@@ -507,7 +521,12 @@ fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result
     write_bytes(path, &text)
 }
 
-fn pair<T: std::str::FromStr>(field: &str, text: &str, separator: char, bound: &str) -> Result<[T; 2], InputError> {
+fn pair<T: std::str::FromStr>(
+    field: &str,
+    text: &str,
+    separator: char,
+    bound: &str,
+) -> Result<[T; 2], InputError> {
     let (first, second) = text.split_once(separator).unwrap_or((text, ""));
     match (first.trim().parse(), second.trim().parse()) {
         (Ok(first), Ok(second)) => Ok([first, second]),

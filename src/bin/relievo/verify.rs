@@ -49,7 +49,8 @@ fn summary(report: &Report) -> String {
             None => groups.push((case.stem, unit, vec![case])),
         }
     }
-    let mut text = format!("{:<18} {:>6} {:>12} {:>11} {:>11}  {}\n", "kernel", "cases", "values", "error", "bound", "");
+    let mut text =
+        format!("{:<18} {:>6} {:>12} {:>11} {:>11}  {}\n", "kernel", "cases", "values", "error", "bound", "");
     for (stem, unit, cases) in &groups {
         let values: usize = cases.iter().map(|case| case.comparison.values).sum();
         let error = cases.iter().map(|case| case.comparison.error).fold(0.0, f64::max);
@@ -63,12 +64,20 @@ fn summary(report: &Report) -> String {
         );
     }
     for case in report.cases.iter().filter(|case| !case.comparison.holds) {
-        text += &format!("FAILS {} {}: {}\n", case.stem, case.case, case.comparison.fault.as_deref().unwrap_or(""));
+        text += &format!(
+            "FAILS {} {}: {}\n",
+            case.stem,
+            case.case,
+            case.comparison.fault.as_deref().unwrap_or("")
+        );
     }
     let failed = report.cases.iter().filter(|case| !case.comparison.holds).count();
     text += &match failed {
         0 => format!("all {} cases hold\n", report.cases.len()),
-        _ => format!("{failed} of {} cases fail: do not trust this driver with these kernels\n", report.cases.len()),
+        _ => format!(
+            "{failed} of {} cases fail: do not trust this driver with these kernels\n",
+            report.cases.len()
+        ),
     };
     text
 }

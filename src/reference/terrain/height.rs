@@ -142,7 +142,7 @@ impl Fine<'_> {
         self.injected.inject_row(self.features, y, x, 2, heights);
     }
 
-    /// Stores what of even[0], odd[0], even[1], …, which starts at (x, y), lies in the window.
+    /// Stores what lies in the window of `even` and `odd` points in turn, which start at (x, y).
     fn store_row(&self, fine: &mut [i32], y: i64, x: i64, even: &[i32], odd: &[i32]) {
         if !(self.spans[1].first..=self.spans[1].last).contains(&y) {
             return;

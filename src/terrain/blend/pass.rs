@@ -98,3 +98,14 @@ impl BlendPass {
         Job::new(gpu, "terrain/blend", vec![step])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(map_params_layout: MapParams = TERRAIN_BLEND "MapParams");
+    layout_test!(light_layout: Light = TERRAIN_BLEND "Light");
+    layout_test!(shader_zone_layout: ShaderZone = TERRAIN_BLEND "MapZone");
+    layout_test!(zone_range_layout: ZoneRange = TERRAIN_BLEND "Zone");
+}

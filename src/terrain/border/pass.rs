@@ -69,3 +69,11 @@ impl BorderPass {
         Ok(Job::new(gpu, "terrain/border", steps)?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(border_params_layout: BorderParams = TERRAIN_BORDER "BorderParams");
+}

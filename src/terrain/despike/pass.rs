@@ -68,3 +68,11 @@ impl DespikePass {
         Ok(Job::new(gpu, "terrain/despike", vec![step])?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(despike_params_layout: DespikeParams = TERRAIN_DESPIKE "DespikeParams");
+}

@@ -349,6 +349,9 @@ impl HeightJob {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    crate::gpu::layout::layout_test!(level_layout: Level = TERRAIN_HEIGHT "Level");
+    crate::gpu::layout::layout_test!(feature_grid_layout: FeatureGrid = TERRAIN_HEIGHT "FeatureGrid");
     use crate::terrain::height::Span;
 
     /// A scratch buffer is as large as the largest level that it ever holds.

@@ -81,3 +81,11 @@ impl MorphJob {
         self.job.record(encoder);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(morph_params_layout: MorphParams = TERRAIN_MORPH "MorphParams");
+}

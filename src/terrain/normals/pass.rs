@@ -58,3 +58,11 @@ impl NormalsPass {
         Job::new(gpu, "terrain/normals", vec![step])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(normals_params_layout: NormalsParams = TERRAIN_NORMALS "NormalsParams");
+}

@@ -61,3 +61,11 @@ impl PadPass {
         Ok(Job::new(gpu, "terrain/pad", vec![step])?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(pad_params_layout: PadParams = TERRAIN_PAD "PadParams");
+}

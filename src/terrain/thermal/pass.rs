@@ -64,3 +64,11 @@ impl ThermalPass {
         Ok(Job::new(gpu, "terrain/thermal", steps)?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(thermal_params_layout: ThermalParams = TERRAIN_THERMAL "ThermalParams");
+}

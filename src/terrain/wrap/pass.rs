@@ -154,3 +154,11 @@ impl WrapJob {
         self.job.record(encoder);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(wrap_level_layout: WrapLevel = TERRAIN_WRAP "WrapLevel");
+}

@@ -75,7 +75,8 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(FeatureMode::Additive))?;
     for (size, reach) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
         let config = config(&json!({"patchSize": size, "scaleFactor": 4.0, "seed": "dense"}))?;
-        let points = (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
+        let points =
+            (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
         let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: points.collect() };
         let features = Features::new(&config, &[file], FeatureMode::Additive)?;
         check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], reach)?;

@@ -1,0 +1,90 @@
+//! The other commands.
+
+use serde_json::Value;
+
+use crate::harness::{all_adapters, gpu, relievo};
+
+fn json(path: &std::path::Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).expect("written")).expect("JSON")
+}
+
+#[test]
+fn info_names_the_adapter_and_every_pass() {
+    let run = relievo(&["info"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(
+        run.stdout.contains(&format!("chosen: {}", gpu().adapter())),
+        "{}\n{}",
+        run.stdout,
+        all_adapters()
+    );
+    for shader in relievo::gpu::shaders::ALL {
+        assert!(run.stdout.contains(shader.name), "{} is missing", shader.name);
+    }
+}
+
+#[test]
+fn verify_writes_every_case() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("verify.json");
+    let run = relievo(&["verify", "--only", "terrain/thermal", "--json", path.to_str().expect("UTF-8")]);
+    assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("holds") && run.stdout.contains("all "), "{}", run.stdout);
+    let report = json(&path);
+    assert_eq!(report["holds"], true);
+    let cases = report["cases"].as_array().expect("cases");
+    assert!(cases.len() > 20 && cases.iter().all(|case| case["stem"] == "terrain/thermal"));
+    assert!(cases.iter().all(|case| case["values"].as_u64().is_some_and(|values| values > 0)));
+}
+
+#[test]
+fn bench_writes_the_documented_summary() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("deep/summary.json");
+    let run = relievo(&["bench", "--only", "baseline/words", "--json", path.to_str().expect("UTF-8")]);
+    assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
+    let summary = json(&path);
+    assert!(["device", "driver", "commit"].iter().all(|field| summary[field].is_string()));
+    assert!(summary["threads"].as_u64().is_some_and(|threads| threads > 0));
+    let rows = summary["rows"].as_array().expect("rows");
+    let backends: Vec<_> = rows.iter().map(|row| row["backend"].as_str().expect("a backend")).collect();
+    assert_eq!(backends, ["gpu", "copy", "twin"]);
+    for row in rows {
+        assert!(["name", "case", "item", "timed_by"].iter().all(|field| row[field].is_string()), "{row}");
+        let figure = |field: &str| row[field].as_f64().expect("a figure");
+        assert!(figure("min") > 0.0 && figure("min") <= figure("nanoseconds"));
+        assert!(figure("nanoseconds") <= figure("max") && figure("items") > 0.0 && figure("bytes") > 0.0);
+    }
+}
+
+#[test]
+fn shaders_are_flat_and_described() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = relievo(&["shaders", "--out", folder.path().join("wgsl").to_str().expect("UTF-8")]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let manifest = json(&folder.path().join("wgsl/manifest.json"));
+    let entries = manifest.as_array().expect("a list");
+    assert_eq!(entries.len(), relievo::gpu::shaders::ALL.len());
+    for entry in entries {
+        let file = folder.path().join("wgsl").join(entry["file"].as_str().expect("a name"));
+        let source = std::fs::read_to_string(file).expect("written");
+        assert!(!source.contains("import ") && !source.contains("package::"), "{}", entry["name"]);
+        let points = entry["entry_points"].as_array().expect("entry points");
+        assert!(points.iter().all(|point| source.contains(point["name"].as_str().expect("a name"))));
+        assert!(!entry["bindings"].as_array().expect("bindings").is_empty());
+        let compute = points.iter().filter(|point| point["stage"] == "compute");
+        compute.for_each(|point| assert_eq!(point["workgroup_size"], serde_json::json!([64, 1, 1])));
+    }
+}
+
+#[test]
+fn help_teaches() {
+    for (arguments, words) in [
+        (&["--help"][..], &["demo", "verify", "bench", "terrain", "shaders", "RELIEVO_ADAPTER"][..]),
+        (&["terrain", "--help"], &["patchSize", "precomputedHeights", "--thermal", "map.png", "report.json"]),
+    ] {
+        let run = relievo(arguments);
+        assert_eq!(run.code, Some(0));
+        assert!(words.iter().all(|word| run.stdout.contains(word)), "{}", run.stdout);
+    }
+}

@@ -1,0 +1,180 @@
+//! `relievo terrain` with good input.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::harness::{relievo, relievo_with};
+
+/// A temporary folder with a configuration in it.
+pub struct Bench {
+    pub folder: tempfile::TempDir,
+}
+
+impl Bench {
+    pub fn new(config: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(folder.path().join("config.json"), config).expect("writable");
+        Self { folder }
+    }
+
+    pub fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).to_str().expect("UTF-8").to_owned()
+    }
+
+    /// Runs `terrain` into folder `out`, and gives its report.
+    pub fn terrain(&self, out: &str, arguments: &[&str]) -> Value {
+        let (config, out) = (self.path("config.json"), self.path(out));
+        let mut all = vec!["terrain", "--config", &config, "--out", &out, "--size", "64x48"];
+        all.extend(arguments);
+        let run = relievo(&all);
+        assert_eq!(run.code, Some(0), "{all:?}: {}", run.stderr);
+        report(Path::new(&out))
+    }
+}
+
+fn report(out: &Path) -> Value {
+    let text = std::fs::read_to_string(out.join("report.json")).expect("a report");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn hashes(report: &Value) -> Vec<&str> {
+    let patches = report["patches"].as_array().expect("a list of patches");
+    patches.iter().map(|patch| patch["sha256"].as_str().expect("a hash")).collect()
+}
+
+fn heights(path: PathBuf) -> Vec<i32> {
+    let bytes = std::fs::read(path).expect("raw heights");
+    bytes.chunks_exact(4).map(|four| i32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect()
+}
+
+const CONFIGS: &[(&str, &[&str])] = &[
+    (
+        r#"{"patchSize": 33, "scaleFactor": 40.0, "seed": "any text"}"#,
+        &["--patches", "2x3", "--origin", "-1,5"],
+    ),
+    (r#"{"patchSize": 17, "scaleFactor": 9, "seed": "k", "coarseLevels": 3}"#, &["--patches", "3x2"]),
+    (r#"{"patchSize": 33, "scaleFactor": 9, "seed": "p", "offset": "positive"}"#, &["--thermal", "7"]),
+    (r#"{"patchSize": 33, "scaleFactor": 9, "seed": "g", "offset": "gaussian"}"#, &["--despike", "0.4"]),
+    (
+        r#"{"patchSize": 33, "scaleFactor": 9, "seed": "w", "border": "wrap", "corners": [1, 2, 3, 4]}"#,
+        &["--patches", "2x2", "--thermal", "3", "--despike", "0.1"],
+    ),
+    (
+        r#"{"patchSize": 33, "scaleFactor": 9, "seed": "b", "border": {"blend": 9}}"#,
+        &["--patches", "3x3", "--thermal", "4", "--talus", "20"],
+    ),
+];
+
+#[test]
+fn both_backends_give_the_same_hashes_and_nearly_the_same_map() {
+    for (config, arguments) in CONFIGS {
+        let bench = Bench::new(config);
+        let gpu = bench.terrain("gpu", arguments);
+        let cpu = bench.terrain("cpu", &[arguments, ["--backend", "cpu"].as_slice()].concat());
+        assert_eq!(hashes(&gpu), hashes(&cpu), "{config}");
+        assert_eq!((&gpu["backend"], &cpu["backend"]), (&"gpu".into(), &"cpu".into()));
+        let map = |out: &str| image::open(bench.path(out) + "/map.png").expect("a map").into_rgba8();
+        let (gpu, cpu) = (map("gpu"), map("cpu"));
+        let worst = gpu.iter().zip(cpu.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(gpu.dimensions() == cpu.dimensions() && worst <= Some(1), "{config}: {worst:?} levels");
+    }
+}
+
+#[test]
+fn the_report_describes_the_files() {
+    use sha2::{Digest, Sha256};
+    let bench = Bench::new(CONFIGS[0].0);
+    let report = bench.terrain("out", &["--patches", "2x1", "--origin", "-1,4", "--obj"]);
+    let low = report["height_png"]["low"].as_f64().expect("the mapping");
+    let high = report["height_png"]["high"].as_f64().expect("the mapping");
+    for patch in report["patches"].as_array().expect("patches") {
+        let name = format!("out/heights_{}_{}", patch["px"], patch["py"]);
+        let bytes = std::fs::read(bench.path(&format!("{name}.i32"))).expect("raw heights");
+        assert_eq!(bytes.len(), 33 * 33 * 4);
+        let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(patch["sha256"], hash.as_str());
+        let samples = image::open(bench.path(&format!("{name}.png"))).expect("a PNG").into_luma16();
+        let heights = heights(bench.path(&format!("{name}.i32")).into());
+        for (sample, height) in samples.pixels().zip(heights) {
+            let expected = (f64::from(height) / 65_536.0 - low) / (high - low) * 65_535.0;
+            assert!((f64::from(sample.0[0]) - expected).abs() <= 0.5 + 1e-6);
+        }
+    }
+    let view = image::open(bench.path("out/terrain.png")).expect("a view").into_rgba8();
+    assert_eq!(view.dimensions(), (64, 48));
+    let map = image::open(bench.path("out/map.png")).expect("a map");
+    assert_eq!((map.width(), map.height()), (65, 33));
+    assert!(std::fs::read_to_string(bench.path("out/patch_-1_4.obj")).expect("a mesh").contains("\nf "));
+    assert!(report["seconds"]["generate"].as_f64().is_some() && report["adapter"].is_string());
+}
+
+#[test]
+fn heights_of_a_png_come_back() {
+    // What one run exports, the next injects at every second sample, and keeps to within the PNG's steps.
+    let bench = Bench::new(CONFIGS[0].0);
+    let first = bench.terrain("first", &["--patches", "2x2"]);
+    let span = first["height_png"]["high"].as_f64().expect("high")
+        - first["height_png"]["low"].as_f64().expect("low");
+    std::fs::write(bench.path("config.json"), r#"{"patchSize": 33, "scaleFactor": 1, "seed": "other"}"#)
+        .expect("ok");
+    let png = bench.path("first/heights_0_0.png");
+    let second = bench.terrain("second", &["--heights-from", &png, "--every", "2"]);
+    assert_eq!(second["features"], 17 * 17);
+    let read = |out: &str| heights(bench.path(&format!("{out}/heights_0_0.i32")).into());
+    let (first, second) = (read("first"), read("second"));
+    for (y, x) in (0..33).step_by(2).flat_map(|y| (0..33).step_by(2).map(move |x| (y, x))) {
+        let difference = f64::from(first[y * 33 + x] - second[y * 33 + x]).abs() / 65_536.0;
+        assert!(difference <= span / 65_535.0, "({x}, {y}): {difference}");
+    }
+}
+
+#[test]
+fn features_are_kept_or_added() {
+    let bench = Bench::new(CONFIGS[0].0);
+    std::fs::write(
+        bench.path("f.json"),
+        r#"{"patchCoordinates": [0, 0], "precomputedHeights": [3, 4, 12.5, 32, 32, -3]}"#,
+    )
+    .expect("writable");
+    let features = bench.path("f.json");
+    bench.terrain("plain", &[]);
+    bench.terrain("keep", &["--features", &features]);
+    bench.terrain("add", &["--features", &features, "--feature-mode", "additive"]);
+    let at = |out: &str| heights(bench.path(&format!("{out}/heights_0_0.i32")).into())[4 * 33 + 3];
+    assert_eq!(at("keep"), 12 * 65_536 + 32_768);
+    assert_ne!(at("add"), at("keep"));
+    assert_ne!(at("plain"), at("keep"));
+}
+
+#[test]
+fn the_cpu_needs_no_adapter_and_says_what_is_missing() {
+    let bench = Bench::new(CONFIGS[0].0);
+    let (config, out) = (bench.path("config.json"), bench.path("out"));
+    let arguments = ["terrain", "--config", &config, "--backend", "cpu", "--out", &out];
+    let run = relievo_with(&arguments, &[("RELIEVO_ADAPTER", "no such adapter")]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stdout.contains("terrain.png was not made"), "{}", run.stdout);
+    let files = ["map.png", "report.json", "heights_0_0.png", "heights_0_0.i32"];
+    assert!(files.iter().all(|file| Path::new(&out).join(file).exists()));
+    assert!(!Path::new(&out).join("terrain.png").exists());
+    let report = report(Path::new(&out));
+    assert!(
+        report["adapter"].is_null()
+            && report["notes"][0].as_str().is_some_and(|note| note.contains("adapter"))
+    );
+}
+
+#[test]
+fn an_existing_folder_is_reused_and_nothing_is_left_beside_it() {
+    let bench = Bench::new(CONFIGS[0].0);
+    bench.terrain("out", &[]);
+    std::fs::write(bench.path("out/mine.txt"), "kept").expect("writable");
+    bench.terrain("out", &["--patches", "2x1"]);
+    assert_eq!(std::fs::read_to_string(bench.path("out/mine.txt")).expect("kept"), "kept");
+    let names: Vec<_> = std::fs::read_dir(bench.folder.path())
+        .expect("readable")
+        .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
+        .collect();
+    assert!(names.iter().all(|name| !name.starts_with(".relievo")), "{names:?}");
+}

@@ -1,0 +1,182 @@
+//! What the test programs share: the adapter, goldens with blessing, and reports of failed images.
+#![allow(dead_code, reason = "each test program uses its own part")]
+
+use std::path::{Path, PathBuf};
+
+use image::RgbaImage;
+use relievo::gpu::{AdapterSummary, Gpu, Options, adapters};
+
+/// The adapter of the suite. None is a failure, and so is another than `RELIEVO_ADAPTER` names.
+pub fn gpu() -> Gpu {
+    let gpu = Gpu::headless(&Options::default())
+        .expect("the suite needs a Vulkan adapter: `make test` installs one");
+    assert_adapter(gpu.adapter());
+    println!("adapter: {}", gpu.adapter());
+    gpu
+}
+
+fn assert_adapter(adapter: &AdapterSummary) {
+    if let Ok(wanted) = std::env::var("RELIEVO_ADAPTER") {
+        let text = adapter.to_string().to_lowercase();
+        assert!(text.contains(&wanted.to_lowercase()), "{adapter} is not the adapter `{wanted}`");
+    }
+}
+
+/// How an image may differ from its golden, and why.
+#[derive(Debug, Clone, Copy)]
+pub struct Tolerance {
+    /// Levels of 255 that a channel may differ by.
+    pub levels: u8,
+    /// The share of pixels that may differ by more: rasterizers disagree about who owns a pixel on an edge.
+    pub outliers: f64,
+    /// Mean FLIP.
+    pub flip: f32,
+}
+
+impl Tolerance {
+    /// Architecture "Truth" and platform "Floating point", tier c.
+    pub const IMAGE: Self = Self { levels: 3, outliers: 0.02, flip: 0.01 };
+}
+
+/// What a comparison of images found.
+#[derive(Debug, Clone, Copy)]
+pub struct Difference {
+    pub worst: u8,
+    pub outliers: f64,
+    pub flip: f32,
+}
+
+impl Difference {
+    pub fn of(actual: &RgbaImage, expected: &RgbaImage, levels: u8) -> Self {
+        let distance = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
+            a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+        };
+        let distances: Vec<u8> = actual.pixels().zip(expected.pixels()).map(distance).collect();
+        let over = distances.iter().filter(|distance| **distance > levels).count();
+        Self {
+            worst: distances.iter().copied().max().unwrap_or(0),
+            outliers: over as f64 / distances.len().max(1) as f64,
+            flip: flip(actual, expected),
+        }
+    }
+
+    pub fn within(&self, tolerance: Tolerance) -> bool {
+        self.outliers <= tolerance.outliers && self.flip <= tolerance.flip
+    }
+}
+
+fn flip(actual: &RgbaImage, expected: &RgbaImage) -> f32 {
+    let convert = |image: &RgbaImage| {
+        let rgb = image::DynamicImage::ImageRgba8(image.clone()).into_rgb8();
+        nv_flip::FlipImageRgb8::with_data(rgb.width(), rgb.height(), rgb.as_raw())
+    };
+    let map = nv_flip::flip(convert(expected), convert(actual), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    nv_flip::FlipPool::from_image(&map).mean()
+}
+
+/// Whether this run writes goldens: `make bless` alone.
+pub fn blessing() -> bool {
+    std::env::var_os("RELIEVO_BLESS").is_some()
+}
+
+fn goldens() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens")
+}
+
+/// Compares an image with its golden. What is wrong, if anything; blessing is wrong too, so that the run that
+/// writes a golden never passes.
+pub fn check_golden(name: &str, actual: &RgbaImage, tolerance: Tolerance) -> Result<Difference, String> {
+    check_golden_in(&goldens(), name, actual, tolerance, blessing())
+}
+
+/// [`check_golden`] in any folder, blessing or not.
+pub fn check_golden_in(
+    folder: &Path,
+    name: &str,
+    actual: &RgbaImage,
+    tolerance: Tolerance,
+    bless: bool,
+) -> Result<Difference, String> {
+    let path = folder.join(format!("{name}.png"));
+    if bless {
+        actual.save(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let bytes = std::fs::metadata(&path).map(|data| data.len()).unwrap_or(0);
+        return Err(match bytes {
+            0..=65_536 => format!("{name}: blessed; look at it, and run `make test`"),
+            _ => format!("{name}: {bytes} bytes: a golden has at most 65536"),
+        });
+    }
+    let expected = match image::open(&path) {
+        Ok(image) => image.into_rgba8(),
+        Err(error) => return Err(format!("{name}: no golden ({error}); {}", report(name, actual, None))),
+    };
+    if expected.dimensions() != actual.dimensions() {
+        let sizes = format!("{:?} instead of {:?}", actual.dimensions(), expected.dimensions());
+        return Err(format!("{name}: {sizes}; {}", report(name, actual, Some(&expected))));
+    }
+    let difference = Difference::of(actual, &expected, tolerance.levels);
+    if difference.within(tolerance) {
+        return Ok(difference);
+    }
+    Err(format!("{name}: {difference:?} exceeds {tolerance:?}; {}", report(name, actual, Some(&expected))))
+}
+
+/// Writes actual, expected and difference images, and says where.
+fn report(name: &str, actual: &RgbaImage, expected: Option<&RgbaImage>) -> String {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("image-reports");
+    let write = |kind: &str, image: &RgbaImage| {
+        let path = folder.join(format!("{name}.{kind}.png"));
+        std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
+        image.save(&path).map_err(|error| error.to_string())?;
+        Ok::<_, String>(path.display().to_string())
+    };
+    let mut written = vec![write("actual", actual)];
+    if let Some(expected) = expected {
+        written.push(write("expected", expected));
+        if expected.dimensions() == actual.dimensions() {
+            written.push(write("difference", &amplified(actual, expected)));
+        }
+    }
+    let written: Vec<_> = written.into_iter().map(|path| path.unwrap_or_else(|error| error)).collect();
+    format!("see {}", written.join(", "))
+}
+
+/// The difference of two images, eight times as strong.
+fn amplified(actual: &RgbaImage, expected: &RgbaImage) -> RgbaImage {
+    let mut image = actual.clone();
+    for (pixel, expected) in image.pixels_mut().zip(expected.pixels()) {
+        for (channel, expected) in pixel.0[..3].iter_mut().zip(expected.0) {
+            *channel = channel.abs_diff(expected).saturating_mul(8);
+        }
+        pixel.0[3] = 255;
+    }
+    image
+}
+
+/// A run of the program.
+pub struct Run {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+/// Runs the program as a user does.
+pub fn relievo(arguments: &[&str]) -> Run {
+    relievo_with(arguments, &[])
+}
+
+/// [`relievo`] with environment variables.
+pub fn relievo_with(arguments: &[&str], environment: &[(&str, &str)]) -> Run {
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_relievo"))
+        .args(arguments)
+        .envs(environment.iter().copied())
+        .output()
+        .expect("the program starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    Run { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
+}
+
+/// What the adapter list holds, for messages.
+pub fn all_adapters() -> String {
+    adapters().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
