@@ -20,7 +20,7 @@ test: setup
 	$(CARGO) test --no-default-features
 
 bench: setup
-	$(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
+	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
 
 # The only way to write a golden.
 bless: setup

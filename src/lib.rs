@@ -1,5 +1,48 @@
-//! relievo
-#![warn(missing_docs)]
+//! relievo gives a renderer complexity that it cannot afford to store or compute in full. Every hot path is a
+//! WGSL compute or fragment pass, proven against a CPU reference on the adapter at hand.
+//!
+//! # The map
+//!
+//! - [`terrain`]: seeded heights that are the same bits on every device, features, erosion, colours. Parameters
+//!   and, with the feature `gpu`, the passes of each operation, in one file (and `pass.rs`) a stem.
+//! - [`reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
+//!   a GPU.
+//! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
+//! - `render`: a camera, an off-screen target, and passes that draw into the caller's render pass.
+//! - `verify`: every kernel against its twin, with the bound it must keep. What `relievo verify` runs.
+//! - `bench`: every kernel beside its twin and a copy of the same bytes. What `relievo bench` runs.
+//! - `baseline`: the kernels that others are measured against.
+//! - [`error`]: bad input by field, value and bound.
+//!
+//! # Axes and units
+//!
+//! | what | convention |
+//! |---|---|
+//! | world | right-handed, +Y up, x east, z south; metres, seconds, radians |
+//! | height | `i32`, 1/65536 of a unit ([`terrain::config::HEIGHT_ONE`]); `f32` for drawing alone |
+//! | world coordinate of terrain | `i32`, 1/4096 of a patch's edge |
+//! | fields | square, row by row: y (south) outer, x (east) inner |
+//! | matrices | column-major; clip-space depth 0 (near) to 1 (far) |
+//! | textures | origin top-left; sRGB in images, linear light in shaders |
+//! | indices | `u32` |
+//!
+//! # The shape of an operation
+//!
+//! A *pass* compiles its pipelines once. `prepare` binds buffers and gives a *job*. `record` writes a job into the
+//! caller's command encoder: no hidden submission, no wait, no allocation.
+//!
+//! # An example
+//!
+//! ```
+//! use relievo::reference::terrain::field::field;
+//! use relievo::terrain::{config::Config, export::sha256, recipe::Recipe};
+//!
+//! // B's own JSON, on the CPU. `relievo::terrain::generator::Generator` gives the same bits on a GPU.
+//! let config = Config::from_json(r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#)?;
+//! let patch = field(&Recipe::new(config), &[[0, 0]], 0)?.remove(0);
+//! assert!(sha256(&patch).starts_with("d50dfddcc5fb3237"));
+//! # Ok::<(), relievo::InputError>(())
+//! ```
 
 #[cfg(feature = "gpu")]
 pub mod baseline;

@@ -73,6 +73,10 @@ impl From<wgpu::Error> for GpuError {
     fn from(error: wgpu::Error) -> Self {
         match error {
             wgpu::Error::OutOfMemory { source } => Self::OutOfMemory { reason: source.to_string() },
+            // A caller's own device has the caller's handlers: what tells of its loss is the refusal.
+            wgpu::Error::Validation { description, .. } if description.contains("device is lost") => {
+                Self::DeviceLost { reason: description }
+            }
             wgpu::Error::Validation { description, .. } => Self::Validation { reason: description },
             wgpu::Error::Internal { description, .. } => Self::Internal { reason: description },
         }

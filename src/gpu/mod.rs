@@ -162,7 +162,11 @@ impl Gpu {
             let error = pollster::block_on(scope.pop());
             first = first.or(error);
         }
-        first.map_or(Ok(done), |error| Err(GpuError::from(error)))
+        let Some(error) = first else { return Ok(done) };
+        // A lost device refuses every call; polling tells why it was lost.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.check()?;
+        Err(GpuError::from(error))
     }
 }
 

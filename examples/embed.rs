@@ -1,0 +1,54 @@
+//! Terrain inside a program that has its own wgpu device and its own frame: `cargo run --example embed`.
+//!
+//! Set-up compiles pipelines and allocates; a frame only records into the program's encoder.
+
+use relievo::gpu::Gpu;
+use relievo::render::target::{COLOR_FORMAT, Target};
+use relievo::render::{Camera, Materials, Style, TerrainRenderer};
+use relievo::terrain::blend::Shading;
+use relievo::terrain::config::{Config, Offset};
+use relievo::terrain::features::Features;
+use relievo::terrain::height::{HeightBatch, HeightPass};
+use relievo::terrain::texture::Texture;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // What the program has already.
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+
+    // Set-up. The margin of one sample lets shading agree across patches.
+    let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
+    let config = Config::new(129, 40.0, "embedded")?;
+    let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
+    let batch = HeightBatch::new(&gpu, &pass, &config, [9, 1], 0)?;
+    let textures = Texture::of_zones(&config.zones)?;
+    let materials = Materials::new(&gpu, &config.zones, &textures)?;
+    let renderer = TerrainRenderer::new(&gpu, COLOR_FORMAT, Style::Textured)?;
+    let mut scene = renderer.scene(&gpu, &materials, &Shading::default())?;
+    let patches: Vec<[i32; 2]> = (0..9).map(|i| [i % 3, i / 3]).collect();
+    for fields in batch.fields() {
+        scene.add(&gpu, &config, fields, &patches, patches[0])?;
+    }
+
+    // A frame: when the player has moved, choose other patches; then record.
+    batch.set(&gpu, &patches, &Features::default())?;
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    batch.record(&mut encoder);
+    queue.submit([encoder.finish()]);
+
+    let eye = glam::Vec3::new(40.0, 150.0, 420.0);
+    let camera = Camera {
+        eye,
+        target: glam::Vec3::new(192.0, 0.0, 160.0),
+        field_of_view: 0.8,
+        near: 1.0,
+        far: 2000.0,
+    };
+    let target = Target::new(&gpu, [960, 540])?;
+    scene.set_camera(&gpu, &camera, target.aspect())?;
+    target.draw(&gpu, [0.36, 0.55, 0.80], |pass| scene.draw(pass))?;
+    target.read(&gpu)?.save("embed.png")?;
+    println!("embed.png");
+    Ok(())
+}

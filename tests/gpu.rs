@@ -1,0 +1,107 @@
+//! The device: every failure is an `Err` with what to do, batches are split, memory stays within its bound.
+#![cfg(feature = "gpu")]
+
+#[path = "harness/mod.rs"]
+mod harness;
+
+use harness::gpu;
+use relievo::gpu::{Buffer, Gpu, GpuError, Options, TimedBy, Timer, adapters};
+use relievo::reference::terrain::height::height;
+use relievo::terrain::config::{Config, Offset};
+use relievo::terrain::features::Features;
+use relievo::terrain::height::{HeightBatch, HeightPass, Window};
+
+/// A device as another program opens it: no optional features, WebGPU's default limits.
+fn foreign() -> (wgpu::Device, wgpu::Queue) {
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    let instance = wgpu::Instance::new(descriptor);
+    let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let name = gpu().adapter().name.clone();
+    let adapter =
+        all.into_iter().find(|adapter| adapter.get_info().name == name).expect("the suite's adapter");
+    pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device")
+}
+
+fn heights_equal_the_twin(gpu: &Gpu) {
+    let config = Config::new(65, 20.0, "device").expect("valid");
+    let pass = HeightPass::new(gpu, Offset::Signed, None).expect("compiled");
+    let batch = HeightBatch::new(gpu, &pass, &config, [2, 0], 0).expect("allocated");
+    batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
+    gpu.run("test", |encoder| batch.record(encoder)).expect("run");
+    let actual = batch.fields()[0].heights.read_blocking(gpu).expect("read");
+    let twin = |patch| height(&config, &Features::default(), Window { patch, reach: 0 });
+    assert_eq!(actual, [twin([3, 4]), twin([-1, 0])].concat());
+}
+
+#[test]
+fn an_adapter_that_does_not_exist_is_an_error_with_what_to_do() {
+    let options = Options { adapter: Some("no such adapter".to_owned()) };
+    let error = Gpu::headless(&options).expect_err("there is none").to_string();
+    assert!(error.contains("no such adapter") && error.contains("RELIEVO_ADAPTER"), "{error}");
+    assert!(error.contains(&adapters()[0].name), "{error}");
+}
+
+#[test]
+fn relievo_embeds_in_a_program_with_its_own_device() {
+    let (device, queue) = foreign();
+    let gpu = Gpu::from_wgpu(device, queue);
+    heights_equal_the_twin(&gpu);
+    let timer = Timer::new(&gpu).expect("a timer");
+    assert_eq!(timer.timed_by(), TimedBy::Wall, "the device has no timestamps");
+    assert!(timer.measure(&gpu, |_| ()).expect("measured").nanoseconds > 0.0);
+}
+
+#[test]
+fn a_validation_error_is_returned_and_the_device_goes_on() {
+    let (device, queue) = foreign();
+    for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
+        let buffer = Buffer::<u32>::new(&gpu, "small", 4).expect("allocated");
+        let error = buffer.write(&gpu, &[0; 5]).expect_err("too long");
+        assert!(matches!(error, GpuError::Validation { .. }), "{error}");
+        heights_equal_the_twin(&gpu);
+    }
+}
+
+#[test]
+fn a_lost_device_is_an_error() {
+    let gpu = gpu();
+    let buffer = Buffer::from_slice(&gpu, "data", &[1_u32, 2, 3, 4]).expect("uploaded");
+    gpu.device().destroy();
+    let error = buffer.read_blocking(&gpu).expect_err("the device is gone").to_string();
+    assert!(error.contains("lost"), "{error}");
+    assert!(gpu.run("test", |_| ()).is_err() && Buffer::<u32>::new(&gpu, "more", 1).is_err());
+}
+
+#[test]
+fn a_buffer_beyond_the_limit_names_it() {
+    let gpu = gpu();
+    let words = gpu.max_binding() as usize / 4;
+    let error = Buffer::<u32>::new(&gpu, "huge", words + 1).expect_err("too large").to_string();
+    assert!(error.contains("maxStorageBufferBindingSize") && error.contains("split"), "{error}");
+    assert!(Buffer::<u32>::new(&gpu, "just", words).is_ok());
+}
+
+#[test]
+fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
+    let gpu = gpu();
+    let config = Config::new(1025, 20.0, "split").expect("valid");
+    let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
+    let count = 33_u32;
+    let batch = HeightBatch::new(&gpu, &pass, &config, [count, 0], 0).expect("allocated");
+    assert!(batch.fields().len() == 2, "33 patches of 4.2 MB exceed one binding of 128 MiB");
+    let patches: Vec<_> = (0..count as i32).map(|i| [i, -i]).collect();
+    batch.set(&gpu, &patches, &Features::default()).expect("set");
+    gpu.run("test", |encoder| batch.record(encoder)).expect("run");
+    let points = 1025_usize * 1025;
+    assert!(batch.bytes() <= 8 * points as u64 * u64::from(count), "{} bytes", batch.bytes());
+    let last = batch.fields()[1].heights.read_blocking(&gpu).expect("read");
+    let expected = height(&config, &Features::default(), Window { patch: [32, -32], reach: 0 });
+    assert!(last[last.len() - points..] == expected);
+    assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
+}
+
+#[test]
+fn out_of_memory_is_an_error_with_what_to_do() {
+    let error = GpuError::from(wgpu::Error::OutOfMemory { source: "test".into() });
+    assert!(error.to_string().contains("smaller batch"), "{error}");
+}
