@@ -67,6 +67,8 @@ mod shaders {
             let module_path =
                 format!("package::{}", relative.with_extension("").display()).replace('/', "::");
             let mut compiler = wesl::Wesl::new(root);
+            // Eager: an import that nothing uses must exist too.
+            compiler.set_options(wesl::CompileOptions { lazy: false, ..Default::default() });
             // Without mangling the flat shader reads like its sources; a clash of names is a naga error.
             compiler.set_mangler(wesl::ManglerKind::None);
             compiler.set_missing_feature_behavior(wesl::Feature::Error);
@@ -88,13 +90,13 @@ mod shaders {
                 refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
             });
             let shader = Self { name, flat, module, info };
-            shader.refuse_unused_bindings(root, file, relative);
+            shader.refuse_unused_bindings(file, relative);
             shader
         }
 
         /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat
         /// shader lacks is one that nothing uses.
-        fn refuse_unused_bindings(&self, _root: &Path, file: &Path, relative: &Path) {
+        fn refuse_unused_bindings(&self, file: &Path, relative: &Path) {
             let source = std::fs::read_to_string(file).expect("it was just composed");
             for (line, text) in source.lines().enumerate() {
                 let Some((_, declaration)) = text.split_once("@binding(") else { continue };
@@ -207,19 +209,22 @@ mod shaders {
         }
     }
 
-    /// Where a line of the flat shader comes from: the source line of the same text, spaces aside.
+    /// Where a line of the flat shader comes from: the source line that it starts with, spaces aside. WESL
+    /// writes a statement of several lines as one, so the longest start wins.
     fn origin(root: &Path, flat: &str, line: usize) -> String {
         let squeeze = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
-        let Some(wanted) = line.checked_sub(1).and_then(|index| flat.lines().nth(index)).map(squeeze) else {
-            return String::new();
-        };
+        let flat_line = line.checked_sub(1).and_then(|index| flat.lines().nth(index)).map(squeeze).unwrap_or_default();
+        let mut found = (0, format!("line {line} of the flat shader: "));
         for file in ["kernels", "wgsl"].iter().flat_map(|folder| shader_files(&root.join(folder))) {
             let source = std::fs::read_to_string(&file).unwrap_or_default();
-            if let Some(index) = source.lines().position(|text| squeeze(text) == wanted) {
-                return format!("{}:{}: ", file.strip_prefix(root).unwrap_or(&file).display(), index + 1);
+            for (index, text) in source.lines().map(squeeze).enumerate() {
+                if text.len() > found.0 && flat_line.starts_with(&text) {
+                    let name = file.strip_prefix(root).unwrap_or(&file).display().to_string();
+                    found = (text.len(), format!("{name}:{}: ", index + 1));
+                }
             }
         }
-        format!("line {line} of the flat shader: ")
+        found.1
     }
 
     fn refuse(file: &Path, what: &str) -> ! {
