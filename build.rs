@@ -213,7 +213,8 @@ mod shaders {
     /// writes a statement of several lines as one, so the longest start wins.
     fn origin(root: &Path, flat: &str, line: usize) -> String {
         let squeeze = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
-        let flat_line = line.checked_sub(1).and_then(|index| flat.lines().nth(index)).map(squeeze).unwrap_or_default();
+        let flat_line =
+            line.checked_sub(1).and_then(|index| flat.lines().nth(index)).map(squeeze).unwrap_or_default();
         let mut found = (0, format!("line {line} of the flat shader: "));
         for file in ["kernels", "wgsl"].iter().flat_map(|folder| shader_files(&root.join(folder))) {
             let source = std::fs::read_to_string(&file).unwrap_or_default();
