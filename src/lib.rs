@@ -5,7 +5,7 @@
 //!
 //! - [`terrain`]: seeded heights that are the same bits on every device, features, erosion, colours. Parameters
 //!   and, with the feature `gpu`, the passes of each operation, in one file (and `pass.rs`) a stem.
-//! - [`reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
+//! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
 //!   a GPU.
 //! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
 //! - `render`: a camera, an off-screen target, and passes that draw into the caller's render pass.
