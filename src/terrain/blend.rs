@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::InputError;
-use crate::terrain::config::{Offset, finite};
+use crate::terrain::config::{HEIGHT_ONE, Offset, finite};
 
 #[cfg(feature = "gpu")]
 pub use pass::BlendPass;
@@ -97,7 +97,8 @@ impl Zone {
     /// The four default zones, at fractions of `scale_factor`. Positive offsets lift the terrain by three
     /// halves of it on average, and the zones with it.
     pub fn defaults(scale_factor: f64, offset: Offset) -> Vec<Self> {
-        let unit = if scale_factor > 0.0 { scale_factor } else { 1.0 };
+        // A range below the resolution of heights is flat ground.
+        let unit = if scale_factor >= 1.0 / HEIGHT_ONE { scale_factor } else { 1.0 };
         let lift = if offset == Offset::Positive { 1.5 } else { 0.0 };
         [(-1.7, -0.65), (-0.65, -0.1), (-0.1, 0.45), (0.4, 1.1)]
             .into_iter()
@@ -117,8 +118,8 @@ impl Zone {
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
         finite(&format!("{path}.min"), self.min, -32768.0, 32768.0)?;
         finite(&format!("{path}.max"), self.max, -32768.0, 32768.0)?;
-        // As the shaders see them: a range that vanishes in f32 would divide by zero.
-        if self.max as f32 <= self.min as f32 {
+        // As the shaders see them: a range that vanishes in f32, or may be flushed to 0, would divide by zero.
+        if self.max as f32 - (self.min as f32) < f32::MIN_POSITIVE {
             return Err(InputError::new(
                 format!("{path}.max"),
                 self.max,

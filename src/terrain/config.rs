@@ -6,6 +6,7 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 use crate::terrain::blend::{MAX_ZONES, Zone};
+use crate::terrain::json::read_text;
 use crate::{Error, InputError};
 
 /// Bits below the point of a height: 1/65536 of a unit.
@@ -81,62 +82,6 @@ pub struct Config {
     pub zones: Vec<Zone>,
 }
 
-/// `Config` as it stands in JSON.
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", deny_unknown_fields)]
-struct Raw {
-    patch_size: serde_json::Number,
-    scale_factor: f64,
-    seed: String,
-    #[serde(default)]
-    roughness: Option<f64>,
-    #[serde(default)]
-    coarse_levels: Option<serde_json::Number>,
-    #[serde(default)]
-    offset: Offset,
-    #[serde(default)]
-    border: RawBorder,
-    #[serde(default)]
-    corners: Option<RawCorners>,
-    #[serde(default)]
-    terrain_scale: Option<f64>,
-    #[serde(default)]
-    zones: Option<Vec<Zone>>,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "border is \"seamless\", \"wrap\" or {\"blend\": samples}")]
-enum RawBorder {
-    Named(NamedBorder),
-    Blend(BlendWidth),
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum NamedBorder {
-    Seamless,
-    Wrap,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BlendWidth {
-    blend: serde_json::Number,
-}
-
-impl Default for RawBorder {
-    fn default() -> Self {
-        Self::Named(NamedBorder::Seamless)
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "corners is a height or an array of four heights")]
-enum RawCorners {
-    All(f64),
-    Each([f64; 4]),
-}
-
 impl Config {
     /// B's three parameters; the rest at their defaults.
     ///
@@ -154,36 +99,6 @@ impl Config {
             corners: [0.0; 4],
             terrain_scale: 1.0,
             zones: Zone::defaults(scale_factor, Offset::Signed),
-        };
-        config.validate()?;
-        Ok(config)
-    }
-
-    /// Reads B's JSON.
-    ///
-    /// # Errors
-    /// [`InputError`] for text that is not such JSON, unknown keys, and values out of bounds.
-    pub fn from_json(text: &str) -> Result<Self, InputError> {
-        let raw: Raw = serde_json::from_str(text).map_err(|error| json_error("config", &error))?;
-        let border = match raw.border {
-            RawBorder::Named(NamedBorder::Seamless) => Border::Seamless,
-            RawBorder::Named(NamedBorder::Wrap) => Border::Wrap,
-            RawBorder::Blend(width) => Border::Blend(whole("border.blend", &width.blend, 1, 4096)?),
-        };
-        let config = Self {
-            patch_size: whole("patchSize", &raw.patch_size, 3, 4097)?,
-            scale_factor: raw.scale_factor,
-            seed: raw.seed,
-            roughness: raw.roughness.unwrap_or(1.0),
-            coarse_levels: raw.coarse_levels.map_or(Ok(0), |levels| whole("coarseLevels", &levels, 0, 8))?,
-            offset: raw.offset,
-            border,
-            corners: raw.corners.map_or([0.0; 4], |corners| match corners {
-                RawCorners::All(height) => [height; 4],
-                RawCorners::Each(heights) => heights,
-            }),
-            terrain_scale: raw.terrain_scale.unwrap_or(1.0),
-            zones: raw.zones.unwrap_or_else(|| Zone::defaults(raw.scale_factor, raw.offset)),
         };
         config.validate()?;
         Ok(config)
@@ -223,8 +138,9 @@ impl Config {
             return Err(InputError::new("coarseLevels", self.coarse_levels, "must be in 0..=8"));
         }
         finite("terrainScale", self.terrain_scale, 1e-6, 1e6)?;
+        let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
         for (index, &corner) in self.corners.iter().enumerate() {
-            finite(&format!("corners[{index}]"), corner, -HEIGHT_LIMIT as f64, HEIGHT_LIMIT as f64)?;
+            finite(&format!("corners[{index}]"), corner, -most, most)?;
         }
         self.validate_border()?;
         self.check_overflow(0, false)?;
@@ -277,7 +193,7 @@ impl Config {
             let reach = bound / HEIGHT_ONE;
             let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
             let bound = format!(
-                "heights could reach {reach:.0} units with these ranges, corners and features; the bound is {most:.0}"
+                "heights could reach {reach:.5} units with these ranges, corners and features; the bound is {most:.5}"
             );
             return Err(InputError::new("scaleFactor", self.scale_factor, bound));
         }
@@ -334,30 +250,4 @@ pub(crate) fn finite(field: &str, value: f64, low: f64, high: f64) -> Result<(),
         _ => "must be a finite number".to_owned(),
     };
     Err(InputError::new(field, value, bound))
-}
-
-/// A JSON number that must be whole and in `low..=high`.
-pub(crate) fn whole(
-    field: &str,
-    number: &serde_json::Number,
-    low: u32,
-    high: u32,
-) -> Result<u32, InputError> {
-    (number.as_u64().or_else(|| {
-        number.as_f64().filter(|value| value.fract() == 0.0 && *value >= 0.0).map(|value| value as u64)
-    }))
-    .and_then(|value| u32::try_from(value).ok())
-    .filter(|value| (low..=high).contains(value))
-    .ok_or_else(|| InputError::new(field, number, format!("must be a whole number in {low}..={high}")))
-}
-
-/// A serde error as field, value and bound.
-pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
-    let place = format!("line {} column {}", error.line(), error.column());
-    InputError::new(what, place, error.to_string())
-}
-
-/// A text file.
-pub(crate) fn read_text(path: &Path) -> Result<String, Error> {
-    std::fs::read_to_string(path).map_err(|error| Error::file(path, error))
 }

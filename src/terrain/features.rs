@@ -8,7 +8,9 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::terrain::config::{Border, Config, HEIGHT_ONE, PATCH_EDGE, json_error, read_text};
+use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE};
+use crate::terrain::height::Window;
+use crate::terrain::json::{from_json_object, read_text};
 use crate::{Error, InputError};
 
 #[cfg(feature = "gpu")]
@@ -51,7 +53,7 @@ impl FeatureFile {
     /// # Errors
     /// [`InputError`] for text that is not such JSON.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
-        serde_json::from_str(text).map_err(|error| json_error("features", &error))
+        from_json_object("features", text)
     }
 
     /// Reads a JSON file.
@@ -81,7 +83,7 @@ impl FeatureFile {
                 }
             }
             let height = (triple[2] * HEIGHT_ONE).round_ties_even();
-            if height.is_nan() || height.abs() > f64::from(1 << 30) {
+            if height.is_nan() || height.abs() > HEIGHT_LIMIT as f64 {
                 let bound = "must be a finite height below 16384 in size";
                 return Err(InputError::new(field(3 * point + 2), triple[2], bound));
             }
@@ -122,17 +124,21 @@ impl Features {
     /// # Errors
     /// As [`Features::new`].
     pub fn add(&mut self, config: &Config, file: &FeatureFile) -> Result<(), InputError> {
-        let [px, py] = file.patch_coordinates;
+        let patch = file.patch_coordinates;
+        // A place that no patch can have could never be seen.
+        Window { patch, reach: 0 }.validate(config)?;
         let spacing = config.sample_spacing();
         let seamless = config.border == Border::Seamless;
-        let world = self.worlds.entry(if seamless { [0, 0] } else { [px, py] }).or_default();
-        let origin = if seamless { [i64::from(px) * PATCH_EDGE, i64::from(py) * PATCH_EDGE] } else { [0, 0] };
+        let world = self.worlds.entry(Self::world_of(config, patch)).or_default();
+        let origin = if seamless { patch.map(|index| i64::from(index) * PATCH_EDGE) } else { [0, 0] };
         for (index, (x, y, height)) in file.points(config)?.into_iter().enumerate() {
             let key = (origin[1] + i64::from(y) * spacing, origin[0] + i64::from(x) * spacing);
-            let earlier = world.insert(key, height);
-            if let Some(earlier) = earlier.filter(|earlier| *earlier != height) {
+            let earlier = *world.entry(key).or_insert(height);
+            if earlier != height {
                 let bound = format!(
-                    "patch ({px}, {py}) point ({x}, {y}) already has the height {}; a lattice point has one",
+                    "patch ({}, {}) point ({x}, {y}) already has the height {}; a lattice point has one",
+                    patch[0],
+                    patch[1],
                     f64::from(earlier) / HEIGHT_ONE
                 );
                 let field = format!("precomputedHeights[{}]", 3 * index + 2);

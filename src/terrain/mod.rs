@@ -11,6 +11,7 @@ pub mod fields;
 #[cfg(feature = "gpu")]
 pub mod generator;
 pub mod height;
+mod json;
 pub mod mesh;
 pub mod morph;
 pub mod normals;

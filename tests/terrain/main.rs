@@ -1,3 +1,5 @@
 //! Terrain on the CPU: known answers, and the properties that make it seamless.
 
 mod known_heights;
+mod properties;
+mod refusals;

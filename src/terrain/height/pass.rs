@@ -12,7 +12,7 @@ use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features,
 use crate::terrain::fields::Fields;
 
 /// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
-const CELL_ROWS_SOFTWARE: u32 = 33;
+const CELL_ROWS_SOFTWARE: u32 = 32;
 const CELL_ROWS_HARDWARE: u32 = 2;
 
 /// `Level` of the kernel.

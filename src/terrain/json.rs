@@ -1,0 +1,180 @@
+//! Configurations and features as they stand in JSON: B's keys and relievo's optional ones. An error names the
+//! field, what stands there and what may.
+
+use std::marker::PhantomData;
+use std::path::Path;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeOwned, MapAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use crate::terrain::blend::Zone;
+use crate::terrain::config::{Border, Config, Offset};
+use crate::{Error, InputError};
+
+/// `Config` as it stands in JSON.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+struct Raw {
+    patch_size: serde_json::Number,
+    scale_factor: f64,
+    seed: String,
+    #[serde(default)]
+    roughness: Option<f64>,
+    #[serde(default)]
+    coarse_levels: Option<serde_json::Number>,
+    #[serde(default)]
+    offset: Offset,
+    #[serde(default)]
+    border: RawBorder,
+    #[serde(default)]
+    corners: Option<RawCorners>,
+    #[serde(default)]
+    terrain_scale: Option<f64>,
+    #[serde(default)]
+    zones: Option<Vec<Object<Zone>>>,
+}
+
+#[derive(Default)]
+enum RawBorder {
+    #[default]
+    Seamless,
+    Wrap,
+    Blend(serde_json::Number),
+}
+
+impl<'de> Deserialize<'de> for RawBorder {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(BorderVisitor)
+    }
+}
+
+struct BorderVisitor;
+
+impl<'de> Visitor<'de> for BorderVisitor {
+    type Value = RawBorder;
+
+    fn expecting(&self, text: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        text.write_str("\"seamless\", \"wrap\" or {\"blend\": samples}")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<RawBorder, E> {
+        match name {
+            "seamless" => Ok(RawBorder::Seamless),
+            "wrap" => Ok(RawBorder::Wrap),
+            _ => Err(E::invalid_value(Unexpected::Str(name), &self)),
+        }
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<RawBorder, A::Error> {
+        let other = |key: &str| serde::de::Error::invalid_value(Unexpected::Other(key), &self);
+        let Some(key) = map.next_key::<String>()? else { return Err(other("{}")) };
+        if key != "blend" {
+            return Err(other(&key));
+        }
+        let width = map.next_value()?;
+        map.next_key::<String>()?.map_or(Ok(RawBorder::Blend(width)), |key| Err(other(&key)))
+    }
+}
+
+/// A struct that stands in JSON as an object: serde's own also takes a list of its fields.
+struct Object<T>(T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ObjectVisitor<T>(PhantomData<T>);
+
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
+            type Value = T;
+
+            fn expecting(&self, text: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                text.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(map))
+            }
+        }
+
+        deserializer.deserialize_map(ObjectVisitor(PhantomData)).map(Self)
+    }
+}
+
+/// Reads one JSON object; an error names the field that it lies in, or `what` outside all fields.
+pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> Result<T, InputError> {
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+        let path = error.path().to_string();
+        json_error(if path == "." { what } else { &path }, error.inner())
+    })?;
+    reader.end().map_err(|error| json_error(what, &error))?;
+    Ok(object.0)
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "corners is a height or an array of four heights")]
+enum RawCorners {
+    All(f64),
+    Each([f64; 4]),
+}
+
+impl Config {
+    /// Reads B's JSON.
+    ///
+    /// # Errors
+    /// [`InputError`] for text that is not such JSON, unknown keys, and values out of bounds.
+    pub fn from_json(text: &str) -> Result<Self, InputError> {
+        let raw: Raw = from_json_object("config", text)?;
+        let border = match raw.border {
+            RawBorder::Seamless => Border::Seamless,
+            RawBorder::Wrap => Border::Wrap,
+            RawBorder::Blend(width) => Border::Blend(whole("border.blend", &width, 1, 4096)?),
+        };
+        let config = Self {
+            patch_size: whole("patchSize", &raw.patch_size, 3, 4097)?,
+            scale_factor: raw.scale_factor,
+            seed: raw.seed,
+            roughness: raw.roughness.unwrap_or(1.0),
+            coarse_levels: raw.coarse_levels.map_or(Ok(0), |levels| whole("coarseLevels", &levels, 0, 8))?,
+            offset: raw.offset,
+            border,
+            corners: raw.corners.map_or([0.0; 4], |corners| match corners {
+                RawCorners::All(height) => [height; 4],
+                RawCorners::Each(heights) => heights,
+            }),
+            terrain_scale: raw.terrain_scale.unwrap_or(1.0),
+            zones: raw.zones.map_or_else(
+                || Zone::defaults(raw.scale_factor, raw.offset),
+                |zones| zones.into_iter().map(|zone| zone.0).collect(),
+            ),
+        };
+        config.validate()?;
+        Ok(config)
+    }
+}
+
+/// A JSON number that must be whole and in `low..=high`.
+pub(crate) fn whole(
+    field: &str,
+    number: &serde_json::Number,
+    low: u32,
+    high: u32,
+) -> Result<u32, InputError> {
+    (number.as_u64().or_else(|| {
+        number.as_f64().filter(|value| value.fract() == 0.0 && *value >= 0.0).map(|value| value as u64)
+    }))
+    .and_then(|value| u32::try_from(value).ok())
+    .filter(|value| (low..=high).contains(value))
+    .ok_or_else(|| InputError::new(field, number, format!("must be a whole number in {low}..={high}")))
+}
+
+/// A serde error as field, value and bound.
+pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
+    let place = format!("line {} column {}", error.line(), error.column());
+    InputError::new(what, place, error.to_string())
+}
+
+/// A text file.
+pub(crate) fn read_text(path: &Path) -> Result<String, Error> {
+    std::fs::read_to_string(path).map_err(|error| Error::file(path, error))
+}
