@@ -26,7 +26,7 @@ bench: setup
 bless: setup
 	RELIEVO_BLESS=1 $(CARGO) test --test golden
 
-lint:
+lint: setup
 	$(CARGO) fmt --check
 	$(CARGO) clippy --all-targets -- -D warnings
 	$(CARGO) clippy --all-targets --no-default-features -- -D warnings

@@ -27,11 +27,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let renderer = TerrainRenderer::new(&gpu, COLOR_FORMAT, Style::Textured)?;
     let mut scene = renderer.scene(&gpu, &materials, &Shading::default())?;
     let patches: Vec<[i32; 2]> = (0..9).map(|i| [i % 3, i / 3]).collect();
-    for fields in batch.fields() {
-        scene.add(&gpu, &config, fields, &patches, patches[0])?;
-    }
+    // Nine patches fit one buffer; a batch beyond 128 MiB has several parts, each with its own patches.
+    scene.add(&gpu, &config, &batch.fields()[0], &patches, patches[0])?;
 
-    // A frame: when the player has moved, choose other patches; then record.
+    // A frame: choose the patches, then record.
     batch.set(&gpu, &patches, &Features::default())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     batch.record(&mut encoder);

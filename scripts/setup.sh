@@ -18,7 +18,7 @@ if [ "$(uname -s)" = Linux ]; then
     # FLIP, the image comparison of the tests, is C++.
     command -v c++ >/dev/null || missing+=(g++)
 fi
-command -v cargo >/dev/null || { echo "cargo is missing: install Rust 1.88 or newer from https://rustup.rs" >&2; exit 1; }
+command -v cargo >/dev/null || { echo "cargo is missing: install Rust 1.95 or newer from https://rustup.rs" >&2; exit 1; }
 [ ${#missing[@]} -gt 0 ] || exit 0
 
 if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then

@@ -1,5 +1,5 @@
 //! The device: choosing an adapter or embedding in a program that has one, typed buffers, readback, kernels
-//! and timing. The only module that calls wgpu's `create_*` functions.
+//! and timing. The only module that opens devices; `render` makes its textures and pipelines on them.
 //!
 //! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing here
 //! panics or aborts.

@@ -50,7 +50,9 @@ impl Picture<'_> {
         }
         // Drawn at twice the size and averaged: one sample a pixel crawls with jagged edges.
         let available = gpu.device().limits().max_texture_dimension_2d;
-        let scale = if self.size.iter().all(|edge| 2 * edge <= available) { 2 } else { 1 };
+        let bytes = 16 * u64::from(self.size[0]) * u64::from(self.size[1]);
+        let fits = self.size.iter().all(|edge| 2 * edge <= available) && bytes <= gpu.max_binding();
+        let scale = if fits { 2 } else { 1 };
         let target = Target::new(gpu, self.size.map(|edge| scale * edge))?;
         scene.set_camera(gpu, &self.camera, target.aspect())?;
         target.draw(gpu, SKY, |pass| scene.draw(pass))?;

@@ -112,6 +112,12 @@ impl HeightImage {
             return Err(Error::file(path, bound));
         }
         let (width, height) = (info.width, info.height);
+        if u64::from(width) * u64::from(height) > 1 << 28 {
+            return Err(Error::file(
+                path,
+                format!("is {width} × {height}; height images have at most 2^28 samples"),
+            ));
+        }
         let range = (info.uncompressed_latin1_text.iter())
             .find(|chunk| chunk.keyword == CHUNK)
             .and_then(|chunk| chunk.text.split_once(' '))

@@ -8,9 +8,11 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use crate::reference::terrain::pad::pad;
 use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE};
 use crate::terrain::height::Window;
 use crate::terrain::json::{from_json_object, read_text};
+use crate::terrain::pad::surrounds;
 use crate::{Error, InputError};
 
 #[cfg(feature = "gpu")]
@@ -198,6 +200,39 @@ impl Features {
             }
         }
         found
+    }
+
+    /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend` a
+    /// window's rim shows other patches, or the other side of its own, and their features with them.
+    pub fn in_windows(&self, config: &Config, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<(u32, u32)>> {
+        if config.border == Border::Seamless || self.is_empty() {
+            let points = |patch: &[i32; 2]| {
+                let lattice = Window { patch: *patch, reach }.lattice(config);
+                let points = self.on_lattice(Self::world_of(config, *patch), lattice, false);
+                points.into_iter().map(|(x, y, _)| (x, y)).collect()
+            };
+            return patches.iter().map(points).collect();
+        }
+        let size = config.patch_size;
+        let marks: Vec<Vec<i32>> = (patches.iter())
+            .map(|patch| {
+                let mut marks = vec![0; (size * size) as usize];
+                let lattice = Window { patch: *patch, reach: 0 }.lattice(config);
+                for (x, y, _) in self.on_lattice(Self::world_of(config, *patch), lattice, false) {
+                    marks[(y * size + x) as usize] = 1;
+                }
+                marks
+            })
+            .collect();
+        let width = size + 2 * reach;
+        (surrounds(config, patches).into_iter())
+            .map(|around| {
+                let around = around.map(|tile| tile.map(|index| marks[index].as_slice()));
+                let window = pad(size as usize, reach as usize, around);
+                let marked = window.into_iter().enumerate().filter(|(_, mark)| *mark != 0);
+                marked.map(|(at, _)| (at as u32 % width, at as u32 / width)).collect()
+            })
+            .collect()
     }
 
     /// The world that a patch lives in: see [`Features::on_lattice`].

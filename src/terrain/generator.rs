@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::DespikePass;
-use crate::terrain::features::{FeatureIndex, Features};
+use crate::terrain::features::{FeatureIndex, Lattice};
 use crate::terrain::fields::Fields;
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch, Window};
 use crate::terrain::pad::{PadPass, surrounds};
@@ -65,15 +65,21 @@ impl Generator {
     ) -> Result<Vec<Fields>, Error> {
         self.recipe.validate(patches, margin)?;
         let reach = self.recipe.reach(margin);
-        if self.recipe.config.border != Border::Seamless {
+        if let Border::Blend(_) = self.recipe.config.border {
+            // Neighbours must lie in one buffer.
             let fields = self.by_themselves(gpu, patches, reach)?;
             progress(patches.len());
             return Ok(fields);
         }
         let mut parts = Vec::new();
         for part in patches.chunks(self.patches_per_part(gpu, margin)) {
-            let windows = self.windows(gpu, part, reach)?;
-            parts.push(self.finish(gpu, part, reach, windows)?);
+            if self.recipe.config.border == Border::Wrap {
+                parts.extend(self.by_themselves(gpu, part, reach)?);
+            } else {
+                let windows = self.windows(gpu, part, reach)?;
+                let injected = self.recipe.features.in_windows(&self.recipe.config, part, reach);
+                parts.push(self.finish(gpu, reach, &injected, windows)?);
+            }
             progress(part.len());
         }
         Ok(parts)
@@ -85,17 +91,32 @@ impl Generator {
         let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * reach, count)?;
         debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, reach));
         let scratch = HeightScratch::new(gpu, config, count, reach)?;
-        let capacity = features.len().saturating_mul(patches.len()).min(windows.heights.len() * 2);
+        let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, reach })).sum();
         let job = self.height.prepare(gpu, config, [count, reach], capacity, &windows.heights, &scratch)?;
         job.set(gpu, patches, features)?;
         gpu.run("terrain/height", |encoder| job.record(encoder))?;
         Ok(windows)
     }
 
+    /// Features that a window sees, halos included: those within its base lattice and a point around it.
+    fn seen_features(&self, window: Window) -> usize {
+        let (config, features) = (&self.recipe.config, &self.recipe.features);
+        if features.is_empty() {
+            return 0;
+        }
+        let spacing = config.sample_spacing();
+        let finer = 1 << config.levels();
+        let base = window.levels(config)[0];
+        // One cell more than any alignment of the windows needs.
+        let origin = base.map(|span| (span.first - 2) * finer * spacing);
+        let width = base.map(|span| (span.width() as i64 + 4) * finer).into_iter().max().unwrap_or(0) as u32;
+        features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
+    }
+
     fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Vec<Fields>, Error> {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         let (size, count) = (config.patch_size, patches.len() as u32);
-        let fields = Fields::new(gpu, "terrain/wrap: all patches of a grid", size, count)?;
+        let fields = Fields::new(gpu, "terrain/wrap (all patches that blend)", size, count)?;
         let scratch =
             crate::gpu::Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))?;
         let job = self.wrap.prepare(gpu, config, count, features.len(), &fields.heights, &scratch)?;
@@ -106,26 +127,34 @@ impl Generator {
             gpu.run("terrain/border", |encoder| job.record(encoder))?;
         }
         let all = surrounds(config, patches);
-        let per_part = self.patches_per_part(gpu, reach);
+        let injected = features.in_windows(config, patches, reach);
+        let width = u64::from(size + 2 * reach);
+        let per_part = (gpu.max_binding() / (4 * width * width)).clamp(1, 65_535) as usize;
         let mut parts = Vec::new();
-        for (part, around) in patches.chunks(per_part).zip(all.chunks(per_part)) {
-            let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, part.len() as u32)?;
+        for (around, injected) in all.chunks(per_part).zip(injected.chunks(per_part)) {
+            let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, around.len() as u32)?;
             let job = self.pad.prepare(gpu, [size, reach], around, &fields.heights, &windows.heights)?;
             gpu.run("terrain/pad", |encoder| job.record(encoder))?;
-            parts.push(self.finish(gpu, part, reach, windows)?);
+            parts.push(self.finish(gpu, reach, injected, windows)?);
         }
         Ok(parts)
     }
 
     /// Despikes and erodes windows, in turn between them and a second buffer as large.
-    fn finish(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32, windows: Fields) -> Result<Fields, Error> {
+    fn finish(
+        &self,
+        gpu: &Gpu,
+        reach: u32,
+        injected: &[Vec<(u32, u32)>],
+        windows: Fields,
+    ) -> Result<Fields, Error> {
         if self.recipe.despike.is_none() && self.recipe.thermal.is_none() {
             return Ok(windows);
         }
         let (mut current, mut other) =
             (windows.clone(), Fields::new(gpu, "terrain windows", windows.width, windows.count)?);
         if let Some(despike) = self.recipe.despike {
-            let features = self.injected(gpu, patches, reach)?;
+            let features = self.index(gpu, reach, injected)?;
             let job = self.despike.prepare(gpu, despike, &current, &features, &other)?;
             gpu.run("terrain/despike", |encoder| job.record(encoder))?;
             (current, other) = (other.cropped(1), current.cropped(1));
@@ -140,20 +169,16 @@ impl Generator {
         Ok(current)
     }
 
-    /// An index of every injected point of the windows.
-    fn injected(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<FeatureIndex, GpuError> {
-        let (config, features) = (&self.recipe.config, &self.recipe.features);
-        let width = config.patch_size + 2 * reach;
-        let points = |window: u32| {
-            let patch = patches[window as usize];
-            let lattice = Window { patch, reach }.lattice(config).grown();
-            features.on_lattice(Features::world_of(config, patch), lattice, false)
-        };
-        let count = patches.len() as u32;
-        let capacity = (0..count).map(|window| points(window).len()).sum::<usize>();
-        let capacity = if features.is_empty() { 0 } else { capacity.max(1) };
-        let index = FeatureIndex::new(gpu, &[width], count, capacity)?;
-        index.write(gpu, count, |_, window| points(window))?;
+    /// An index of every injected point of windows, given for each as (column, row).
+    fn index(&self, gpu: &Gpu, reach: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
+        let width = self.recipe.config.patch_size + 2 * reach;
+        let points = injected.iter().map(Vec::len).sum::<usize>();
+        let capacity = if self.recipe.features.is_empty() { 0 } else { points.max(1) };
+        let index = FeatureIndex::new(gpu, &[width], injected.len() as u32, capacity)?;
+        index.write(gpu, injected.len() as u32, |_, window| {
+            // The grid starts one point before the window; the values do not matter.
+            injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
+        })?;
         Ok(index)
     }
 }

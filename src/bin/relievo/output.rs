@@ -9,6 +9,7 @@ pub struct Staged {
     folder: PathBuf,
     stage: tempfile::TempDir,
     names: Vec<String>,
+    removed: Vec<String>,
 }
 
 impl Staged {
@@ -17,13 +18,12 @@ impl Staged {
         if folder.exists() && !folder.is_dir() {
             return Err(Error::file(folder, "is not a folder"));
         }
-        // Beside the folder, on the same file system, so that renaming is atomic.
-        let parent =
-            folder.ancestors().skip(1).find(|parent| parent.is_dir() || parent.as_os_str().is_empty());
+        // In the folder or above it, on the same file system, so that renaming is atomic.
+        let parent = folder.ancestors().find(|parent| parent.is_dir() || parent.as_os_str().is_empty());
         let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let stage = tempfile::Builder::new().prefix(".relievo-").tempdir_in(parent);
         let stage = stage.map_err(|error| Error::file(parent, error))?;
-        Ok(Self { folder: folder.to_owned(), stage, names: Vec::new() })
+        Ok(Self { folder: folder.to_owned(), stage, names: Vec::new(), removed: Vec::new() })
     }
 
     /// Where to write the file that will be `name`.
@@ -34,9 +34,27 @@ impl Staged {
         path
     }
 
+    /// Removes a file of an earlier run when the others are published.
+    pub fn remove(&mut self, name: &str) {
+        self.removed.push(name.to_owned());
+    }
+
     /// Moves every file to its place.
     pub fn publish(self) -> Result<(), Error> {
         std::fs::create_dir_all(&self.folder).map_err(|error| Error::file(&self.folder, error))?;
+        // What cannot be replaced is found before anything is.
+        for name in self.names.iter().chain(&self.removed) {
+            let to = self.folder.join(name);
+            if to.is_dir() {
+                return Err(Error::file(&to, "is a folder, and a file belongs there"));
+            }
+        }
+        for name in &self.removed {
+            let stale = self.folder.join(name);
+            if stale.exists() {
+                std::fs::remove_file(&stale).map_err(|error| Error::file(&stale, error))?;
+            }
+        }
         for name in &self.names {
             let to = self.folder.join(name);
             std::fs::rename(self.stage.path().join(name), &to).map_err(|error| Error::file(&to, error))?;

@@ -206,11 +206,13 @@ impl Terrain {
                 InputError::new("size", &self.size, "must be 1 to 4096 pixels along each edge").into()
             );
         }
+        let thermal = self.thermal.map(|iterations| Thermal { iterations, talus: self.talus });
+        thermal.map_or(Ok(()), |thermal| thermal.validate())?;
         let patches = grid_patches(&config, grid, origin, &self.patches, self.reach())?;
         let features = self.read_features(&config, grid, origin)?;
         let recipe = Recipe {
             despike: self.despike.map(|threshold| Despike { threshold }),
-            thermal: self.thermal.map(|iterations| Thermal { iterations, talus: self.talus }),
+            thermal,
             features,
             config,
         };
@@ -316,8 +318,10 @@ impl Terrain {
         }
         progress.finish_and_clear();
         save(&staged.path("map.png"), &mosaic(plan, &made.maps))?;
-        if let Some(view) = &made.view {
-            save(&staged.path("terrain.png"), view)?;
+        match &made.view {
+            Some(view) => save(&staged.path("terrain.png"), view)?,
+            // One of an earlier run would show other heights.
+            None => staged.remove("terrain.png"),
         }
         let (adapter, driver) = made.adapter.clone().unzip();
         let report = Report {

@@ -20,10 +20,13 @@ pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<V
     recipe.validate(patches, margin)?;
     let reach = recipe.reach(margin);
     let windows = generate(&recipe.config, &recipe.features, patches, reach);
-    Ok(windows
-        .into_par_iter()
-        .zip(patches)
-        .map(|(window, patch)| finish(recipe, *patch, reach, window))
+    let injected = match recipe.despike {
+        Some(_) => recipe.features.in_windows(&recipe.config, patches, reach),
+        None => vec![Vec::new(); patches.len()],
+    };
+    let width = recipe.config.patch_size + 2 * reach;
+    Ok((windows.into_par_iter().zip(injected))
+        .map(|(window, injected)| finish(recipe, width as usize, &injected, window))
         .collect())
 }
 
@@ -55,27 +58,20 @@ pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], reac
         .collect()
 }
 
-fn finish(recipe: &Recipe, patch: [i32; 2], reach: u32, mut window: Vec<i32>) -> Vec<i32> {
-    let config = &recipe.config;
-    let mut width = Window { patch, reach }.width(config) as usize;
+/// Despikes and erodes a window; `injected` are (column, row) of its features, sorted by row.
+fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window: Vec<i32>) -> Vec<i32> {
     if let Some(despike) = recipe.despike {
-        let injected = injected_points(config, &recipe.features, Window { patch, reach });
         window = twin::despike::despike(&window, width, despike.fixed_threshold(), |x, y| {
-            injected.binary_search(&(y as u32, x as u32)).is_ok()
+            injected.binary_search_by_key(&(y as u32, x as u32), |(column, row)| (*row, *column)).is_ok()
         });
         width -= 2;
     }
     if let Some(thermal) = recipe.thermal {
         for _ in 0..thermal.iterations {
-            window = twin::thermal::thermal(&window, width, thermal.fixed_threshold(config.terrain_scale));
+            window =
+                twin::thermal::thermal(&window, width, thermal.fixed_threshold(recipe.config.terrain_scale));
             width -= 2;
         }
     }
     window
-}
-
-/// (row, column) of every injected point of a window, sorted.
-fn injected_points(config: &Config, features: &Features, window: Window) -> Vec<(u32, u32)> {
-    let points = features.on_lattice(Features::world_of(config, window.patch), window.lattice(config), false);
-    points.into_iter().map(|(x, y, _)| (y, x)).collect()
 }

@@ -1,0 +1,42 @@
+//! What happens at borders after generation, where windows show other patches or the patch's other side.
+
+use relievo::reference::terrain::field::field;
+use relievo::terrain::config::Config;
+use relievo::terrain::despike::Despike;
+use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::recipe::Recipe;
+use relievo::terrain::thermal::Thermal;
+
+fn despiked_beside_features(border: &str, patches: &[[i32; 2]]) -> Vec<Vec<i32>> {
+    let text = format!(r#"{{"patchSize": 33, "scaleFactor": 40, "seed": "s", "border": {border}}}"#);
+    let config = Config::from_json(&text).expect("valid");
+    let precomputed_heights = vec![1.0, 10.0, 50.0, 1.0, 20.0, -50.0, 2.0, 15.0, 40.0];
+    let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights };
+    let features = Features::new(&config, &[file], FeatureMode::Keep).expect("valid");
+    let recipe = Recipe {
+        features,
+        despike: Some(Despike { threshold: 0.1 }),
+        thermal: Some(Thermal { iterations: 3, talus: 35.0 }),
+        config,
+    };
+    field(&recipe, patches, 0).expect("valid")
+}
+
+/// Injected points are left alone on the window's rim too, which is the patch's other side.
+#[test]
+fn wrap_still_tiles_after_despiking_beside_features() {
+    let patch = &despiked_beside_features("\"wrap\"", &[[0, 0]])[0];
+    for row in 0..33 {
+        assert_eq!(patch[row * 33], patch[row * 33 + 32], "row {row}");
+        assert_eq!(patch[row], patch[32 * 33 + row], "column {row}");
+    }
+}
+
+/// The same across neighbours that blend.
+#[test]
+fn blended_neighbours_still_agree_after_despiking_beside_features() {
+    let patches = despiked_beside_features("{\"blend\": 1}", &[[-1, 0], [0, 0]]);
+    for row in 0..33 {
+        assert_eq!(patches[0][row * 33 + 32], patches[1][row * 33], "row {row}");
+    }
+}
