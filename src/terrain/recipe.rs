@@ -29,7 +29,8 @@ impl Recipe {
 
     /// Samples beyond the final field that generation must give.
     pub fn reach(&self, margin: u32) -> u32 {
-        margin + self.despike.map_or(0, |_| 1) + self.thermal.map_or(0, |thermal| thermal.iterations)
+        let iterations = self.thermal.map_or(0, |thermal| thermal.iterations);
+        margin.saturating_add(self.despike.map_or(0, |_| 1)).saturating_add(iterations)
     }
 
     /// Checks the parameters, and that `patches` with `margin` samples around them can be generated.

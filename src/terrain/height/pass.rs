@@ -197,6 +197,8 @@ impl HeightBatch {
         [count, reach]: [u32; 2],
         feature_capacity: usize,
     ) -> Result<Self, Error> {
+        config.validate()?;
+        Window { patch: [0, 0], reach }.validate(config)?;
         let window = 4 * HeightJob::output_points(config, 1, reach) as u64;
         // A dispatch has at most 65,535 windows.
         let largest = (gpu.max_binding() / window).clamp(1, 65_535) as u32;

@@ -3,9 +3,9 @@
 use encase::ShaderType;
 
 use super::Thermal;
-use crate::Error;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::terrain::fields::Fields;
+use crate::{Error, InputError};
 
 /// `ThermalParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -43,6 +43,10 @@ impl ThermalPass {
         other: &Fields,
     ) -> Result<Job, Error> {
         thermal.validate()?;
+        if windows.width <= 2 * thermal.iterations {
+            let bound = format!("must exceed {}, two samples an iteration", 2 * thermal.iterations);
+            return Err(InputError::new("windows.width", windows.width, bound).into());
+        }
         let threshold = thermal.fixed_threshold(terrain_scale);
         let mut steps = Vec::new();
         for iteration in 0..thermal.iterations {
