@@ -23,6 +23,12 @@ impl Fields {
         Ok(Self { heights: Buffer::new(gpu, label, points)?, width, count })
     }
 
+    /// Fields of `width` that one binding and one dispatch may hold, at least one.
+    pub fn most(gpu: &Gpu, width: u32) -> usize {
+        let bytes = 4 * u64::from(width) * u64::from(width);
+        (gpu.max_binding() / bytes.max(1)).clamp(1, 65_535) as usize
+    }
+
     /// The same memory seen as smaller fields.
     pub fn cropped(&self, samples: u32) -> Self {
         Self { width: self.width - 2 * samples, ..self.clone() }

@@ -47,8 +47,7 @@ impl Generator {
 
     /// Patches that one part of the result may hold.
     pub fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
-        let width = u64::from(self.recipe.config.patch_size + 2 * self.recipe.reach(margin));
-        (gpu.max_binding() / (4 * width * width)).clamp(1, 65_535) as usize
+        Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.reach(margin))
     }
 
     /// The final heights of `patches` with `margin` samples around each, in parts that fit one storage binding;
@@ -77,7 +76,7 @@ impl Generator {
                 parts.extend(self.by_themselves(gpu, part, reach)?);
             } else {
                 let windows = self.windows(gpu, part, reach)?;
-                let injected = self.recipe.features.in_windows(&self.recipe.config, part, reach);
+                let injected = self.recipe.injected(part, reach);
                 parts.push(self.finish(gpu, reach, &injected, windows)?);
             }
             progress(part.len());
@@ -127,9 +126,8 @@ impl Generator {
             gpu.run("terrain/border", |encoder| job.record(encoder))?;
         }
         let all = surrounds(config, patches);
-        let injected = features.in_windows(config, patches, reach);
-        let width = u64::from(size + 2 * reach);
-        let per_part = (gpu.max_binding() / (4 * width * width)).clamp(1, 65_535) as usize;
+        let injected = self.recipe.injected(patches, reach);
+        let per_part = Fields::most(gpu, size + 2 * reach);
         let mut parts = Vec::new();
         for (around, injected) in all.chunks(per_part).zip(injected.chunks(per_part)) {
             let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, around.len() as u32)?;

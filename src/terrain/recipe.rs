@@ -33,6 +33,14 @@ impl Recipe {
         margin.saturating_add(self.despike.map_or(0, |_| 1)).saturating_add(iterations)
     }
 
+    /// (column, row) of the injected points of each window: what despiking leaves alone. Empty without it.
+    pub(crate) fn injected(&self, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<(u32, u32)>> {
+        match self.despike {
+            Some(_) => self.features.in_windows(&self.config, patches, reach),
+            None => vec![Vec::new(); patches.len()],
+        }
+    }
+
     /// Checks the parameters, and that `patches` with `margin` samples around them can be generated.
     ///
     /// # Errors

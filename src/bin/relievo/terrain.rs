@@ -372,9 +372,10 @@ mod on_device {
             }
             let generate = start.elapsed().as_secs_f64();
             let start = Instant::now();
+            let pass = BlendPass::new(&gpu)?;
             let mut maps = Vec::new();
             for part in &parts {
-                maps.extend(self.maps(&gpu, plan, part)?);
+                maps.extend(self.maps(&gpu, plan, &pass, part)?);
             }
             let view = self.view(&gpu, plan, &parts, &windows)?;
             let adapter = gpu.adapter();
@@ -388,12 +389,17 @@ mod on_device {
             })
         }
 
-        fn maps(&self, gpu: &Gpu, plan: &Plan, part: &Fields) -> Result<Vec<Vec<u32>>, Error> {
+        fn maps(
+            &self,
+            gpu: &Gpu,
+            plan: &Plan,
+            pass: &BlendPass,
+            part: &Fields,
+        ) -> Result<Vec<Vec<u32>>, Error> {
             let config = &plan.recipe.config;
             let points = (config.patch_size as usize).pow(2);
             let pixels = Buffer::new(gpu, "colour map", points * part.count as usize)?;
             let zones = map_zones(&config.zones, &plan.textures);
-            let pass = BlendPass::new(gpu)?;
             let job = pass.prepare(gpu, config.terrain_scale, &zones, &plan.shading, part, &pixels)?;
             gpu.run("colour map", |encoder| job.record(encoder))?;
             Ok(pixels.read_blocking(gpu)?.chunks_exact(points).map(<[u32]>::to_vec).collect())
@@ -433,7 +439,7 @@ mod on_device {
                 Err(error) => return Err(error),
             };
             let width = plan.recipe.config.patch_size + 2;
-            let per_part = (gpu.max_binding() / (4 * u64::from(width).pow(2))).max(1) as usize;
+            let per_part = Fields::most(&gpu, width);
             let mut parts = Vec::new();
             for windows in made.windows.chunks(per_part) {
                 let fields = Fields::new(&gpu, "terrain heights", width, windows.len() as u32)?;

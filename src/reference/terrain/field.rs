@@ -20,10 +20,7 @@ pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<V
     recipe.validate(patches, margin)?;
     let reach = recipe.reach(margin);
     let windows = generate(&recipe.config, &recipe.features, patches, reach);
-    let injected = match recipe.despike {
-        Some(_) => recipe.features.in_windows(&recipe.config, patches, reach),
-        None => vec![Vec::new(); patches.len()],
-    };
+    let injected = recipe.injected(patches, reach);
     let width = recipe.config.patch_size + 2 * reach;
     Ok((windows.into_par_iter().zip(injected))
         .map(|(window, injected)| finish(recipe, width as usize, &injected, window))

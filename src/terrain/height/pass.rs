@@ -199,9 +199,7 @@ impl HeightBatch {
     ) -> Result<Self, Error> {
         config.validate()?;
         Window { patch: [0, 0], reach }.validate(config)?;
-        let window = 4 * HeightJob::output_points(config, 1, reach) as u64;
-        // A dispatch has at most 65,535 windows.
-        let largest = (gpu.max_binding() / window).clamp(1, 65_535) as u32;
+        let largest = Fields::most(gpu, config.patch_size + 2 * reach) as u32;
         let parts = count.div_ceil(largest).max(1);
         let scratch = HeightScratch::new(gpu, config, count.div_ceil(parts), reach)?;
         let (mut jobs, mut fields) = (Vec::new(), Vec::new());
