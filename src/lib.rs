@@ -5,6 +5,8 @@
 //!
 //! - [`terrain`]: seeded heights that are the same bits on every device, features, erosion, colours. Parameters
 //!   and, with the feature `gpu`, the passes of each operation, in one file (and `pass.rs`) a stem.
+//! - [`surface`]: height maps, the ray-height methods with measured error and cost, acceleration maps, tangent
+//!   frames.
 //! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
 //!   a GPU.
 //! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
@@ -54,6 +56,7 @@ pub mod gpu;
 pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;
+pub mod surface;
 pub mod terrain;
 #[cfg(feature = "gpu")]
 pub mod verify;

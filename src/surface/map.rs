@@ -1,0 +1,140 @@
+//! Height maps: what every method marches over.
+
+use std::path::Path;
+
+use crate::{Error, InputError};
+
+/// The longest edge of a map in texels: WebGPU's default limit for a texture.
+pub const MAP_EDGE: u32 = 8192;
+
+/// What lies beyond a map's edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Address {
+    /// The map again: it tiles.
+    #[default]
+    Wrap,
+    /// The texels of the edge, for ever.
+    Clamp,
+}
+
+/// Heights of a tile: row by row from the top left, 0 (lowest) to 1, finite. Texel (i, j) has its centre at
+/// uv ((i + ½) / width, (j + ½) / height); between centres heights are bilinear.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightMap {
+    width: u32,
+    height: u32,
+    heights: Vec<f32>,
+}
+
+impl HeightMap {
+    /// A map of `width` × `height` texels.
+    ///
+    /// # Errors
+    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`], another number of heights, or one outside 0..=1.
+    pub fn new(width: u32, height: u32, heights: Vec<f32>) -> Result<Self, InputError> {
+        for (field, edge) in [("heights.width", width), ("heights.height", height)] {
+            if !(1..=MAP_EDGE).contains(&edge) {
+                return Err(InputError::new(field, edge, format!("must be in 1..={MAP_EDGE} texels")));
+            }
+        }
+        if heights.len() != width as usize * height as usize {
+            let bound = format!("must be {width} × {height} heights");
+            return Err(InputError::new("heights.len", heights.len(), bound));
+        }
+        match heights.iter().position(|height| !(0.0..=1.0).contains(height)) {
+            Some(at) => Err(InputError::new(format!("heights[{at}]"), heights[at], "must be in 0..=1")),
+            None => Ok(Self { width, height, heights }),
+        }
+    }
+
+    /// The brightness of an image file, black 0, white 1; with all the depth that the file has.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it cannot be read, [`InputError`] for its size.
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        let image = open(path)?;
+        Self::from_samples(path, image.width(), image.height(), image.into_luma16().into_raw())
+    }
+
+    /// The alpha channel of an image file.
+    ///
+    /// # Errors
+    /// As [`HeightMap::from_file`], and [`Error::File`] for an image without alpha.
+    pub fn from_alpha(path: &Path) -> Result<Self, Error> {
+        let image = open(path)?;
+        if !image.color().has_alpha() {
+            return Err(Error::file(path, "has no alpha channel to take heights from"));
+        }
+        let (width, height) = (image.width(), image.height());
+        let alpha = image.into_rgba16().pixels().map(|pixel| pixel.0[3]).collect();
+        Self::from_samples(path, width, height, alpha)
+    }
+
+    fn from_samples(path: &Path, width: u32, height: u32, samples: Vec<u16>) -> Result<Self, Error> {
+        let heights = samples.into_iter().map(|sample| f32::from(sample) / 65_535.0).collect();
+        Self::new(width, height, heights).map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    }
+
+    /// Texels a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Heights, row by row.
+    pub fn heights(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// The height of a texel; beyond the edge as `address` says.
+    pub fn texel(&self, x: i32, y: i32, address: Address) -> f32 {
+        let at = |index: i32, edge: u32| match address {
+            Address::Wrap => index.rem_euclid(edge as i32),
+            Address::Clamp => index.clamp(0, edge as i32 - 1),
+        };
+        self.heights[at(y, self.height) as usize * self.width as usize + at(x, self.width) as usize]
+    }
+}
+
+/// Opens an image, having looked at its size first.
+fn open(path: &Path) -> Result<image::DynamicImage, Error> {
+    let failed = |error: image::ImageError| Error::file(path, error);
+    let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
+    let mut reader = reader.map_err(|error| Error::file(path, error))?;
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(MAP_EDGE);
+    limits.max_image_height = Some(MAP_EDGE);
+    reader.limits(limits);
+    reader.decode().map_err(failed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_refuse_what_is_no_height_map() {
+        let refused = |width, height, heights: Vec<f32>| {
+            HeightMap::new(width, height, heights).expect_err("refused").field
+        };
+        assert_eq!(refused(0, 1, vec![]), "heights.width");
+        assert_eq!(refused(1, MAP_EDGE + 1, vec![0.5]), "heights.height");
+        assert_eq!(refused(2, 2, vec![0.5; 3]), "heights.len");
+        for wrong in [-0.1, 1.1, f32::NAN, f32::INFINITY] {
+            assert_eq!(refused(2, 1, vec![0.5, wrong]), "heights[1]");
+        }
+        assert!(HeightMap::new(1, 1, vec![1.0]).is_ok());
+    }
+
+    #[test]
+    fn addresses_beyond_the_edge() {
+        let map = HeightMap::new(3, 1, vec![0.1, 0.2, 0.3]).expect("a map");
+        assert_eq!([-1, 3, 7].map(|x| map.texel(x, 5, Address::Wrap)), [0.3, 0.1, 0.2]);
+        assert_eq!([-1, 3, 7].map(|x| map.texel(x, -5, Address::Clamp)), [0.1, 0.3, 0.3]);
+    }
+}
