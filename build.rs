@@ -170,6 +170,8 @@ mod shaders {
                     }
                     (AddressSpace::Storage { .. }, _) => "BindingKind::StorageRead",
                     (_, TypeInner::Image { arrayed: true, .. }) => "BindingKind::TextureArray",
+                    (_, TypeInner::Image { .. }) if self.is_sampled(handle) => "BindingKind::Texture",
+                    (_, TypeInner::Image { .. }) => "BindingKind::LoadedTexture",
                     (_, TypeInner::Sampler { .. }) => "BindingKind::Sampler",
                     (space, _) => panic!(
                         "{}: binding {:?} in {space:?}: teach build.rs this kind",
@@ -188,6 +190,13 @@ mod shaders {
                 )));
             }
             found
+        }
+
+        /// Whether a sampler reads the texture, rather than loads of texels alone.
+        fn is_sampled(&self, texture: naga::Handle<naga::GlobalVariable>) -> bool {
+            (0..self.module.entry_points.len()).any(|entry| {
+                self.info.get_entry_point(entry).sampling_set.iter().any(|key| key.image == texture)
+            })
         }
 
         fn structs(&self) -> String {

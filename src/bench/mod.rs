@@ -3,6 +3,7 @@
 
 pub mod baseline;
 mod measure;
+pub mod surface;
 mod table;
 pub mod terrain;
 
@@ -26,6 +27,7 @@ pub struct Stem {
 /// Every kernel with its benchmark cases.
 pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::cases },
+    Stem { name: "baseline/loads", run: baseline::loads::cases },
     Stem { name: "baseline/words", run: baseline::words::cases },
     Stem { name: "terrain/height", run: terrain::height::cases },
     Stem { name: "terrain/wrap", run: terrain::wrap::cases },
@@ -36,6 +38,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/normals", run: terrain::normals::cases },
     Stem { name: "terrain/morph", run: terrain::morph::cases },
     Stem { name: "terrain/blend", run: terrain::blend::cases },
+    Stem { name: "surface/height_pyramid", run: surface::height_pyramid::cases },
+    Stem { name: "surface/cone_map", run: surface::cone_map::cases },
+    Stem { name: "surface/relief", run: surface::relief::cases },
 ];
 
 /// What a row measures.

@@ -5,7 +5,7 @@ use super::{Backend, Row};
 /// The rows, with items a second, bytes a second, and how a kernel compares with its case's other rows.
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
-        "{:<16} {:<34} {:<13} {:>11} {:>11} {:>11} {:>11} {:>8}\n",
+        "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11} {:>11} {:>8}\n",
         "name", "case", "backend", "median", "min", "M items/s", "GB/s", "gpu is"
     );
     for row in rows {
@@ -16,7 +16,7 @@ pub fn table(rows: &[Row]) -> String {
         let ratio = (kernel.filter(|_| row.backend != Backend::Gpu))
             .map_or(String::new(), |kernel| format!("{:.2}×", row.nanoseconds / kernel.nanoseconds));
         text += &format!(
-            "{:<16} {:<34} {:<13} {:>11} {:>11} {:>11.1} {:>11.2} {:>8}\n",
+            "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11.1} {:>11.2} {:>8}\n",
             row.name,
             row.case,
             row.backend.name(),

@@ -190,6 +190,11 @@ pub fn bind(
 
 fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let texture = |filterable, view_dimension| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable },
+        view_dimension,
+        multisampled: false,
+    };
     let visibility = (binding.stages.iter())
         .map(|stage| match stage {
             Stage::Vertex => wgpu::ShaderStages::VERTEX,
@@ -201,11 +206,9 @@ fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
         BindingKind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
         BindingKind::StorageRead => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
         BindingKind::StorageReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-        BindingKind::TextureArray => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        },
+        BindingKind::TextureArray => texture(true, wgpu::TextureViewDimension::D2Array),
+        BindingKind::Texture => texture(true, wgpu::TextureViewDimension::D2),
+        BindingKind::LoadedTexture => texture(false, wgpu::TextureViewDimension::D2),
         BindingKind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
     };
     wgpu::BindGroupLayoutEntry { binding: binding.binding, visibility, ty, count: None }

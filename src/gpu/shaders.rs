@@ -35,6 +35,10 @@ pub enum BindingKind {
     StorageReadWrite,
     /// A filterable float texture, 2-D array.
     TextureArray,
+    /// A filterable float texture, 2-D.
+    Texture,
+    /// A float texture, 2-D, of which the shader only loads texels: any float format.
+    LoadedTexture,
     /// A filtering sampler.
     Sampler,
 }

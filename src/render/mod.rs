@@ -1,11 +1,15 @@
 //! Drawing: a camera, an off-screen target, and passes that draw into the caller's render pass.
 
 pub mod camera;
+pub mod color;
 pub mod picture;
+pub mod relief;
 pub mod target;
 pub mod terrain;
 
 pub use camera::Camera;
+pub use color::ColorTexture;
 pub use picture::Picture;
+pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 pub use target::Target;
 pub use terrain::{Materials, Style, TerrainRenderer, TerrainScene};

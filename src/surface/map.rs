@@ -18,6 +18,21 @@ pub enum Address {
     Clamp,
 }
 
+impl Address {
+    /// Its name in options and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wrap => "wrap",
+            Self::Clamp => "clamp",
+        }
+    }
+
+    /// Its number in the shaders: `SURFACE_WRAP` and `SURFACE_CLAMP` of `wgsl/surface/ray.wgsl`.
+    pub fn code(self) -> u32 {
+        self as u32
+    }
+}
+
 /// Heights of a tile: row by row from the top left, 0 (lowest) to 1, finite. Texel (i, j) has its centre at
 /// uv ((i + ½) / width, (j + ½) / height); between centres heights are bilinear.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,6 +104,20 @@ impl HeightMap {
     /// Heights, row by row.
     pub fn heights(&self) -> &[f32] {
         &self.heights
+    }
+
+    /// The next mip level: half the edges, rounded down but at least 1; each texel the mean of the four that it
+    /// covers.
+    pub fn halved(&self) -> Self {
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let mean = |x: u32, y: u32| {
+            let four = [[0, 0], [1, 0], [0, 1], [1, 1]];
+            let texel =
+                |[dx, dy]: [u32; 2]| self.texel((2 * x + dx) as i32, (2 * y + dy) as i32, Address::Clamp);
+            four.map(texel).iter().sum::<f32>() / 4.0
+        };
+        let heights = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y));
+        Self { width, height, heights: heights.collect() }
     }
 
     /// The height of a texel; beyond the edge as `address` says.

@@ -1,6 +1,20 @@
 //! Surface mapping: every ray-height method over one result, the maps that accelerate them, and tangent frames
 //! (B sections 3.1 and 4.2).
 
+pub mod cone_map;
+pub mod height_pyramid;
 pub mod map;
+pub mod material;
+pub mod mesh;
+pub mod mips;
+pub mod relief;
+#[cfg(feature = "gpu")]
+pub mod texture;
 
 pub use map::{Address, HeightMap};
+pub use material::{Material, Shadow};
+pub use mesh::{SurfaceMesh, SurfaceVertex};
+pub use mips::Mips;
+pub use relief::{Hit, March, Method, Outcome, Ray};
+#[cfg(feature = "gpu")]
+pub use texture::{HeightBatch, SurfaceTextures};

@@ -77,6 +77,14 @@ pub fn absolute(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
     })
 }
 
+/// Floats: a bound relative to the expected value, or absolute where that is below 1e-6.
+pub fn relative(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
+    compare(actual, expected, "relative", bound.into(), |actual, expected| {
+        let (actual, expected) = (f64::from(actual), f64::from(expected));
+        (actual - expected).abs() / expected.abs().max(1e-6)
+    })
+}
+
 /// Floats: units in the last place of the expected value.
 pub fn ulps(actual: &[f32], expected: &[f32], bound: u32) -> Comparison {
     compare(actual, expected, "ulp", bound.into(), |actual, expected| {

@@ -4,6 +4,7 @@
 pub mod baseline;
 pub mod compare;
 pub mod poison;
+pub mod surface;
 pub mod terrain;
 
 use serde::Serialize;
@@ -24,6 +25,7 @@ pub struct Stem {
 /// Every kernel with its parity cases.
 pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::cases },
+    Stem { name: "baseline/loads", run: baseline::loads::cases },
     Stem { name: "baseline/words", run: baseline::words::cases },
     Stem { name: "terrain/height", run: terrain::height::cases },
     Stem { name: "terrain/wrap", run: terrain::wrap::cases },
@@ -34,6 +36,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/normals", run: terrain::normals::cases },
     Stem { name: "terrain/morph", run: terrain::morph::cases },
     Stem { name: "terrain/blend", run: terrain::blend::cases },
+    Stem { name: "surface/height_pyramid", run: surface::height_pyramid::cases },
+    Stem { name: "surface/cone_map", run: surface::cone_map::cases },
+    Stem { name: "surface/relief", run: surface::relief::cases },
 ];
 
 /// One case's result.

@@ -1,4 +1,5 @@
 //! Benchmarks of `kernels/baseline/`.
 
 pub mod copy;
+pub mod loads;
 pub mod words;

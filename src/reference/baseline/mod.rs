@@ -1,4 +1,5 @@
 //! Twins of `kernels/baseline/`.
 
 pub mod copy;
+pub mod loads;
 pub mod words;

@@ -1,4 +1,5 @@
 //! Parity of `kernels/baseline/`.
 
 pub mod copy;
+pub mod loads;
 pub mod words;

@@ -1,0 +1,162 @@
+// Cone maps of a batch of height maps, from their pyramids. A thread makes the cone of one bilinear cell: upright,
+// on the cell's highest corner, as wide as it can be so that a ray inside it crosses the surface at most once.
+//
+// A ray that crosses twice leaves the surface somewhere, and leaves it where the surface falls ahead of it faster
+// than the ray. So the cone has to stay above every cell where a ray from this cell can leave the surface, and may
+// cut those that rise all along its way (`rises`). Bounds hold for every point of both cells: distances are least
+// ones, heights highest ones. Nodes are searched nearest first, and skipped when they cannot narrow the cone;
+// those that look small from here count whole, which makes the search O(log N) a cell.
+import package::wgsl::surface::ray::SURFACE_WRAP;
+import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
+
+// Distance over size from which a node counts whole.
+override OPENING: f32 = 4.0;
+
+struct ConeParams {
+    // Texels and cells of a map.
+    size: vec2<u32>,
+    cells: vec2<u32>,
+    // Nodes a row, and rows, of one map's pyramid; cones a row of the output.
+    pitch: u32,
+    rows: u32,
+    cone_pitch: u32,
+    address: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: ConeParams;
+@group(0) @binding(1) var<storage, read> heights: array<f32>;
+@group(0) @binding(2) var<storage, read> pyramids: array<f32>;
+// Highest corner, and the cone's radius in cells at height 1 above it.
+@group(0) @binding(3) var<storage, read_write> cones: array<vec2<f32>>;
+
+// More than any search takes.
+const MOST_VISITS: u32 = 65536u;
+
+fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
+    let at = vec2<u32>(surface_atlas_at(params.cells, level, node));
+    return pyramids[(map * params.rows + at.y) * params.pitch + at.x];
+}
+
+fn texel(map: u32, at: vec2<i32>) -> f32 {
+    let size = vec2<i32>(params.size);
+    var inside = at;
+    if params.address == SURFACE_WRAP {
+        inside = select(at, vec2<i32>(0), at >= size);
+    } else {
+        inside = clamp(at - 1, vec2<i32>(0), size - 1);
+    }
+    return heights[(map * params.size.y + u32(inside.y)) * params.size.x + u32(inside.x)];
+}
+
+// The widest radius that stays above the corners of a leaf, `offset` cells away: over a cell the bilinear patch
+// less a plane is largest at a corner, and the distance is at least the one along the line to the cell's centre.
+fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
+    let away = vec2<f32>(abs(offset));
+    let centre = max(away - 0.5, vec2<f32>(0.0));
+    let direction = centre / max(length(centre), 0.5);
+    // From the nearest edge of the own cell to the near and the far edge of the leaf.
+    let near = max(away - 1.0, vec2<f32>(0.0)) * direction;
+    let far = away * direction;
+    // Corners by sign: what lies on the near side depends on where the leaf is.
+    let x = select(vec2<f32>(near.x, far.x), vec2<f32>(far.x, near.x), offset.x < 0);
+    let y = select(vec2<f32>(near.y, far.y), vec2<f32>(far.y, near.y), offset.y < 0);
+    let distances = vec4<f32>(x.x + y.x, x.y + y.x, x.x + y.y, x.y + y.y);
+    let rises = corners - own;
+    let radii = distances / max(rises, vec4<f32>(1e-9));
+    let allowed = select(vec4<f32>(1e9), radii, rises > vec4<f32>(0.0));
+    return min(min(allowed.x, allowed.y), min(allowed.z, allowed.w));
+}
+
+// Whether the surface rises all along a leaf on every way from the own cell: no ray leaves it there.
+fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
+    let along_x = vec2<f32>(corners.y - corners.x, corners.w - corners.z);
+    let along_y = vec2<f32>(corners.z - corners.x, corners.w - corners.y);
+    // Ways lie within one cell of the offset; the least of a bilinear form is at a corner.
+    let low = vec2<f32>(offset - 1);
+    let high = vec2<f32>(offset + 1);
+    let x = min(min(along_x.x * low.x, along_x.x * high.x), min(along_x.y * low.x, along_x.y * high.x));
+    let y = min(min(along_y.x * low.y, along_y.x * high.y), min(along_y.y * low.y, along_y.y * high.y));
+    return x + y >= 0.0;
+}
+
+// Narrows `radius` by the nodes of one image of the tile; `cell` is counted from that image.
+fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
+    let cells = vec2<i32>(params.cells);
+    let top = surface_levels(params.cells) - 1u;
+    var narrowest = radius;
+    var level = top;
+    var node = vec2<i32>(0);
+    // Which child of its parent the node is, in the order of the search: two bits a level.
+    var orders = 0u;
+    for (var visit = 0u; visit < MOST_VISITS; visit++) {
+        let low = node << vec2<u32>(level);
+        var open = false;
+        if all(low < cells) {
+            let high = min(low + (vec2<i32>(1) << vec2<u32>(level)), cells);
+            let gap = vec2<f32>(max(max(low - cell - 1, cell - high), vec2<i32>(0)));
+            let rise = highest(map, level, node) - own;
+            let distance = length(gap);
+            if rise > 0.0 && distance < narrowest * rise {
+                if level == 0u {
+                    let corners = vec4<f32>(
+                        texel(map, node), texel(map, node + vec2<i32>(1, 0)),
+                        texel(map, node + vec2<i32>(0, 1)), texel(map, node + vec2<i32>(1, 1)));
+                    let offset = node - cell;
+                    if !rises(corners, offset) {
+                        narrowest = min(narrowest, leaf_radius(corners, offset, own));
+                    }
+                } else if distance >= OPENING * f32(1u << level) {
+                    narrowest = distance / rise;
+                } else {
+                    open = true;
+                }
+            }
+        }
+        if open {
+            level -= 1u;
+            orders = orders & ~(3u << (2u * level));
+            node = nearest_child(node, cell, level);
+            continue;
+        }
+        // The next child of the parent, or of its parent, and so on.
+        while level < top && ((orders >> (2u * level)) & 3u) == 3u {
+            node = node >> vec2<u32>(1u);
+            level += 1u;
+        }
+        if level >= top {
+            break;
+        }
+        let order = ((orders >> (2u * level)) & 3u) + 1u;
+        orders = (orders & ~(3u << (2u * level))) | (order << (2u * level));
+        let first = nearest_child(node >> vec2<u32>(1u), cell, level);
+        node = first ^ vec2<i32>(vec2<u32>(order & 1u, order >> 1u));
+    }
+    return narrowest;
+}
+
+// The child, at `level`, of `parent` that is nearest to a cell.
+fn nearest_child(parent: vec2<i32>, cell: vec2<i32>, level: u32) -> vec2<i32> {
+    let middle = (2 * parent + 1) << vec2<u32>(level);
+    return 2 * parent + select(vec2<i32>(0), vec2<i32>(1), cell >= middle);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= params.cells) {
+        return;
+    }
+    let cell = vec2<i32>(id.xy);
+    let own = highest(id.z, 0u, cell);
+    // Wider would reach images of the tile that are not searched.
+    var radius = f32(min(params.cells.x, params.cells.y));
+    let images = select(1u, 9u, params.address == SURFACE_WRAP);
+    for (var image = 0u; image < images; image++) {
+        // The tile itself comes first.
+        let number = vec2<i32>(i32((image + 4u) % 9u));
+        let offset = vec2<i32>(number.x % 3 - 1, number.y / 3 - 1) * vec2<i32>(params.cells);
+        radius = narrowed(id.z, cell - offset, own, radius);
+    }
+    // Less than what rounding adds to the quotients above.
+    let cone = vec2<f32>(own, radius * (1.0 - 1e-6));
+    cones[(id.z * params.cells.y + id.y) * params.cone_pitch + id.x] = cone;
+}

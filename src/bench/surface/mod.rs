@@ -1,0 +1,5 @@
+//! Benchmarks of `kernels/surface/`.
+
+pub mod cone_map;
+pub mod height_pyramid;
+pub mod relief;

@@ -1,0 +1,44 @@
+//! Twin of `wgsl/surface/cone.wgsl`.
+
+use super::grid::Grid;
+use super::linear::narrowed;
+use crate::surface::map::HeightMap;
+use crate::surface::relief::{Hit, March, Outcome, Ray};
+
+/// Cone stepping over the map's cones (highest corner and radius, row by row of cells), which were made for the
+/// march's address mode.
+pub fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hit {
+    let grid = Grid::new(map, ray, march.address);
+    let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();
+    let (mut cell, mut parameter, mut above, mut samples) = ([0, 0], 0.0, 0.0, 0);
+    for _ in 0..grid.bound(0) {
+        let node = grid.node(cell, 0);
+        let exits = grid.exits(&node);
+        let leave = exits[0].min(exits[1]).clamp(parameter, 1.0);
+        let [highest, radius] = cones[(node.index[1] * grid.cells[0] + node.index[0]) as usize];
+        samples += 1;
+        let room = 1.0 - parameter - highest;
+        if 1.0 - leave > highest {
+            above = parameter;
+            let reach = parameter + radius * room / (distance + radius);
+            if reach > leave {
+                parameter = reach.min(1.0);
+                cell = grid.at(parameter);
+                continue;
+            }
+        } else {
+            samples += 4;
+            let found = grid.patch(grid.corners(map, node.index), node.corner(), parameter, leave);
+            if found > parameter || (found == parameter && above == parameter) {
+                return Hit::of(ray, found, samples, Outcome::Hit);
+            }
+            if found >= 0.0 {
+                return narrowed(map, ray, march, [above, parameter], samples);
+            }
+            above = parameter;
+        }
+        cell = grid.beyond(&node, exits, leave);
+        parameter = leave;
+    }
+    Hit::of(ray, parameter, samples, Outcome::Exhausted)
+}

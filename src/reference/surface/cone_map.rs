@@ -1,0 +1,125 @@
+//! Twin of `kernels/surface/cone_map.wgsl`.
+
+use rayon::prelude::*;
+
+use crate::surface::cone_map::OPENING;
+use crate::surface::height_pyramid::PyramidLayout;
+use crate::surface::map::{Address, HeightMap};
+
+/// Highest corner and cone radius of every cell, row by row, from the map's pyramid.
+pub fn cone_map(map: &HeightMap, pyramid: &[f32], address: Address) -> Vec<[f32; 2]> {
+    let layout = PyramidLayout::new([map.width(), map.height()], address);
+    let [columns, rows] = layout.cells;
+    let search = Search { map, pyramid, layout, address };
+    let cells = (0..columns * rows).into_par_iter();
+    cells.map(|cell| search.cone([(cell % columns) as i32, (cell / columns) as i32])).collect()
+}
+
+struct Search<'a> {
+    map: &'a HeightMap,
+    pyramid: &'a [f32],
+    layout: PyramidLayout,
+    address: Address,
+}
+
+impl Search<'_> {
+    fn cone(&self, cell: [i32; 2]) -> [f32; 2] {
+        let cells = self.layout.cells.map(|edge| edge as i32);
+        let own = self.highest(0, cell);
+        let mut radius = cells[0].min(cells[1]) as f32;
+        let images = if self.address == Address::Wrap { 9 } else { 1 };
+        for image in 0..images {
+            let number = (image + 4) % 9;
+            let offset = [(number % 3 - 1) * cells[0], (number / 3 - 1) * cells[1]];
+            radius = self.narrowed([cell[0] - offset[0], cell[1] - offset[1]], own, radius);
+        }
+        [own, radius * (1.0 - 1e-6)]
+    }
+
+    fn highest(&self, level: u32, node: [i32; 2]) -> f32 {
+        self.pyramid[self.layout.index(level, node.map(|at| at as u32))]
+    }
+
+    fn corners(&self, node: [i32; 2]) -> [f32; 4] {
+        let first = if self.address == Address::Wrap { node } else { node.map(|at| at - 1) };
+        [[0, 0], [1, 0], [0, 1], [1, 1]]
+            .map(|[dx, dy]| self.map.texel(first[0] + dx, first[1] + dy, self.address))
+    }
+
+    /// Narrows `radius` by the nodes of one image of the tile; `cell` is counted from that image.
+    fn narrowed(&self, cell: [i32; 2], own: f32, radius: f32) -> f32 {
+        let cells = self.layout.cells.map(|edge| edge as i32);
+        let top = self.layout.levels - 1;
+        let (mut narrowest, mut level, mut node, mut orders) = (radius, top, [0, 0], 0_u32);
+        loop {
+            let low = node.map(|at| at << level);
+            let mut open = false;
+            if low[0] < cells[0] && low[1] < cells[1] {
+                let gap = [0, 1].map(|i| {
+                    let high = (low[i] + (1 << level)).min(cells[i]);
+                    (low[i] - cell[i] - 1).max(cell[i] - high).max(0) as f32
+                });
+                let rise = self.highest(level, node) - own;
+                let distance = (gap[0] * gap[0] + gap[1] * gap[1]).sqrt();
+                if rise > 0.0 && distance < narrowest * rise {
+                    if level == 0 {
+                        let corners = self.corners(node);
+                        let offset = [node[0] - cell[0], node[1] - cell[1]];
+                        if !rises(corners, offset) {
+                            narrowest = narrowest.min(leaf_radius(corners, offset, own));
+                        }
+                    } else if distance >= OPENING * (1 << level) as f32 {
+                        narrowest = distance / rise;
+                    } else {
+                        open = true;
+                    }
+                }
+            }
+            if open {
+                level -= 1;
+                orders &= !(3 << (2 * level));
+                node = nearest_child(node, cell, level);
+                continue;
+            }
+            while level < top && (orders >> (2 * level)) & 3 == 3 {
+                node = node.map(|at| at >> 1);
+                level += 1;
+            }
+            if level >= top {
+                return narrowest;
+            }
+            let order = ((orders >> (2 * level)) & 3) + 1;
+            orders = (orders & !(3 << (2 * level))) | (order << (2 * level));
+            let first = nearest_child(node.map(|at| at >> 1), cell, level);
+            node = [first[0] ^ (order & 1) as i32, first[1] ^ (order >> 1) as i32];
+        }
+    }
+}
+
+fn nearest_child(parent: [i32; 2], cell: [i32; 2], level: u32) -> [i32; 2] {
+    [0, 1].map(|i| 2 * parent[i] + i32::from(cell[i] >= (2 * parent[i] + 1) << level))
+}
+
+fn leaf_radius(corners: [f32; 4], offset: [i32; 2], own: f32) -> f32 {
+    let away = offset.map(|at| at.abs() as f32);
+    let centre = away.map(|away| (away - 0.5).max(0.0));
+    let length = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt().max(0.5);
+    // Distances of the low and the high edge of the leaf, along the line to its centre.
+    let edges = |i: usize| {
+        let direction = centre[i] / length;
+        let (near, far) = ((away[i] - 1.0).max(0.0) * direction, away[i] * direction);
+        if offset[i] < 0 { [far, near] } else { [near, far] }
+    };
+    let (x, y) = (edges(0), edges(1));
+    let distances = [x[0] + y[0], x[1] + y[0], x[0] + y[1], x[1] + y[1]];
+    let radii = corners.into_iter().zip(distances).filter(|(height, _)| height - own > 0.0);
+    radii.map(|(height, distance)| distance / (height - own).max(1e-9)).fold(1e9, f32::min)
+}
+
+fn rises([h00, h10, h01, h11]: [f32; 4], offset: [i32; 2]) -> bool {
+    let least = |slopes: [f32; 2], offset: i32| {
+        let [low, high] = [(offset - 1) as f32, (offset + 1) as f32];
+        slopes.map(|slope| (slope * low).min(slope * high)).into_iter().fold(f32::INFINITY, f32::min)
+    };
+    least([h10 - h00, h11 - h01], offset[0]) + least([h01 - h00, h11 - h10], offset[1]) >= 0.0
+}

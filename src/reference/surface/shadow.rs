@@ -1,0 +1,46 @@
+//! Twin of `wgsl/surface/shadow.wgsl`.
+
+use super::height::height;
+use crate::surface::map::HeightMap;
+use crate::surface::relief::{Hit, LEAST_COSINE, MOST_STEPS, March, Ray};
+
+/// The light's ray that ends in a point of the surface. `light` is the unit vector towards it in tangent space.
+pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
+    let steepness = -scale / light[2].max(LEAST_COSINE);
+    let slope = [light[0] * steepness, light[1] * steepness];
+    let rise = 1.0 - hit.height;
+    let origin = [hit.uv[0] - rise * slope[0], hit.uv[1] - rise * slope[1]];
+    Ray { origin, slope, cosine: light[2], polygon: 0.0 }
+}
+
+/// Whether the light's ray ended above the point that it was sent to.
+pub fn shaded(first: &Hit, hit: &Hit, bias: f32) -> bool {
+    first.parameter < 1.0 - hit.height - bias
+}
+
+/// 0 in full shadow to 1 in full light.
+pub fn soft_shadow(
+    map: &HeightMap,
+    hit: &Hit,
+    light: [f32; 3],
+    scale: f32,
+    march: &March,
+    steps: u32,
+    softness: f32,
+) -> f32 {
+    if light[2] <= 0.0 {
+        return 0.0;
+    }
+    let ray = light_ray(hit, light, scale);
+    let rise = 1.0 - hit.height;
+    let count = steps.clamp(1, MOST_STEPS);
+    let mut shade = 0.0;
+    for step in 1..=count {
+        let share = step as f32 / (count + 1) as f32;
+        let travelled = share * share;
+        let parameter = rise * (1.0 - travelled);
+        let excess = height(map, ray.at(parameter), march.address) - (1.0 - parameter);
+        shade = f32::max(shade, excess / (softness * (travelled * rise + 1e-3)));
+    }
+    1.0 - shade.min(1.0)
+}

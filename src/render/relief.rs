@@ -1,0 +1,260 @@
+//! Draws meshes with relief into the caller's render pass.
+
+use encase::ShaderType;
+use glam::{Mat4, Vec4};
+
+use crate::gpu::{Gpu, GpuError, Group, Uniform, bind, layouts, module, pipeline_layout, shaders};
+use crate::render::color::ColorTexture;
+use crate::render::target::DEPTH_FORMAT;
+use crate::surface::material::{Material, Shadow};
+use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
+use crate::surface::relief::{March, Method, SurfaceMarch};
+use crate::surface::texture::SurfaceTextures;
+use crate::{Error, InputError};
+
+/// `ReliefView` of the shader.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct ReliefView {
+    pub clip_from_world: Mat4,
+    pub eye: Vec4,
+    pub light: Vec4,
+    pub range: Vec4,
+    pub scale: f32,
+    pub plane: f32,
+    pub world: f32,
+    pub shadow_steps: u32,
+    pub softness: f32,
+}
+
+/// What a pipeline draws: fixed when it is compiled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ReliefOptions {
+    /// How the surface is found.
+    pub method: Method,
+    /// Self-shadow.
+    pub shadow: Shadow,
+    /// Normals from a normal map rather than from the heights.
+    pub normal_map: bool,
+    /// Discards what leaves the mesh's range of uv.
+    pub silhouette: bool,
+    /// Writes the relief's own depth rather than the polygon's. Costs early depth tests.
+    pub depth: bool,
+    /// Chooses the heights' mip level from the size of a pixel. Acceleration maps belong to level 0: `cone` and
+    /// `quadtree` march there whatever this says.
+    pub mip: bool,
+}
+
+/// The pipeline.
+#[derive(Debug, Clone)]
+pub struct ReliefRenderer {
+    pipeline: wgpu::RenderPipeline,
+    layouts: Vec<wgpu::BindGroupLayout>,
+    options: ReliefOptions,
+}
+
+/// Where a relief is seen from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReliefCamera {
+    /// From world to clip space, depth 0 to 1.
+    pub clip_from_world: Mat4,
+    /// The eye with w = 1, or the direction towards it with w = 0 for a parallel projection.
+    pub eye: Vec4,
+}
+
+/// The maps of a material.
+#[derive(Debug, Clone, Copy)]
+pub struct ReliefMaps<'a> {
+    /// Heights and their acceleration.
+    pub textures: &'a SurfaceTextures,
+    /// Colour, sRGB.
+    pub albedo: &'a ColorTexture,
+    /// Tangent-space normals, where [`ReliefOptions::normal_map`] says so; else ignored.
+    pub normals: Option<&'a ColorTexture>,
+}
+
+const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2];
+
+impl ReliefRenderer {
+    /// Compiles the pipeline for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, options: ReliefOptions) -> Result<Self, GpuError> {
+        let shader = &shaders::RENDER_RELIEF;
+        let layouts = layouts(gpu, shader)?;
+        let accelerated = matches!(options.method, Method::Cone | Method::Quadtree);
+        let flag = |on: bool| f64::from(u8::from(on));
+        let constants = [
+            ("METHOD", f64::from(options.method.code())),
+            ("SHADOW", f64::from(options.shadow as u32)),
+            ("NORMAL_MAP", flag(options.normal_map)),
+            ("SILHOUETTE", flag(options.silhouette)),
+            ("CHOOSE_MIP", flag(options.mip && !accelerated)),
+        ];
+        let compilation = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let pipeline = gpu.scoped(|| {
+            let module = module(gpu, shader);
+            gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(shader.name),
+                layout: Some(&pipeline_layout(gpu, shader, &layouts)),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: compilation(),
+                    buffers: &[Some(wgpu::VertexBufferLayout {
+                        array_stride: size_of::<SurfaceVertex>() as u64,
+                        step_mode: wgpu::VertexStepMode::Vertex,
+                        attributes: &ATTRIBUTES,
+                    })],
+                },
+                primitive: Default::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Less),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(if options.depth { "fragment_depth" } else { "fragment" }),
+                    compilation_options: compilation(),
+                    targets: &[Some(color.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        })?;
+        Ok(Self { pipeline, layouts, options })
+    }
+
+    /// Uploads a mesh and binds its material. `world` is the size of a uv unit in world units.
+    ///
+    /// # Errors
+    /// [`InputError`] for what does not fit together; [`GpuError`].
+    pub fn scene(
+        &self,
+        gpu: &Gpu,
+        mesh: &SurfaceMesh,
+        maps: ReliefMaps<'_>,
+        material: &Material,
+        march: &March,
+        world: f32,
+    ) -> Result<ReliefScene, Error> {
+        mesh.validate()?;
+        material.validate()?;
+        march.validate()?;
+        maps.textures.check(self.options.method, march)?;
+        if self.options.shadow != material.shadow || self.options.silhouette != material.silhouette {
+            let value = format!("{} and {}", material.shadow.name(), material.silhouette);
+            return Err(InputError::new(
+                "material.shadow, silhouette",
+                value,
+                "must be what the pipeline was compiled for",
+            )
+            .into());
+        }
+        let light = glam::Vec3::from(material.light).extend(material.ambient);
+        let view = ReliefView {
+            clip_from_world: Mat4::IDENTITY,
+            eye: Vec4::W,
+            light,
+            range: uv_range(mesh),
+            scale: material.scale,
+            plane: material.plane,
+            world,
+            shadow_steps: material.shadow_steps,
+            softness: material.softness,
+        };
+        let uniform = Uniform::new(gpu, "relief view", &view)?;
+        let group = self.bind(gpu, maps, march, &uniform)?;
+        let vertices = upload(gpu, bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX)?;
+        let indices = upload(gpu, bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX)?;
+        let count = mesh.indices.len() as u32;
+        Ok(ReliefScene { pipeline: self.pipeline.clone(), view, uniform, group, vertices, indices, count })
+    }
+
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        maps: ReliefMaps<'_>,
+        march: &March,
+        uniform: &Uniform<ReliefView>,
+    ) -> Result<Group, GpuError> {
+        let settings = Uniform::new(gpu, "march", &SurfaceMarch::from(*march))?;
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let textures = [
+            view(&maps.textures.heights),
+            view(&maps.textures.acceleration),
+            view(&maps.albedo.texture),
+            view(&maps.normals.unwrap_or(maps.albedo).texture),
+        ];
+        let mut resources = vec![uniform.raw().as_entire_binding(), settings.raw().as_entire_binding()];
+        resources.extend(textures.iter().map(wgpu::BindingResource::TextureView));
+        resources.push(wgpu::BindingResource::Sampler(&maps.albedo.sampler));
+        bind(gpu, &shaders::RENDER_RELIEF, &self.layouts, 0, &resources)
+    }
+}
+
+fn uv_range(mesh: &SurfaceMesh) -> Vec4 {
+    let all = mesh.vertices.iter().map(|vertex| glam::Vec2::from(vertex.uv));
+    let (low, high) =
+        all.fold((glam::Vec2::MAX, glam::Vec2::MIN), |(low, high), uv| (low.min(uv), high.max(uv)));
+    Vec4::new(low.x, low.y, high.x, high.y)
+}
+
+fn upload(gpu: &Gpu, bytes: &[u8], usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, GpuError> {
+    let buffer = gpu.scoped(|| {
+        gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("relief mesh"),
+            size: (bytes.len() as u64).max(4),
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    })?;
+    gpu.scoped(|| gpu.queue().write_buffer(&buffer, 0, bytes))?;
+    Ok(buffer)
+}
+
+/// A mesh with relief: set the camera, then draw in any render pass.
+#[derive(Debug, Clone)]
+pub struct ReliefScene {
+    pipeline: wgpu::RenderPipeline,
+    view: ReliefView,
+    uniform: Uniform<ReliefView>,
+    group: Group,
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+}
+
+impl ReliefScene {
+    /// Chooses the camera of the next submission.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn set_camera(&mut self, gpu: &Gpu, camera: ReliefCamera) -> Result<(), GpuError> {
+        self.view.clip_from_world = camera.clip_from_world;
+        self.view.eye = camera.eye;
+        self.uniform.write(gpu, &self.view)
+    }
+
+    /// Draws the mesh.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.count, 0, 0..1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(relief_view_layout: ReliefView = RENDER_RELIEF "ReliefView");
+}

@@ -1,0 +1,21 @@
+//! Cone maps: for each bilinear cell of a height map its highest corner, and the widest upright cone on it that a
+//! ray crosses with at most one crossing of the surface, the first. What `cone` steps over.
+//!
+//! Relaxed cones (Policarpo and Oliveira 2007) made safe under bilinear filtering, in the spirit of Bán and
+//! Valasek (2024): bounds hold for every point of both cells, not for texel centres alone.
+
+#[cfg(feature = "gpu")]
+mod pass;
+
+#[cfg(feature = "gpu")]
+pub use pass::{ConeMapPass, Cones};
+
+/// Distance over size from which a node counts whole. Larger is tighter and slower.
+pub const OPENING: f32 = 4.0;
+
+/// How far a radius may lie from the twin's, relative to it, on any device.
+///
+/// A radius is a quotient (2.5 ULP) of a distance (a square root of exact integers, 1.5 ULP, or a sum of two
+/// products of them: 3 ULP) and a difference of heights (1 ULP), less a millionth (1 ULP): 8 ULP < 1e-6. Which
+/// nodes are skipped depends on comparisons of the same quantities, and changes the least by as much again.
+pub const RADIUS_BOUND: f32 = 2e-6;

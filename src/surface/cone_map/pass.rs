@@ -1,0 +1,113 @@
+//! `kernels/surface/cone_map.wgsl`.
+
+use encase::ShaderType;
+use glam::UVec2;
+
+use super::OPENING;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::surface::height_pyramid::Pyramids;
+use crate::surface::texture::HeightBatch;
+use crate::{Error, InputError};
+
+/// `ConeParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct ConeParams {
+    pub size: UVec2,
+    pub cells: UVec2,
+    pub pitch: u32,
+    pub rows: u32,
+    pub cone_pitch: u32,
+    pub address: u32,
+}
+
+/// Cone maps of a batch, one after another.
+#[derive(Debug, Clone)]
+pub struct Cones {
+    /// Highest corner and radius of each cell, rows of `pitch`.
+    pub cones: Buffer<[f32; 2]>,
+    /// Cells along x and y.
+    pub cells: [u32; 2],
+    /// Cones a row: padded, so that rows can be copied to a texture.
+    pub pitch: u32,
+    /// How many maps.
+    pub count: u32,
+}
+
+/// Makes cone maps.
+#[derive(Debug, Clone)]
+pub struct ConeMapPass {
+    kernel: Kernel,
+}
+
+impl ConeMapPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let overrides = [("OPENING", OPENING.into())];
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::SURFACE_CONE_MAP, &overrides)? })
+    }
+
+    /// Room for the cone maps of a batch with these pyramids.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn output(&self, gpu: &Gpu, pyramids: &Pyramids) -> Result<Cones, GpuError> {
+        let cells = pyramids.layout.cells;
+        // A texture's rows start at multiples of 256 bytes.
+        let pitch = cells[0].next_multiple_of(32);
+        let cones = Buffer::new(gpu, "cones", (pitch * cells[1]) as usize * pyramids.count as usize)?;
+        Ok(Cones { cones, cells, pitch, count: pyramids.count })
+    }
+
+    /// Prepares the cone maps of a batch from its pyramids, in their address mode.
+    ///
+    /// # Errors
+    /// [`InputError`] when pyramids or cones are not those of the batch; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        maps: &HeightBatch,
+        pyramids: &Pyramids,
+        cones: &Cones,
+    ) -> Result<Job, Error> {
+        pyramids.check(maps)?;
+        let layout = pyramids.layout;
+        if cones.cells != layout.cells || cones.count != maps.count {
+            let value = format!("{:?} × {}", cones.cells, cones.count);
+            let bound = format!("must be {:?} × {} as the pyramids", layout.cells, maps.count);
+            return Err(InputError::new("cones", value, bound).into());
+        }
+        let params = ConeParams {
+            size: UVec2::from(layout.size),
+            cells: UVec2::from(layout.cells),
+            pitch: layout.pitch,
+            rows: layout.rows,
+            cone_pitch: cones.pitch,
+            address: pyramids.address.code(),
+        };
+        let uniform = Uniform::new(gpu, "cones", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            maps.heights.raw().as_entire_binding(),
+            pyramids.nodes.raw().as_entire_binding(),
+            cones.cones.raw().as_entire_binding(),
+        ];
+        let [x, y] = layout.cells.map(|cells| cells.div_ceil(8));
+        let step = Step {
+            kernel: self.kernel.clone(),
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: [x, y, maps.count],
+        };
+        Ok(Job::new(gpu, "surface/cone_map", vec![step])?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(cone_params_layout: ConeParams = SURFACE_CONE_MAP "ConeParams");
+}

@@ -1,0 +1,134 @@
+//! `kernels/surface/height_pyramid.wgsl`.
+
+use encase::ShaderType;
+use glam::UVec2;
+
+use super::PyramidLayout;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::surface::map::Address;
+use crate::surface::texture::HeightBatch;
+use crate::{Error, InputError};
+
+/// `PyramidParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct PyramidParams {
+    pub size: UVec2,
+    pub cells: UVec2,
+    pub pitch: u32,
+    pub rows: u32,
+    pub address: u32,
+    pub levels: u32,
+    pub level: u32,
+}
+
+/// Pyramids of a batch of height maps, one after another.
+#[derive(Debug, Clone)]
+pub struct Pyramids {
+    /// Nodes: [`PyramidLayout::index`] within each pyramid of [`PyramidLayout::len`].
+    pub nodes: Buffer<f32>,
+    /// Where each keeps its nodes.
+    pub layout: PyramidLayout,
+    /// The address mode of the maps.
+    pub address: Address,
+    /// How many.
+    pub count: u32,
+}
+
+impl Pyramids {
+    /// Room for the pyramids of a batch.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, maps: &HeightBatch, address: Address) -> Result<Self, GpuError> {
+        let layout = PyramidLayout::new(maps.size, address);
+        let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize)?;
+        Ok(Self { nodes, layout, address, count: maps.count })
+    }
+
+    /// Refuses pyramids that are not those of a batch.
+    pub(crate) fn check(&self, maps: &HeightBatch) -> Result<(), InputError> {
+        if self.layout.size != maps.size || self.count != maps.count {
+            let value = format!("{:?} × {}", self.layout.size, self.count);
+            let bound = format!("must be {:?} × {} as the height maps", maps.size, maps.count);
+            return Err(InputError::new("pyramids", value, bound));
+        }
+        Ok(())
+    }
+}
+
+/// Makes pyramids, two or three levels a dispatch.
+#[derive(Debug, Clone)]
+pub struct HeightPyramidPass {
+    leaves: Kernel,
+    nodes: Kernel,
+}
+
+impl HeightPyramidPass {
+    /// Compiles the pipelines.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let shader = &shaders::SURFACE_HEIGHT_PYRAMID;
+        Ok(Self {
+            leaves: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 1.0)])?,
+            nodes: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 0.0)])?,
+        })
+    }
+
+    /// Prepares the pyramids of a batch.
+    ///
+    /// # Errors
+    /// [`InputError`] when they are not those of the batch; [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, maps: &HeightBatch, pyramids: &Pyramids) -> Result<Job, Error> {
+        pyramids.check(maps)?;
+        let layout = pyramids.layout;
+        let mut steps = vec![self.step(gpu, &self.leaves, maps, pyramids, 0)?];
+        let mut level = 2;
+        while level + 1 < layout.levels {
+            steps.push(self.step(gpu, &self.nodes, maps, pyramids, level)?);
+            level += 2;
+        }
+        Ok(Job::new(gpu, "surface/height_pyramid", steps)?)
+    }
+
+    fn step(
+        &self,
+        gpu: &Gpu,
+        kernel: &Kernel,
+        maps: &HeightBatch,
+        pyramids: &Pyramids,
+        level: u32,
+    ) -> Result<Step, GpuError> {
+        let layout = pyramids.layout;
+        let params = PyramidParams {
+            size: UVec2::from(layout.size),
+            cells: UVec2::from(layout.cells),
+            pitch: layout.pitch,
+            rows: layout.rows,
+            address: pyramids.address.code(),
+            levels: layout.levels,
+            level,
+        };
+        let uniform = Uniform::new(gpu, "pyramid", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            maps.heights.raw().as_entire_binding(),
+            pyramids.nodes.raw().as_entire_binding(),
+        ];
+        let [x, y] = layout.nodes(level + 2).map(|nodes| nodes.div_ceil(8));
+        Ok(Step {
+            kernel: kernel.clone(),
+            groups: vec![kernel.bind(gpu, 0, &resources)?],
+            workgroups: [x, y, maps.count],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(pyramid_params_layout: PyramidParams = SURFACE_HEIGHT_PYRAMID "PyramidParams");
+}

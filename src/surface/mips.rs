@@ -1,0 +1,58 @@
+//! Mip levels of colour and normal images.
+
+use image::RgbaImage;
+
+use crate::reference::terrain::blend::{linear, srgb_byte};
+
+/// An image with all its mip levels, each texel the mean of those it covers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mips {
+    /// The image first, a single texel last.
+    pub levels: Vec<RgbaImage>,
+    /// Whether red, green and blue are sRGB, and were averaged as light.
+    pub is_srgb: bool,
+}
+
+impl Mips {
+    /// The levels of an sRGB image.
+    pub fn of_color(image: RgbaImage) -> Self {
+        Self::new(image, true)
+    }
+
+    /// The levels of an image that holds no colours.
+    pub fn of_data(image: RgbaImage) -> Self {
+        Self::new(image, false)
+    }
+
+    fn new(image: RgbaImage, is_srgb: bool) -> Self {
+        let light: Vec<f32> = (0..=255).map(linear).collect();
+        let mut levels = vec![image];
+        while let Some(next) = levels.last().and_then(|level| halved(level, is_srgb, &light)) {
+            levels.push(next);
+        }
+        Self { levels, is_srgb }
+    }
+}
+
+/// The next level, or none for a single texel.
+fn halved(image: &RgbaImage, is_srgb: bool, light: &[f32]) -> Option<RgbaImage> {
+    let (width, height) = image.dimensions();
+    if width * height <= 1 {
+        return None;
+    }
+    let mean = |x: u32, y: u32| {
+        let at =
+            |dx: u32, dy: u32| image.get_pixel((2 * x + dx).min(width - 1), (2 * y + dy).min(height - 1));
+        let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+        let channel = |channel: usize| {
+            if is_srgb && channel < 3 {
+                let sum: f32 = four.iter().map(|texel| light[usize::from(texel.0[channel])]).sum();
+                return srgb_byte(sum / 4.0);
+            }
+            let sum: u32 = four.iter().map(|texel| u32::from(texel.0[channel])).sum();
+            ((sum + 2) / 4) as u8
+        };
+        image::Rgba(std::array::from_fn(channel))
+    };
+    Some(RgbaImage::from_fn((width / 2).max(1), (height / 2).max(1), mean))
+}

@@ -1,0 +1,176 @@
+//! Height maps on the device: batches in buffers, which kernels read, and textures, which shaders march over.
+
+use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::surface::cone_map::ConeMapPass;
+use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
+use crate::surface::map::{Address, HeightMap};
+use crate::surface::relief::{March, Method};
+use crate::{Error, InputError};
+
+/// Height maps of one size, one after another.
+#[derive(Debug, Clone)]
+pub struct HeightBatch {
+    /// Heights, row by row, map by map.
+    pub heights: Buffer<f32>,
+    /// Texels of each along x and y.
+    pub size: [u32; 2],
+    /// How many.
+    pub count: u32,
+}
+
+impl HeightBatch {
+    /// Uploads maps of one size.
+    ///
+    /// # Errors
+    /// [`InputError`] for none or different sizes; [`GpuError`].
+    pub fn new(gpu: &Gpu, maps: &[HeightMap]) -> Result<Self, Error> {
+        let size_of = |map: &HeightMap| [map.width(), map.height()];
+        let Some(size) = maps.first().map(size_of) else {
+            return Err(InputError::new("maps.len", 0, "must be at least 1").into());
+        };
+        if let Some(at) = maps.iter().position(|map| size_of(map) != size) {
+            let bound = format!("must be {size:?} texels as the first");
+            return Err(InputError::new(
+                format!("maps[{at}].size"),
+                format!("{:?}", size_of(&maps[at])),
+                bound,
+            )
+            .into());
+        }
+        let texels: usize = size.iter().map(|edge| *edge as usize).product();
+        let heights = Buffer::new(gpu, "height maps", texels * maps.len())?;
+        let all: Vec<f32> = maps.iter().flat_map(HeightMap::heights).copied().collect();
+        heights.write(gpu, &all)?;
+        Ok(Self { heights, size, count: maps.len() as u32 })
+    }
+}
+
+/// What a method marches over: the height map, and its acceleration map.
+#[derive(Debug, Clone)]
+pub struct SurfaceTextures {
+    /// Heights in red, `R32Float`, with all mip levels.
+    pub heights: wgpu::Texture,
+    /// The pyramid (`R32Float`), the cones (`Rg32Float`), or a single texel for methods that need neither.
+    pub acceleration: wgpu::Texture,
+    /// The method that they serve.
+    pub method: Method,
+    /// The address mode that the acceleration map was made for.
+    pub address: Address,
+}
+
+impl SurfaceTextures {
+    /// Uploads the heights, and makes the acceleration map of `method` on the device. Waits for it: this is set-up.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> Result<Self, Error> {
+        let heights = upload(gpu, map)?;
+        let acceleration = match method {
+            Method::Quadtree | Method::Cone => accelerated(gpu, map, method, address)?,
+            _ => texture(gpu, "no acceleration", [1, 1], 1, wgpu::TextureFormat::R32Float)?,
+        };
+        Ok(Self { heights, acceleration, method, address })
+    }
+
+    /// Refuses a method or an address mode that they were not made for.
+    pub(crate) fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
+        if self.method != method {
+            let bound = format!("must be {}, which its maps were made for", self.method.name());
+            return Err(InputError::new("method", method.name(), bound));
+        }
+        if self.address != march.address {
+            let bound = format!("must be {}, which its maps were made for", self.address.name());
+            return Err(InputError::new("march.address", march.address.name(), bound));
+        }
+        Ok(())
+    }
+}
+
+fn accelerated(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> Result<wgpu::Texture, Error> {
+    let batch = HeightBatch::new(gpu, std::slice::from_ref(map))?;
+    let pyramids = Pyramids::new(gpu, &batch, address)?;
+    let pyramid_job = HeightPyramidPass::new(gpu)?.prepare(gpu, &batch, &pyramids)?;
+    let layout = pyramids.layout;
+    if method == Method::Quadtree {
+        let size = [layout.pitch, layout.rows];
+        let plane = texture(gpu, "pyramid", size, 1, wgpu::TextureFormat::R32Float)?;
+        gpu.run("pyramid", |encoder| {
+            pyramid_job.record(encoder);
+            copy(encoder, pyramids.nodes.raw(), &plane, 4 * layout.pitch);
+        })?;
+        return Ok(plane);
+    }
+    let pass = ConeMapPass::new(gpu)?;
+    let cones = pass.output(gpu, &pyramids)?;
+    let cone_job = pass.prepare(gpu, &batch, &pyramids, &cones)?;
+    let plane = texture(gpu, "cones", layout.cells, 1, wgpu::TextureFormat::Rg32Float)?;
+    gpu.run("cones", |encoder| {
+        pyramid_job.record(encoder);
+        cone_job.record(encoder);
+        copy(encoder, cones.cones.raw(), &plane, 8 * cones.pitch);
+    })?;
+    Ok(plane)
+}
+
+fn texture(
+    gpu: &Gpu,
+    label: &'static str,
+    size: [u32; 2],
+    levels: u32,
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::Texture, GpuError> {
+    let available = gpu.device().limits().max_texture_dimension_2d;
+    if size.iter().any(|edge| *edge > available) {
+        return Err(GpuError::Limit {
+            pass: label,
+            limit: "maxTextureDimension2D",
+            needed: size[0].max(size[1]).into(),
+            available: available.into(),
+            remedy: "use a smaller height map",
+        });
+    }
+    gpu.scoped(|| {
+        gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: levels,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        })
+    })
+}
+
+/// Copies the first map of a buffer, whose rows start at multiples of 256 bytes.
+fn copy(encoder: &mut wgpu::CommandEncoder, from: &wgpu::Buffer, to: &wgpu::Texture, pitch: u32) {
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
+    let from = wgpu::TexelCopyBufferInfo { buffer: from, layout };
+    encoder.copy_buffer_to_texture(from, to.as_image_copy(), to.size());
+}
+
+/// The heights with all mip levels, each the mean of the four texels below it.
+fn upload(gpu: &Gpu, map: &HeightMap) -> Result<wgpu::Texture, GpuError> {
+    let levels = map.width().max(map.height()).ilog2() + 1;
+    let size = [map.width(), map.height()];
+    let heights = texture(gpu, "heights", size, levels, wgpu::TextureFormat::R32Float)?;
+    let mut level = map.clone();
+    for mip in 0..levels {
+        if mip > 0 {
+            level = level.halved();
+        }
+        let to = wgpu::TexelCopyTextureInfo { mip_level: mip, ..heights.as_image_copy() };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * level.width()),
+            rows_per_image: None,
+        };
+        let extent =
+            wgpu::Extent3d { width: level.width(), height: level.height(), depth_or_array_layers: 1 };
+        gpu.scoped(|| {
+            gpu.queue().write_texture(to, bytemuck::cast_slice(level.heights()), layout, extent);
+        })?;
+    }
+    Ok(heights)
+}

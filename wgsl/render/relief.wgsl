@@ -1,0 +1,138 @@
+// Draws meshes with relief (B section 3.1, tables 4.1 to 4.4): any method, self-shadow, silhouettes, depth of the
+// relief. The method and what is drawn are override constants; everything else is a uniform.
+import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
+import package::wgsl::surface::height::surface_mip;
+import package::wgsl::surface::trace::surface_trace;
+import package::wgsl::surface::shade::{surface_distance, surface_normal};
+import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surface_soft_shadow};
+
+// A method of wgsl/surface/trace.wgsl.
+override METHOD: u32 = 3u;
+// 0 none, 1 hard, 2 soft.
+override SHADOW: u32 = 0u;
+// Normals from the normal map rather than from the heights.
+override NORMAL_MAP: bool = false;
+// Discards what leaves the range of uv that the mesh covers.
+override SILHOUETTE: bool = false;
+// Chooses the mip level of the heights from the size of a pixel, once a fragment.
+override CHOOSE_MIP: bool = false;
+
+struct ReliefView {
+    clip_from_world: mat4x4<f32>,
+    // The eye (w = 1), or the direction towards it (w = 0).
+    eye: vec4<f32>,
+    // Unit vector towards the light; w: what is in shadow still gets, 0..1.
+    light: vec4<f32>,
+    // uv range of the mesh: low, high.
+    range: vec4<f32>,
+    // Depth of the relief in uv units, and height of the polygon in it.
+    scale: f32,
+    plane: f32,
+    // World units a uv unit.
+    world: f32,
+    // Soft shadow: steps, and the excess over distance at which shadow is full.
+    shadow_steps: u32,
+    softness: f32,
+}
+
+@group(0) @binding(0) var<uniform> view: ReliefView;
+@group(0) @binding(1) var<uniform> march: SurfaceMarch;
+@group(0) @binding(2) var heights: texture_2d<f32>;
+@group(0) @binding(3) var acceleration: texture_2d<f32>;
+@group(0) @binding(4) var albedo: texture_2d<f32>;
+@group(0) @binding(5) var normals: texture_2d<f32>;
+@group(0) @binding(6) var filtering: sampler;
+
+struct Vertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec2<f32>,
+}
+
+@vertex
+fn vertex(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    // w: handedness, as in glTF.
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec2<f32>,
+) -> Vertex {
+    return Vertex(view.clip_from_world * vec4<f32>(position, 1.0), position, normal, tangent, uv);
+}
+
+struct Shaded {
+    color: vec4<f32>,
+    world: vec3<f32>,
+    is_outside: bool,
+}
+
+fn shaded(in: Vertex) -> Shaded {
+    // Derivatives belong in uniform control flow: here, of the polygon's own coordinates.
+    let uv_dx = dpdx(in.uv);
+    let uv_dy = dpdy(in.uv);
+    let normal = normalize(in.normal);
+    let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
+    let bitangent = in.tangent.w * cross(normal, tangent);
+    let towards = normalize(view.eye.xyz - view.eye.w * in.world);
+    let eye = vec3<f32>(dot(tangent, towards), dot(bitangent, towards), dot(normal, towards));
+    var settings = march;
+    if CHOOSE_MIP {
+        settings.mip = surface_mip(heights, uv_dx, uv_dy);
+    }
+    let ray = surface_ray(in.uv, eye, view.scale, view.plane);
+    let hit = surface_trace(METHOD, heights, acceleration, ray, settings);
+    let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb;
+    var facing = surface_normal(heights, hit.uv, view.scale, settings);
+    if NORMAL_MAP {
+        let texel = textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy).xy * 2.0 - 1.0;
+        facing = vec3<f32>(texel, sqrt(max(1.0 - dot(texel, texel), 0.0)));
+    }
+    let light = vec3<f32>(dot(tangent, view.light.xyz), dot(bitangent, view.light.xyz), dot(normal, view.light.xyz));
+    let direct = max(dot(facing, light), 0.0) * sunlit(hit, light, settings);
+    let lit = color * (view.light.w + (1.0 - view.light.w) * direct);
+    let world = in.world - towards * (surface_distance(ray, hit, view.scale) * view.world);
+    let is_outside = SILHOUETTE && !surface_inside(hit.uv, view.range.xy, view.range.zw);
+    return Shaded(vec4<f32>(lit, 1.0), world, is_outside);
+}
+
+// How much of the light reaches a hit.
+fn sunlit(hit: SurfaceHit, light: vec3<f32>, settings: SurfaceMarch) -> f32 {
+    if SHADOW == 0u || !(light.z > 0.0) {
+        return 1.0;
+    }
+    if SHADOW == 2u {
+        return surface_soft_shadow(
+            heights, hit, light, view.scale, settings, view.shadow_steps, view.softness);
+    }
+    let ray = surface_light_ray(hit, light, view.scale);
+    let first = surface_trace(METHOD, heights, acceleration, ray, settings);
+    // A two-hundredth of the relief's depth: the point itself must not shade itself.
+    return select(1.0, 0.0, surface_shaded(first, hit, 0.005));
+}
+
+@fragment
+fn fragment(in: Vertex) -> @location(0) vec4<f32> {
+    let result = shaded(in);
+    if result.is_outside {
+        discard;
+    }
+    return result.color;
+}
+
+struct Deep {
+    @location(0) color: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+// With the depth of the relief rather than the polygon's: what intersects other geometry, and shadow maps.
+@fragment
+fn fragment_depth(in: Vertex) -> Deep {
+    let result = shaded(in);
+    if result.is_outside {
+        discard;
+    }
+    let clip = view.clip_from_world * vec4<f32>(result.world, 1.0);
+    return Deep(result.color, clamp(clip.z / clip.w, 0.0, 1.0));
+}

@@ -1,0 +1,75 @@
+// Cone stepping over `cone_map`: each cell knows its highest corner, and a cone on it that a ray may cross with at
+// most one crossing of the surface, the first. So no step loses the surface, and binary steps find it between
+// the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear filtering).
+import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
+import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
+import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
+import package::wgsl::surface::linear::SURFACE_MOST_BINARY;
+
+fn surface_cone(
+    heights: texture_2d<f32>, cones: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
+) -> SurfaceHit {
+    if !(ray.cosine > 0.0) {
+        return surface_missed(ray);
+    }
+    let grid = surface_grid(textureDimensions(heights), ray, march.address);
+    let distance = length(grid.travel);
+    let bound = surface_bound(grid, 0u);
+    var cell = vec2<i32>(0);
+    var parameter = 0.0;
+    // Where the ray was last known to be above the surface.
+    var above = 0.0;
+    var samples = 0u;
+    for (var step = 0u; step < bound; step++) {
+        let node = surface_node(grid, cell, 0u);
+        let exits = surface_exits(grid, node);
+        let leave = clamp(min(exits.x, exits.y), parameter, 1.0);
+        // The cell's highest corner, and the cone's radius at height 1 above it, in cells.
+        let cone = textureLoad(cones, node.index, 0).rg;
+        samples += 1u;
+        let room = 1.0 - parameter - cone.r;
+        if 1.0 - leave > cone.r {
+            above = parameter;
+            let reach = parameter + cone.g * room / (distance + cone.g);
+            if reach > leave {
+                parameter = min(reach, 1.0);
+                cell = vec2<i32>(floor(grid.start + parameter * grid.travel));
+                continue;
+            }
+        } else {
+            let corners = surface_corners(heights, grid, node.index);
+            samples += 4u;
+            let found = surface_patch(grid, corners, surface_corner(node), parameter, leave);
+            if found > parameter || (found == parameter && above == parameter) {
+                return surface_point(ray, found, samples, SURFACE_HIT);
+            }
+            if found >= 0.0 {
+                return surface_narrowed(heights, ray, march, above, parameter, samples);
+            }
+            above = parameter;
+        }
+        cell = surface_beyond(grid, node, exits, leave);
+        parameter = leave;
+    }
+    return surface_point(ray, parameter, samples, SURFACE_EXHAUSTED);
+}
+
+// The one crossing between a point above the surface and one at or under it.
+fn surface_narrowed(
+    heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, above: f32, under: f32, samples: u32,
+) -> SurfaceHit {
+    var low = above;
+    var high = under;
+    var loads = samples;
+    for (var step = 0u; step < min(march.binary_steps, SURFACE_MOST_BINARY); step++) {
+        let middle = 0.5 * (low + high);
+        let height = surface_height(heights, surface_at(ray, middle), 0u, march.address);
+        loads += SURFACE_BILINEAR;
+        if 1.0 - middle <= height {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
+}

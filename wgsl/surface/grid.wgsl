@@ -1,0 +1,145 @@
+// The grid of bilinear cells under a ray. A cell lies between four texel centres. With wrap addressing a tile has
+// as many cells as texels; with clamp addressing one more an axis, and those at the rim reach to infinity, where
+// heights stay as they are: so the cells cover the whole plane, and a ray never leaves the grid.
+import package::wgsl::surface::ray::{SURFACE_WRAP, SurfaceRay};
+
+// Farther than any ray travels, in cells.
+const SURFACE_FAR: i32 = 1073741824;
+
+// An axis along which a ray travels less than this many cells counts as this slow.
+const SURFACE_LEAST_TRAVEL: f32 = 1e-6;
+
+struct SurfaceGrid {
+    // Texels, and cells, of a tile.
+    size: vec2<i32>,
+    cells: vec2<i32>,
+    // The cell that the ray enters in, and where in it. Other cells count from it, which keeps f32 exact.
+    base: vec2<i32>,
+    start: vec2<f32>,
+    // Cells that the ray travels in all, and one over that.
+    travel: vec2<f32>,
+    inverse: vec2<f32>,
+    address: u32,
+}
+
+// A square of cells: its index at its level, and its edges as cells from the base; the high ones are outside.
+struct SurfaceNode {
+    index: vec2<i32>,
+    low: vec2<i32>,
+    high: vec2<i32>,
+}
+
+fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
+    let scale = vec2<f32>(size);
+    let texel = ray.origin * scale - 0.5;
+    let base = floor(texel);
+    let travel = ray.slope * scale;
+    let slow = select(
+        vec2<f32>(SURFACE_LEAST_TRAVEL), vec2<f32>(-SURFACE_LEAST_TRAVEL), travel < vec2<f32>(0.0));
+    let divisor = select(travel, slow, abs(travel) < vec2<f32>(SURFACE_LEAST_TRAVEL));
+    let texels = vec2<i32>(size);
+    let cells = select(texels + 1, texels, address == SURFACE_WRAP);
+    return SurfaceGrid(texels, cells, vec2<i32>(base), texel - base, travel, 1.0 / divisor, address);
+}
+
+// Steps that suffice for any ray: every node that it can touch, once.
+fn surface_bound(grid: SurfaceGrid, levels: u32) -> u32 {
+    let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), 16384.0);
+    return 2u * (u32(crossed) + 3u) + levels;
+}
+
+// The node of 2^level × 2^level cells that holds a cell. Nodes end at the tile's edge.
+fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
+    let shift = vec2<u32>(level);
+    let absolute = grid.base + cell;
+    var inside: vec2<i32>;
+    var tile: vec2<i32>;
+    if grid.address == SURFACE_WRAP {
+        let rest = absolute % grid.size;
+        inside = select(rest, rest + grid.size, rest < vec2<i32>(0));
+        tile = absolute - inside - grid.base;
+    } else {
+        inside = clamp(absolute + 1, vec2<i32>(0), grid.size);
+        tile = -1 - grid.base;
+    }
+    let index = inside >> shift;
+    let first = index << shift;
+    let last = min(first + (vec2<i32>(1) << shift), grid.cells);
+    var low = tile + first;
+    var high = tile + last;
+    if grid.address != SURFACE_WRAP {
+        low = select(low, vec2<i32>(-SURFACE_FAR), first == vec2<i32>(0));
+        high = select(high, vec2<i32>(SURFACE_FAR), last == grid.cells);
+    }
+    return SurfaceNode(index, low, high);
+}
+
+// The parameters at which the ray leaves a node through its x and its y edge.
+fn surface_exits(grid: SurfaceGrid, node: SurfaceNode) -> vec2<f32> {
+    let edge = select(node.low, node.high, grid.travel >= vec2<f32>(0.0));
+    return (vec2<f32>(edge) - grid.start) * grid.inverse;
+}
+
+// The cell of a node that holds the ray's point at a parameter.
+fn surface_cell(grid: SurfaceGrid, node: SurfaceNode, parameter: f32) -> vec2<i32> {
+    let at = vec2<i32>(floor(grid.start + parameter * grid.travel));
+    return clamp(at, node.low, node.high - 1);
+}
+
+// The cell behind the edge through which the ray leaves a node.
+fn surface_beyond(grid: SurfaceGrid, node: SurfaceNode, exits: vec2<f32>, parameter: f32) -> vec2<i32> {
+    var next = surface_cell(grid, node, parameter);
+    if exits.x <= exits.y {
+        next.x = select(node.low.x - 1, node.high.x, grid.travel.x >= 0.0);
+    } else {
+        next.y = select(node.low.y - 1, node.high.y, grid.travel.y >= 0.0);
+    }
+    return next;
+}
+
+// The four heights of a cell: (0,0), (1,0), (0,1), (1,1).
+fn surface_corners(heights: texture_2d<f32>, grid: SurfaceGrid, index: vec2<i32>) -> vec4<f32> {
+    var low = index;
+    var high = index + 1;
+    if grid.address == SURFACE_WRAP {
+        high = select(high, vec2<i32>(0), high >= grid.size);
+    } else {
+        low = max(index - 1, vec2<i32>(0));
+        high = min(index, grid.size - 1);
+    }
+    return vec4<f32>(
+        textureLoad(heights, low, 0).r,
+        textureLoad(heights, vec2<i32>(high.x, low.y), 0).r,
+        textureLoad(heights, vec2<i32>(low.x, high.y), 0).r,
+        textureLoad(heights, high, 0).r);
+}
+
+// The first parameter in enter..=leave at which the ray is at or under the bilinear patch of a cell, or -1. `low` is
+// the cell's corner. Along the ray, the height above a patch is a quadratic.
+fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f32, leave: f32) -> f32 {
+    let at = (grid.start - vec2<f32>(low)) + enter * grid.travel;
+    let slope = vec2<f32>(corners.y - corners.x, corners.z - corners.x);
+    let twist = (corners.w - corners.z) - slope.x;
+    let length = leave - enter;
+    let ahead = grid.travel * length;
+    let height = corners.x + slope.x * at.x + (slope.y + twist * at.x) * at.y;
+    // a·x² + b·x + c over x in 0..=1; half of b.
+    let c = 1.0 - enter - height;
+    if c <= 0.0 {
+        return enter;
+    }
+    let b = -0.5 * (length + slope.x * ahead.x + slope.y * ahead.y + twist * (at.x * ahead.y + at.y * ahead.x));
+    let a = -twist * ahead.x * ahead.y;
+    let discriminant = b * b - a * c;
+    // The smaller positive root is c / divisor: within 0..=1 only where the divisor is at least c > 0.
+    let divisor = sqrt(max(discriminant, 0.0)) - b;
+    if discriminant >= 0.0 && divisor >= c {
+        return enter + length * (c / divisor);
+    }
+    return select(-1.0, leave, a + 2.0 * b + c <= 0.0);
+}
+
+// The corner of a leaf that its patch counts from. At infinity heights are constant along the axis, and any will do.
+fn surface_corner(leaf: SurfaceNode) -> vec2<i32> {
+    return select(leaf.low, leaf.high - 1, leaf.low == vec2<i32>(-SURFACE_FAR));
+}

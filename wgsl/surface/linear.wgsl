@@ -1,0 +1,79 @@
+// Linear search: relief mapping with binary steps behind it (B section 3.1.2, table 4.4), and parallax occlusion
+// mapping with a segment behind it (B section 2.3.1). Both overshoot what is thinner than a step.
+import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
+import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
+
+const SURFACE_MOST_STEPS: u32 = 1024u;
+const SURFACE_MOST_BINARY: u32 = 24u;
+
+// Where a linear search stopped: the last point above the surface, the first at or under it, and the heights of
+// the surface at both.
+struct SurfaceBracket {
+    above: f32,
+    under: f32,
+    height_above: f32,
+    height_under: f32,
+    samples: u32,
+}
+
+// ⌈mix(min, max, 1 − V.z)⌉
+fn surface_steps(march: SurfaceMarch, cosine: f32) -> u32 {
+    let low = f32(march.min_steps);
+    let steps = ceil(low + (f32(march.max_steps) - low) * (1.0 - min(cosine, 1.0)));
+    return clamp(u32(steps), 1u, SURFACE_MOST_STEPS);
+}
+
+fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceBracket {
+    let steps = surface_steps(march, ray.cosine);
+    let width = 1.0 / f32(steps);
+    var bracket = SurfaceBracket(0.0, 1.0, 0.0, 0.0, 0u);
+    for (var step = 1u; step <= SURFACE_MOST_STEPS; step++) {
+        // The bottom is at or under every surface, so the last step always stops.
+        let parameter = select(f32(step) * width, 1.0, step >= steps);
+        let height = surface_height(heights, surface_at(ray, parameter), march.mip, march.address);
+        bracket.samples += SURFACE_BILINEAR;
+        if 1.0 - parameter <= height || step >= steps {
+            bracket.under = parameter;
+            bracket.height_under = height;
+            break;
+        }
+        bracket.above = parameter;
+        bracket.height_above = height;
+    }
+    return bracket;
+}
+
+fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
+    if !(ray.cosine > 0.0) {
+        return surface_missed(ray);
+    }
+    var bracket = surface_search(heights, ray, march);
+    for (var step = 0u; step < min(march.binary_steps, SURFACE_MOST_BINARY); step++) {
+        let middle = 0.5 * (bracket.above + bracket.under);
+        let height = surface_height(heights, surface_at(ray, middle), march.mip, march.address);
+        bracket.samples += SURFACE_BILINEAR;
+        if 1.0 - middle <= height {
+            bracket.under = middle;
+        } else {
+            bracket.above = middle;
+        }
+    }
+    return surface_point(ray, 0.5 * (bracket.above + bracket.under), bracket.samples, SURFACE_HIT);
+}
+
+fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
+    if !(ray.cosine > 0.0) {
+        return surface_missed(ray);
+    }
+    var bracket = surface_search(heights, ray, march);
+    if bracket.above == 0.0 {
+        bracket.height_above = surface_height(heights, ray.origin, march.mip, march.address);
+        bracket.samples += SURFACE_BILINEAR;
+    }
+    let over = max(1.0 - bracket.above - bracket.height_above, 0.0);
+    let below = max(bracket.height_under - (1.0 - bracket.under), 0.0);
+    // The share of the segment that lies above; with nothing on either side, its end.
+    let share = select(1.0, over / max(over + below, 1e-12), over + below > 1e-12);
+    let parameter = bracket.above + share * (bracket.under - bracket.above);
+    return surface_point(ray, parameter, bracket.samples, SURFACE_HIT);
+}

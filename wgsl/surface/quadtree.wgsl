@@ -1,0 +1,60 @@
+// Max-mip traversal (B section 2.3.4; Tevs, Ihrke and Seidel 2008): nodes that the ray passes above are skipped
+// whole, and in a leaf it meets the bilinear patch exactly.
+import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
+import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
+import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
+
+fn surface_quadtree(
+    heights: texture_2d<f32>, pyramid: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
+) -> SurfaceHit {
+    if !(ray.cosine > 0.0) {
+        return surface_missed(ray);
+    }
+    let grid = surface_grid(textureDimensions(heights), ray, march.address);
+    let top = surface_levels(vec2<u32>(grid.cells)) - 1u;
+    let bound = surface_bound(grid, top);
+    // Nodes of half the ray's length: larger ones are rarely skipped whole.
+    let longest = u32(max(abs(grid.travel.x), abs(grid.travel.y)));
+    var level = min(firstLeadingBit(max(longest / 2u, 1u)), top);
+    var cell = vec2<i32>(0);
+    var parameter = 0.0;
+    var samples = 0u;
+    for (var step = 0u; step < bound; step++) {
+        let node = surface_node(grid, cell, level);
+        let exits = surface_exits(grid, node);
+        let leave = clamp(min(exits.x, exits.y), parameter, 1.0);
+        let highest = textureLoad(pyramid, surface_atlas_at(vec2<u32>(grid.cells), level, node.index), 0).r;
+        samples += 1u;
+        if 1.0 - leave <= highest {
+            parameter = max(parameter, 1.0 - highest);
+            if level > 0u {
+                level -= 1u;
+                cell = surface_cell(grid, node, parameter);
+                continue;
+            }
+            let corners = surface_corners(heights, grid, node.index);
+            samples += 4u;
+            let found = surface_patch(grid, corners, surface_corner(node), parameter, leave);
+            if found >= 0.0 {
+                return surface_point(ray, found, samples, SURFACE_HIT);
+            }
+        }
+        cell = surface_beyond(grid, node, exits, leave);
+        parameter = leave;
+        if surface_leaves_parent(grid, node, exits, level) {
+            level = min(level + 1u, top);
+        }
+    }
+    return surface_point(ray, parameter, samples, SURFACE_EXHAUSTED);
+}
+
+// Whether the ray leaves a node's parent together with the node.
+fn surface_leaves_parent(grid: SurfaceGrid, node: SurfaceNode, exits: vec2<f32>, level: u32) -> bool {
+    let along_x = exits.x <= exits.y;
+    let index = select(node.index.y, node.index.x, along_x);
+    let cells = select(grid.cells.y, grid.cells.x, along_x);
+    let forward = select(grid.travel.y, grid.travel.x, along_x) >= 0.0;
+    let is_odd = (index & 1) == 1;
+    let is_last = ((index + 1) << level) >= cells;
+    return select(!is_odd, is_odd || is_last, forward);
+}

@@ -1,0 +1,21 @@
+// Shading of a displaced point: its normal from the heights around it, its depth, its light.
+import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
+import package::wgsl::surface::height::surface_height;
+
+// The unit normal in tangent space: central differences, one texel to either side.
+fn surface_normal(heights: texture_2d<f32>, uv: vec2<f32>, scale: f32, march: SurfaceMarch) -> vec3<f32> {
+    let size = vec2<f32>(textureDimensions(heights, march.mip));
+    let x = vec2<f32>(1.0 / size.x, 0.0);
+    let y = vec2<f32>(0.0, 1.0 / size.y);
+    let rise = vec2<f32>(
+        surface_height(heights, uv + x, march.mip, march.address)
+            - surface_height(heights, uv - x, march.mip, march.address),
+        surface_height(heights, uv + y, march.mip, march.address)
+            - surface_height(heights, uv - y, march.mip, march.address));
+    return normalize(vec3<f32>(-0.5 * scale * size * rise, 1.0));
+}
+
+// How far behind the polygon the hit lies on the eye's ray, in uv units: what the depth buffer needs.
+fn surface_distance(ray: SurfaceRay, hit: SurfaceHit, scale: f32) -> f32 {
+    return (hit.parameter - ray.polygon) * scale / max(ray.cosine, SURFACE_LEAST_COSINE);
+}

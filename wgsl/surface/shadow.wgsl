@@ -1,0 +1,44 @@
+// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). Hard: the light's own ray is
+// traced from the top of the volume with any method, and the point is lit if that ray ends there. Soft: how far
+// the surface rises above the way to the light, the nearer the wider the penumbra.
+import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
+import package::wgsl::surface::height::surface_height;
+import package::wgsl::surface::linear::SURFACE_MOST_STEPS;
+
+// The light's ray that ends in a point of the surface: it falls from the top of the volume to the hit. `light` is
+// the unit vector towards the light in tangent space.
+fn surface_light_ray(hit: SurfaceHit, light: vec3<f32>, scale: f32) -> SurfaceRay {
+    let slope = light.xy * (-scale / max(light.z, SURFACE_LEAST_COSINE));
+    return SurfaceRay(hit.uv - (1.0 - hit.height) * slope, slope, light.z, 0.0);
+}
+
+// Whether the light's ray ended above the point that it was sent to. `bias` is what heights may differ by.
+fn surface_shaded(first: SurfaceHit, hit: SurfaceHit, bias: f32) -> bool {
+    return first.parameter < 1.0 - hit.height - bias;
+}
+
+// 0 in full shadow to 1 in full light, from `steps` heights on the way to the light; `softness` is the penumbra's
+// width: the surface's excess above the way, over its distance, at which shadow is full.
+fn surface_soft_shadow(
+    heights: texture_2d<f32>, hit: SurfaceHit, light: vec3<f32>, scale: f32, march: SurfaceMarch,
+    steps: u32, softness: f32,
+) -> f32 {
+    if !(light.z > 0.0) {
+        return 0.0;
+    }
+    let ray = surface_light_ray(hit, light, scale);
+    let rise = 1.0 - hit.height;
+    let count = clamp(steps, 1u, SURFACE_MOST_STEPS);
+    var shade = 0.0;
+    for (var step = 1u; step <= count; step++) {
+        // Denser near the point, where what rises casts the sharpest shadow.
+        let share = f32(step) / f32(count + 1u);
+        let travelled = share * share;
+        let parameter = rise * (1.0 - travelled);
+        let height = surface_height(heights, ray.origin + parameter * ray.slope, march.mip, march.address);
+        let excess = height - (1.0 - parameter);
+        shade = max(shade, excess / (softness * (travelled * rise + 1e-3)));
+    }
+    return 1.0 - min(shade, 1.0);
+}
+
