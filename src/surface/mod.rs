@@ -1,6 +1,7 @@
 //! Surface mapping: every ray-height method over one result, the maps that accelerate them, and tangent frames
 //! (B sections 3.1 and 4.2).
 
+pub mod builtin;
 pub mod cone_map;
 pub mod height_pyramid;
 pub mod map;
@@ -11,6 +12,7 @@ pub mod relief;
 #[cfg(feature = "gpu")]
 pub mod texture;
 
+pub use builtin::BuiltInMap;
 pub use map::{Address, HeightMap};
 pub use material::{Material, Shadow};
 pub use mesh::{SurfaceMesh, SurfaceVertex};

@@ -23,10 +23,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let batch = HeightBatch::new(gpu, std::slice::from_ref(&map))?;
         let pyramids = Pyramids::new(gpu, &batch, Address::Wrap)?;
         let cones = pass.output(gpu, &pyramids)?;
-        let jobs = [
-            pyramid_pass.prepare(gpu, &batch, &pyramids)?,
-            pass.prepare(gpu, &batch, &pyramids, &cones)?,
-        ];
+        let jobs =
+            [pyramid_pass.prepare(gpu, &batch, &pyramids)?, pass.prepare(gpu, &batch, &pyramids, &cones)?];
         let texels = (edge * edge) as usize;
         let copied = copy_of(gpu, texels * 3 / 2)?;
         let pyramid = height_pyramid(&map, Address::Wrap);

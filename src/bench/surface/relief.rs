@@ -44,7 +44,13 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let trace = |rays: &[Ray]| -> Vec<Hit> { surface.trace_all(method, rays, &March::default()) };
         let samples: u32 = trace(&rays).iter().map(|hit| hit.samples).sum();
         let mean = f64::from(samples) / rays.len() as f64;
-        let bare = loads.prepare(gpu, &textures(gpu, &map, method)?.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+        let bare = loads.prepare(
+            gpu,
+            &textures(gpu, &map, method)?.heights,
+            [EDGE, EDGE],
+            mean.round() as u32,
+            &sums,
+        )?;
         let draw = |scene: &ReliefScene, encoder: &mut wgpu::CommandEncoder| {
             target.record(encoder, [0.0; 3], |pass| scene.draw(pass));
         };
