@@ -10,8 +10,9 @@ mod pass;
 #[cfg(feature = "gpu")]
 pub use pass::{ConeMapPass, Cones};
 
-/// Distance over size from which a node counts whole. Larger is tighter and slower.
-pub const OPENING: f32 = 4.0;
+/// Distance over size from which a node counts whole. Larger is tighter and slower: 4 saves
+/// a march one load in twenty-five, and takes half as long again to make.
+pub const OPENING: f32 = 2.0;
 
 /// How far a radius may lie from the twin's, relative to it, on any device.
 ///

@@ -33,7 +33,7 @@ impl PyramidLayout {
         };
         let levels = cells[0].max(cells[1]).next_power_of_two().ilog2() + 1;
         // A texture's rows start at multiples of 256 bytes.
-        let width = if levels > 1 { cells[0] + cells[0].div_ceil(2) } else { cells[0] };
+        let width = cells[0].next_multiple_of(4) + cells[0].div_ceil(2);
         let mut layout = Self { size, cells, pitch: width.next_multiple_of(64), rows: cells[1], levels };
         for level in 1..levels {
             layout.rows = layout.rows.max(layout.first(level)[1] + layout.nodes(level)[1]);
@@ -56,7 +56,8 @@ impl PyramidLayout {
         self.len() == 0
     }
 
-    /// The plane's index of a node.
+    /// The plane's index of a node. Between the end of a row of level 0 and the next multiple of four, and wherever
+    /// no level stands, is padding of any value.
     pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
         let first = self.first(level);
         ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize
@@ -66,7 +67,9 @@ impl PyramidLayout {
     fn first(&self, level: u32) -> [u32; 2] {
         match level.checked_sub(1) {
             None => [0, 0],
-            Some(before) => [self.cells[0], self.cells[1] - (self.cells[1] >> before) + before],
+            Some(before) => {
+                [self.cells[0].next_multiple_of(4), self.cells[1] - (self.cells[1] >> before) + before]
+            }
         }
     }
 }

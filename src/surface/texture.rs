@@ -10,7 +10,7 @@ use crate::{Error, InputError};
 /// Height maps of one size, one after another.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
-    /// Heights, row by row, map by map.
+    /// Heights, row by row, map by map; padded to a multiple of four.
     pub heights: Buffer<f32>,
     /// Texels of each along x and y.
     pub size: [u32; 2],
@@ -38,7 +38,8 @@ impl HeightBatch {
             .into());
         }
         let texels: usize = size.iter().map(|edge| *edge as usize).product();
-        let heights = Buffer::new(gpu, "height maps", texels * maps.len())?;
+        // Kernels load vectors of four.
+        let heights = Buffer::new(gpu, "height maps", (texels * maps.len()).next_multiple_of(4))?;
         let all: Vec<f32> = maps.iter().flat_map(HeightMap::heights).copied().collect();
         heights.write(gpu, &all)?;
         Ok(Self { heights, size, count: maps.len() as u32 })

@@ -1,5 +1,5 @@
 // Where a max-mip pyramid keeps its nodes: all levels in one plane. Level 0 stands at the left; the others stand
-// below each other at its right. Every level has ⌈cells / 2^level⌉ nodes an axis.
+// below each other at its right, from a column that is a multiple of four. Every level has ⌈cells / 2^level⌉ nodes an axis.
 
 // Levels from one node a cell up to one node in all.
 fn surface_levels(cells: vec2<u32>) -> u32 {
@@ -13,5 +13,5 @@ fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32>
     }
     // At least the rows of the levels between: (r >> 1) + 1 ≥ ⌈r / 2⌉ for what is left of them at each.
     let above = cells.y - (cells.y >> (level - 1u)) + level - 1u;
-    return index + vec2<i32>(vec2<u32>(cells.x, above));
+    return index + vec2<i32>(vec2<u32>((cells.x + 3u) & ~3u, above));
 }

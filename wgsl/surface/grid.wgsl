@@ -13,9 +13,12 @@ struct SurfaceGrid {
     // Texels, and cells, of a tile.
     size: vec2<i32>,
     cells: vec2<i32>,
-    // The cell that the ray enters in, and where in it. Other cells count from it, which keeps f32 exact.
+    // The cell that the ray enters in, within its tile where that wraps, and where in it. Other cells count from it,
+    // which keeps f32 exact.
     base: vec2<i32>,
     start: vec2<f32>,
+    // One over the texels of a tile.
+    tiles: vec2<f32>,
     // Cells that the ray travels in all, and one over that.
     travel: vec2<f32>,
     inverse: vec2<f32>,
@@ -38,8 +41,14 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
         vec2<f32>(SURFACE_LEAST_TRAVEL), vec2<f32>(-SURFACE_LEAST_TRAVEL), travel < vec2<f32>(0.0));
     let divisor = select(travel, slow, abs(travel) < vec2<f32>(SURFACE_LEAST_TRAVEL));
     let texels = vec2<i32>(size);
-    let cells = select(texels + 1, texels, address == SURFACE_WRAP);
-    return SurfaceGrid(texels, cells, vec2<i32>(base), texel - base, travel, 1.0 / divisor, address);
+    var first = vec2<i32>(base);
+    var cells = texels + 1;
+    if address == SURFACE_WRAP {
+        first = first % texels;
+        first = select(first, first + texels, first < vec2<i32>(0));
+        cells = texels;
+    }
+    return SurfaceGrid(texels, cells, first, texel - base, 1.0 / scale, travel, 1.0 / divisor, address);
 }
 
 // Steps that suffice for any ray: every node that it can touch, once.
@@ -55,9 +64,10 @@ fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
     var inside: vec2<i32>;
     var tile: vec2<i32>;
     if grid.address == SURFACE_WRAP {
-        let rest = absolute % grid.size;
-        inside = select(rest, rest + grid.size, rest < vec2<i32>(0));
-        tile = absolute - inside - grid.base;
+        // Rays cross some hundred tiles at most, so that the quotient of a cell's middle is exact enough to floor.
+        let whole = vec2<i32>(floor((vec2<f32>(absolute) + 0.5) * grid.tiles)) * grid.size;
+        inside = absolute - whole;
+        tile = whole - grid.base;
     } else {
         inside = clamp(absolute + 1, vec2<i32>(0), grid.size);
         tile = -1 - grid.base;

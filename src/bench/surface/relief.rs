@@ -14,61 +14,79 @@ use crate::surface::map::{Address, HeightMap};
 use crate::surface::material::{Material, Shadow};
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
-use crate::surface::relief::{Hit, March, Method, Ray};
+use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
 use crate::surface::texture::SurfaceTextures;
 
-/// Pixels along an edge of the target.
+/// Texels of the map, and pixels of the target, along an edge.
 const EDGE: u32 = 1024;
 
 /// Degrees from the normal.
 const ANGLE: f32 = 60.0;
 
-/// 1024² pixels of cobbles at 60°, relief depth 0.1. `limit` is `plain` drawn the same; `copy` as many texel loads
-/// a pixel as the method makes, and nothing else. The case names the loads.
+/// Cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
+/// (the case names them), and nothing else. Then 1024² pixels by the fragment pass: `limit` is `plain` drawn the
+/// same.
+///
+/// All kernels come before all pictures: lavapipe's timestamps around compute work are too short once a picture
+/// has been drawn.
 ///
 /// # Errors
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let map = BuiltInMap::Cobbles.height_map(EDGE)?;
+    for method in Method::ALL {
+        listed(bench, &map, method)?;
+    }
     let gpu = bench.gpu;
-    let map = BuiltInMap::Cobbles.height_map(1024)?;
-    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(1024)?);
+    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(EDGE)?);
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
     let target = Target::new(gpu, [EDGE, EDGE])?;
-    let sums = Buffer::new(gpu, "sums", (EDGE * EDGE) as usize)?;
-    let loads = LoadsPass::new(gpu)?;
     let plain = scene(gpu, &map, &albedo, Method::Plain)?;
-    let rays = rays(64);
     for method in Method::ALL {
         let scene = scene(gpu, &map, &albedo, method)?;
-        let surface = Surface::new(&map, method, Address::Wrap);
-        let trace = |rays: &[Ray]| -> Vec<Hit> { surface.trace_all(method, rays, &March::default()) };
-        let samples: u32 = trace(&rays).iter().map(|hit| hit.samples).sum();
-        let mean = f64::from(samples) / rays.len() as f64;
-        let bare = loads.prepare(
-            gpu,
-            &textures(gpu, &map, method)?.heights,
-            [EDGE, EDGE],
-            mean.round() as u32,
-            &sums,
-        )?;
         let draw = |scene: &ReliefScene, encoder: &mut wgpu::CommandEncoder| {
             target.record(encoder, [0.0; 3], |pass| scene.draw(pass));
         };
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| draw(&scene, encoder)),
             Contender::recorded(Backend::Limit, |encoder| draw(&plain, encoder)),
-            Contender::job(Backend::Copy, &bare),
-            Contender::host(Backend::TwinParallel, || {
-                for _ in 0..EDGE * EDGE / rays.len() as u32 {
-                    drop(std::hint::black_box(trace(&rays)));
-                }
-            }),
         ];
-        let name = format!("{} {EDGE}², {mean:.1} loads", method.name());
-        let pixels = u64::from(EDGE * EDGE);
-        bench.case(name, (pixels as usize, "pixel"), (mean * 4.0 * pixels as f64) as u64, contenders)?;
+        let pixels = (EDGE * EDGE) as usize;
+        bench.case(
+            format!("{EDGE}² pixels, {}", method.name()),
+            (pixels, "pixel"),
+            4 * pixels as u64,
+            contenders,
+        )?;
     }
     Ok(())
+}
+
+/// One method by the kernel.
+fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let rays = rays(EDGE);
+    let march = March::default();
+    let surface = Surface::new(map, method, Address::Wrap);
+    let samples: u64 =
+        (surface.trace_all(method, &rays, &march).iter()).map(|hit| u64::from(hit.samples)).sum();
+    let mean = samples as f64 / rays.len() as f64;
+    let textures = textures(gpu, map, method)?;
+    let input = Buffer::from_slice(gpu, "rays", &rays)?;
+    let hits = Buffer::new(gpu, "hits", rays.len())?;
+    let job = ReliefPass::new(gpu, method)?.prepare(gpu, &textures, &march, &input, &hits)?;
+    let sums = Buffer::new(gpu, "sums", rays.len())?;
+    let bare = LoadsPass::new(gpu)?;
+    let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &bare),
+        Contender::host(Backend::TwinParallel, || {
+            drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
+        }),
+    ];
+    let bytes = 4 * samples + (rays.len() * (size_of::<Ray>() + size_of::<Hit>())) as u64;
+    bench.case(format!("{}, {mean:.1} loads a ray", method.name()), (rays.len(), "ray"), bytes, contenders)
 }
 
 fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTextures, Error> {

@@ -34,10 +34,15 @@ impl Grid {
             if travel.abs() < LEAST_TRAVEL { slow } else { travel }
         });
         let size = size.map(|edge| edge as i32);
+        let base = [0, 1].map(|i| texel[i].floor() as i32);
+        let (base, cells) = match address {
+            Address::Wrap => ([0, 1].map(|i| base[i].rem_euclid(size[i])), size),
+            Address::Clamp => (base, size.map(|edge| edge + 1)),
+        };
         Self {
             size,
-            cells: if address == Address::Wrap { size } else { size.map(|edge| edge + 1) },
-            base: texel.map(|at| at.floor() as i32),
+            cells,
+            base,
             start: texel.map(|at| at - at.floor()),
             travel,
             inverse: divisor.map(|divisor| 1.0 / divisor),

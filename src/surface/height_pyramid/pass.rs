@@ -60,6 +60,7 @@ impl Pyramids {
 #[derive(Debug, Clone)]
 pub struct HeightPyramidPass {
     leaves: Kernel,
+    aligned_leaves: Kernel,
     nodes: Kernel,
 }
 
@@ -72,6 +73,7 @@ impl HeightPyramidPass {
         let shader = &shaders::SURFACE_HEIGHT_PYRAMID;
         Ok(Self {
             leaves: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 1.0)])?,
+            aligned_leaves: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 1.0), ("IS_ALIGNED", 1.0)])?,
             nodes: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 0.0)])?,
         })
     }
@@ -83,7 +85,9 @@ impl HeightPyramidPass {
     pub fn prepare(&self, gpu: &Gpu, maps: &HeightBatch, pyramids: &Pyramids) -> Result<Job, Error> {
         pyramids.check(maps)?;
         let layout = pyramids.layout;
-        let mut steps = vec![self.step(gpu, &self.leaves, maps, pyramids, 0)?];
+        let is_aligned = maps.size[0].is_multiple_of(4) && pyramids.address == Address::Wrap;
+        let leaves = if is_aligned { &self.aligned_leaves } else { &self.leaves };
+        let mut steps = vec![self.step(gpu, leaves, maps, pyramids, 0)?];
         let mut level = 2;
         while level + 1 < layout.levels {
             steps.push(self.step(gpu, &self.nodes, maps, pyramids, level)?);

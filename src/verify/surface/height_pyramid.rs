@@ -57,7 +57,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The twin's pyramid as bits, with poison where no node lies.
+/// The twin's pyramid as bits, with poison where no node lies, and what fills a row of level 0 to a multiple of four.
 fn with_poison(map: &HeightMap, layout: &PyramidLayout, address: Address) -> Vec<u32> {
     let pyramid = height_pyramid(map, address);
     let mut bits = vec![POISON; layout.len()];
@@ -66,6 +66,12 @@ fn with_poison(map: &HeightMap, layout: &PyramidLayout, address: Address) -> Vec
         for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
             let index = layout.index(level, [x, y]);
             bits[index] = pyramid[index].to_bits();
+        }
+    }
+    let [columns, rows] = layout.cells;
+    for y in 0..rows {
+        for x in columns..columns.next_multiple_of(4) {
+            bits[(y * layout.pitch + x) as usize] = (-1.0_f32).to_bits();
         }
     }
     bits
