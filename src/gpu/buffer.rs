@@ -151,9 +151,17 @@ pub fn storage<T: ShaderType + WriteInto>(
     label: &'static str,
     value: &T,
 ) -> Result<Buffer<u8>, GpuError> {
+    Buffer::from_slice(gpu, label, &storage_bytes(value)?)
+}
+
+/// The bytes of `value` in WGSL's storage layout.
+///
+/// # Errors
+/// [`GpuError::Internal`] when encase cannot write them.
+pub(crate) fn storage_bytes<T: ShaderType + WriteInto>(value: &T) -> Result<Vec<u8>, GpuError> {
     let mut writer = StorageBuffer::new(Vec::new());
     writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;
-    Buffer::from_slice(gpu, label, &writer.into_inner())
+    Ok(writer.into_inner())
 }
 
 /// The bytes of `value` in WGSL's uniform layout.

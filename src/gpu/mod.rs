@@ -17,6 +17,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 pub use adapter::{AdapterSummary, Options, adapters};
+pub(crate) use buffer::storage_bytes;
 pub use buffer::{Buffer, Uniform, storage};
 pub use error::GpuError;
 pub use kernel::{Group, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout};

@@ -8,4 +8,4 @@ pub mod terrain;
 pub use camera::Camera;
 pub use picture::Picture;
 pub use target::Target;
-pub use terrain::{Materials, Style, TerrainRenderer, TerrainScene};
+pub use terrain::{FieldsId, Materials, Style, TerrainRenderer, TerrainScene};
