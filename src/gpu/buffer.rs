@@ -6,6 +6,7 @@ use encase::internal::WriteInto;
 use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
 
 use super::{Gpu, GpuError};
+use crate::InputError;
 
 /// A storage buffer of `len` elements. Usable as storage, vertex and copy source and destination.
 #[derive(Debug, Clone)]
@@ -93,6 +94,18 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// Whether it has no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
+    }
+
+    /// Checks that the buffer holds at least `needed` elements.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `field`.
+    pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
+        if self.len >= needed {
+            return Ok(());
+        }
+        let value = format!("[{} elements]", self.len);
+        Err(InputError::new(field, value, format!("must hold at least {needed}")))
     }
 
     /// Bytes in the buffer.
