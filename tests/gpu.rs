@@ -77,8 +77,34 @@ fn a_buffer_beyond_the_limit_names_it() {
     let gpu = gpu();
     let words = gpu.max_binding() as usize / 4;
     let error = Buffer::<u32>::new(&gpu, "huge", words + 1).expect_err("too large").to_string();
-    assert!(error.contains("maxStorageBufferBindingSize") && error.contains("split"), "{error}");
-    assert!(Buffer::<u32>::new(&gpu, "just", words).is_ok());
+    for part in ["maxStorageBufferBindingSize", "split the batch", "smaller patches", "--backend cpu"] {
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(Buffer::<u32>::new(&gpu, "just", words.min(1 << 25)).is_ok());
+}
+
+/// A window cannot be split: it takes what the adapter offers beyond WebGPU's default.
+#[test]
+fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_elsewhere() {
+    let (device, queue) = foreign();
+    for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
+        let config = Config::new(4097, 20.0, "large").expect("valid");
+        let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
+        let reach = 850;
+        match HeightBatch::new(&gpu, &pass, &config, [1, reach], 0) {
+            Ok(batch) => {
+                assert!(gpu.max_binding() > 128 << 20);
+                batch.set(&gpu, &[[0, 0]], &Features::default()).expect("set");
+                gpu.run("test", |encoder| batch.record(encoder)).expect("run");
+                let actual = batch.fields()[0].heights.read_blocking(&gpu).expect("read");
+                assert!(actual == height(&config, &Features::default(), Window { patch: [0, 0], reach }));
+            }
+            Err(error) => {
+                assert!(gpu.max_binding() == 128 << 20, "{error}");
+                assert!(error.to_string().contains("smaller patches or a smaller reach"), "{error}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -29,7 +29,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 limit: "maxStorageBufferBindingSize",
                 needed: size,
                 available: gpu.max_binding(),
-                remedy: "split the batch",
+                remedy: "split the batch, use smaller patches or a smaller reach (fewer iterations of erosion), or compute on the CPU (--backend cpu)",
             });
         }
         let usage = wgpu::BufferUsages::STORAGE

@@ -43,7 +43,8 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a device of its own, without a window.
+    /// Opens a device of its own, without a window, with WebGPU's default limits; storage bindings may be larger
+    /// where the adapter offers it.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
@@ -63,7 +64,7 @@ impl Gpu {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("relievo"),
             required_features: adapter.features() & wanted,
-            required_limits: wgpu::Limits::default(),
+            required_limits: limits(&adapter.limits()),
             ..Default::default()
         };
         let (device, queue) = (adapter.request_device(&descriptor).await).map_err(|error| {
@@ -96,7 +97,7 @@ impl Gpu {
         &self.summary
     }
 
-    /// The largest storage binding in bytes.
+    /// The largest storage binding in bytes: at least WebGPU's default of 128 MiB.
     pub fn max_binding(&self) -> u64 {
         let limits = self.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
@@ -168,6 +169,19 @@ impl Gpu {
         let _ = self.device.poll(wgpu::PollType::Poll);
         self.check()?;
         Err(GpuError::from(error))
+    }
+}
+
+/// WebGPU's default limits, but for the storage bindings that the adapter offers: some buffers cannot be split.
+fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
+    let default = wgpu::Limits::default();
+    // Shaders count words in u32 with room to spare.
+    let most = u64::from(u32::MAX) / 4 * 4;
+    let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
+    wgpu::Limits {
+        max_storage_buffer_binding_size: default.max_storage_buffer_binding_size.max(binding),
+        max_buffer_size: default.max_buffer_size.max(binding),
+        ..default
     }
 }
 

@@ -24,10 +24,13 @@ impl Fields {
         Ok(Self { heights: Buffer::new(gpu, label, points)?, width, count })
     }
 
-    /// Fields of `width` that one binding and one dispatch may hold, at least one.
+    /// Fields of `width` to a part: as many as fit a binding of WebGPU's default size, 128 MiB, and one
+    /// dispatch; at least one. Batches are split there even where the device allows more, so that one part's
+    /// work stays short.
     pub fn most(gpu: &Gpu, width: u32) -> usize {
         let bytes = 4 * u64::from(width) * u64::from(width);
-        (gpu.max_binding() / bytes.max(1)).clamp(1, 65_535) as usize
+        let binding = gpu.max_binding().min(wgpu::Limits::default().max_storage_buffer_binding_size);
+        (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
     /// The same memory seen as fields that are `samples` smaller on every side; without a sample where

@@ -170,8 +170,7 @@ fn level_widths(config: &Config, reach: u32) -> Vec<u32> {
     widths
 }
 
-/// A batch of any size: split where it exceeds the largest storage binding (128 MiB by default), in one
-/// recording.
+/// A batch of any size: split where it exceeds a storage binding of 128 MiB, in one recording.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     jobs: Vec<HeightJob>,
