@@ -5,11 +5,16 @@
 mod harness;
 
 use harness::gpu;
-use relievo::gpu::{Buffer, Gpu, GpuError, Options, TimedBy, Timer, adapters};
+use relievo::gpu::{
+    Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION, Options, Step, TimedBy, Timer, adapters,
+};
 use relievo::reference::terrain::height::height;
 use relievo::terrain::config::{Config, Offset};
 use relievo::terrain::features::Features;
+use relievo::terrain::fields::Fields;
 use relievo::terrain::height::{HeightBatch, HeightPass, Window};
+use relievo::terrain::thermal::{Thermal, ThermalPass};
+use relievo::verify::terrain::random_heights;
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
 fn foreign() -> (wgpu::Device, wgpu::Queue) {
@@ -124,6 +129,34 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let expected = height(&config, &Features::default(), Window { patch: [32, -32], reach: 0 });
     assert!(last[last.len() - points..] == expected);
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
+}
+
+/// Watchdogs of operating systems end submissions of seconds.
+#[test]
+fn long_jobs_go_to_the_device_in_pieces() {
+    let gpu = gpu();
+    let pass = ThermalPass::new(&gpu).expect("compiled");
+    let (width, iterations) = (67, 20);
+    let heights = random_heights(1, (width * width) as usize, 1 << 24);
+    let run = |most| {
+        let [windows, other] = [0, 1].map(|_| Fields::new(&gpu, "windows", width, 1).expect("allocated"));
+        windows.heights.write(&gpu, &heights).expect("written");
+        let params = Thermal { iterations, ..Thermal::default() };
+        let job = pass.prepare(&gpu, params, 1.0, &windows, &other).expect("prepared");
+        let pieces = job.submissions(most);
+        assert_eq!(pieces.iter().map(|steps| steps.len()).sum::<usize>(), iterations as usize);
+        let invocations = |steps: &[Step]| {
+            steps.iter().map(|step| 64 * step.workgroups.iter().product::<u32>()).sum::<u32>()
+        };
+        assert!(pieces.iter().all(|steps| steps.len() == 1 || u64::from(invocations(steps)) <= most));
+        job.run(&gpu, most).expect("run");
+        (pieces.len(), windows.cropped(iterations).heights.read_blocking(&gpu).expect("read"))
+    };
+    let whole = run(INVOCATIONS_A_SUBMISSION);
+    let (some, one) = (run(40_000), run(1));
+    assert_eq!((whole.0, one.0), (1, 20));
+    assert!((2..20).contains(&some.0), "{} submissions", some.0);
+    assert!(whole.1 == some.1 && whole.1 == one.1);
 }
 
 #[test]

@@ -20,7 +20,9 @@ pub use adapter::{AdapterSummary, Options, adapters};
 pub(crate) use buffer::storage_bytes;
 pub use buffer::{Buffer, Uniform, storage};
 pub use error::GpuError;
-pub use kernel::{Group, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout};
+pub use kernel::{
+    Group, INVOCATIONS_A_SUBMISSION, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout,
+};
 pub use timer::{Measurement, TimedBy, Timer};
 
 /// How long a wait for the device may take before it counts as hung.
