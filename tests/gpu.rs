@@ -4,6 +4,9 @@
 #[path = "harness/mod.rs"]
 mod harness;
 
+use std::pin::pin;
+use std::task::{Context, Poll, Wake};
+
 use harness::gpu;
 use relievo::gpu::{
     Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION, Options, Step, TimedBy, Timer, adapters,
@@ -65,6 +68,36 @@ fn a_validation_error_is_returned_and_the_device_goes_on() {
         assert!(matches!(error, GpuError::Validation { .. }), "{error}");
         heights_equal_the_twin(&gpu);
     }
+}
+
+/// Counts how often it is woken.
+#[derive(Default)]
+struct Alarm(std::sync::atomic::AtomicUsize);
+
+impl Wake for Alarm {
+    fn wake(self: std::sync::Arc<Self>) {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+    }
+}
+
+#[test]
+fn reading_waits_without_blocking_and_is_woken_by_the_device() {
+    let gpu = gpu();
+    let buffer = Buffer::from_slice(&gpu, "data", &[1_u32, 2, 3, 4]).expect("uploaded");
+    let alarm = std::sync::Arc::new(Alarm::default());
+    let waker = alarm.clone().into();
+    let mut context = Context::from_waker(&waker);
+    let mut read = pin!(buffer.read(&gpu));
+    for _ in 0..3 {
+        assert!(read.as_mut().poll(&mut context).is_pending(), "nobody listens to the device yet");
+    }
+    assert_eq!(alarm.0.load(std::sync::atomic::Ordering::SeqCst), 0);
+    gpu.wait().expect("the device answers");
+    assert_eq!(alarm.0.load(std::sync::atomic::Ordering::SeqCst), 1);
+    let Poll::Ready(Ok(data)) = read.as_mut().poll(&mut context) else { panic!("not ready") };
+    assert_eq!(data, [1, 2, 3, 4]);
+    let empty = Buffer::<u32>::new(&gpu, "empty", 0).expect("allocated");
+    assert_eq!(pollster::block_on(empty.read(&gpu)).expect("nothing to wait for"), [0_u32; 0]);
 }
 
 #[test]

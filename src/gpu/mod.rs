@@ -10,6 +10,7 @@ mod error;
 mod kernel;
 #[cfg(test)]
 pub(crate) mod layout;
+mod readback;
 pub mod shaders;
 mod timer;
 
