@@ -36,7 +36,8 @@ impl Bench {
         spinner.finish_and_clear();
         print!("{}", table(&summary.rows));
         println!(
-            "`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn."
+            "`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn. `clock`: \
+             wall includes submission and waiting."
         );
         if let Some(path) = &self.json {
             write_file(path, &json(&summary)?)?;

@@ -5,8 +5,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use rayon::prelude::*;
 use relievo::reference::terrain::blend::blend;
-use relievo::reference::terrain::field::field;
+use relievo::reference::terrain::field::field_with;
 use relievo::terrain::blend::{Shading, WeightMode};
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
@@ -260,15 +261,21 @@ impl Terrain {
     fn on_cpu(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
         let start = Instant::now();
         let progress = bar(plan.patches.len() as u64, "generating");
-        let windows = field(&plan.recipe, &plan.patches, 1)?;
+        let windows = field_with(&plan.recipe, &plan.patches, 1, &|| progress.inc(1))?;
         progress.finish_and_clear();
         let generate = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let config = &plan.recipe.config;
         let zones = map_zones(&config.zones, &plan.textures);
         let width = config.patch_size as usize + 2;
-        let map = |window: &Vec<i32>| blend(window, width, config.terrain_scale, &zones, &plan.shading);
-        let maps = windows.iter().map(map).collect();
+        let progress = bar(plan.patches.len() as u64, "colouring");
+        let map = |window: &Vec<i32>| {
+            let pixels = blend(window, width, config.terrain_scale, &zones, &plan.shading);
+            progress.inc(1);
+            pixels
+        };
+        let maps = windows.par_iter().map(map).collect();
+        progress.finish_and_clear();
         let mut made = Made {
             windows,
             maps,
