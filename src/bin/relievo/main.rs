@@ -14,8 +14,10 @@ mod terrain;
 #[cfg(feature = "gpu")]
 mod verify;
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
@@ -65,7 +67,10 @@ impl Context {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return refused(&error),
+    };
     let context = Context {
         #[cfg(feature = "gpu")]
         options: relievo::gpu::Options { adapter: arguments.adapter },
@@ -86,9 +91,32 @@ fn main() -> ExitCode {
     match outcome {
         Ok(code) => code,
         Err(error) => {
-            let line = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-            eprintln!("relievo: {line}");
+            complain(&error.to_string());
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
     }
+}
+
+/// Says in one line what is wrong with the arguments; shows help or version where they were asked for.
+fn refused(error: &clap::Error) -> ExitCode {
+    if error.exit_code() == 0 {
+        // Whoever closed the pipe has read enough.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        complain("which command? `relievo --help` lists them");
+        return ExitCode::from(2);
+    }
+    let text = error.to_string();
+    let what = text.split("\n\nUsage:").next().unwrap_or_default().split("\n\nFor more").next();
+    let what = what.unwrap_or_default().trim_start_matches("error: ").trim_end();
+    complain(&format!("{what}; see --help"));
+    ExitCode::from(2)
+}
+
+/// One line on standard error, if anybody is there to read it.
+fn complain(text: &str) {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let _ = writeln!(std::io::stderr(), "relievo: {line}");
 }

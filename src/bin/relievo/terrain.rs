@@ -20,7 +20,7 @@ use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
-use crate::output::{Staged, json};
+use crate::output::{Staged, json, say};
 use crate::progress::bar;
 
 /// Generates terrain from B's JSON: heights, a colour map and a perspective view.
@@ -343,15 +343,14 @@ impl Terrain {
         };
         write_bytes(&staged.path("report.json"), &json(&report)?)?;
         staged.publish()?;
-        println!(
+        say(format_args!(
             "{} patches of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",
             plan.patches.len(),
             made.seconds.generate,
             made.seconds.render,
             self.out.display()
-        );
-        made.notes.iter().for_each(|note| println!("{note}"));
-        Ok(())
+        ))?;
+        made.notes.iter().try_for_each(say)
     }
 }
 
@@ -522,7 +521,10 @@ fn mosaic(plan: &Plan, maps: &[Vec<u32>]) -> image::RgbaImage {
 
 /// Writes a PNG.
 pub fn save(path: &std::path::Path, image: &image::RgbaImage) -> Result<(), Error> {
-    image.save_with_format(path, image::ImageFormat::Png).map_err(|error| Error::file(path, error))
+    // In memory first: the image crate forgets what the disk says about the last bytes.
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png).map_err(|error| Error::output(path, error))?;
+    write_bytes(path, bytes.get_ref())
 }
 
 fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result<(), Error> {
@@ -533,7 +535,7 @@ fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result
     );
     let mut text = Vec::new();
     if let Some(field) = field {
-        field.mesh().write_obj(&mut text).map_err(|error| Error::file(path, error))?;
+        field.mesh().write_obj(&mut text).map_err(|error| Error::output(path, error))?;
     }
     write_bytes(path, &text)
 }
