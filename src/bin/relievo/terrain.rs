@@ -82,7 +82,7 @@ pub struct Terrain {
     /// Pixels of terrain.png.
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: String,
-    /// Also writes each patch as a mesh, `patch_<px>_<py>.obj`.
+    /// Also writes each patch as a mesh at its place in the world, `patch_<px>_<py>.obj`.
     #[arg(long)]
     obj: bool,
     /// Draws triangle edges in terrain.png instead of textures.
@@ -318,7 +318,7 @@ impl Terrain {
             write_png(&staged.path(format!("heights_{px}_{py}.png")), heights, size, range)?;
             write_bytes(&staged.path(format!("heights_{px}_{py}.i32")), &to_bytes(heights))?;
             if self.obj {
-                write_obj(&staged.path(format!("patch_{px}_{py}.obj")), heights, config)?;
+                write_obj(&staged.path(format!("patch_{px}_{py}.obj")), heights, config, [*px, *py])?;
             }
             reports.push(PatchReport { px: *px, py: *py, size, sha256: sha256(heights) });
             progress.inc(1);
@@ -527,7 +527,8 @@ pub fn save(path: &std::path::Path, image: &image::RgbaImage) -> Result<(), Erro
     write_bytes(path, bytes.get_ref())
 }
 
-fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result<(), Error> {
+fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config, patch: [i32; 2]) -> Result<(), Error> {
+    let first = patch.map(|index| i64::from(index) * (i64::from(config.patch_size) - 1));
     let field = relievo::terrain::mesh::HeightField::new(
         heights.to_vec(),
         config.patch_size as usize,
@@ -535,7 +536,7 @@ fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result
     );
     let mut text = Vec::new();
     if let Some(field) = field {
-        field.mesh().write_obj(&mut text).map_err(|error| Error::output(path, error))?;
+        field.write_obj(&mut text, first).map_err(|error| Error::output(path, error))?;
     }
     write_bytes(path, &text)
 }
