@@ -177,9 +177,25 @@ fn the_cpu_needs_no_adapter_and_says_what_is_missing() {
 fn an_existing_folder_is_reused_and_nothing_is_left_beside_it() {
     let bench = Bench::new(CONFIGS[0].0);
     bench.terrain("out", &[]);
-    std::fs::write(bench.path("out/mine.txt"), "kept").expect("writable");
+    bench.terrain("out", &["--patches", "1x3", "--origin", "-1,0", "--obj"]);
+    let mine = ["mine.txt", "heights_0_2.png.bak", "heights_00_2.png", "heights_1.i32", "patch_x_1.obj"];
+    for name in mine {
+        std::fs::write(bench.path("out").to_owned() + "/" + name, "kept").expect("writable");
+    }
     bench.terrain("out", &["--patches", "2x1"]);
-    assert_eq!(std::fs::read_to_string(bench.path("out/mine.txt")).expect("kept"), "kept");
+    let mut left: Vec<_> = std::fs::read_dir(bench.path("out"))
+        .expect("readable")
+        .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
+        .filter(|name| !mine.contains(&name.as_str()))
+        .collect();
+    left.sort();
+    let expected = ["heights_0_0.i32", "heights_0_0.png", "heights_1_0.i32", "heights_1_0.png"];
+    assert_eq!(left[..4], expected, "heights of earlier patches are gone");
+    assert_eq!(left[4..], ["map.png", "report.json", "terrain.png"]);
+    for name in mine {
+        let path = bench.path("out") + "/" + name;
+        assert_eq!(std::fs::read_to_string(path).expect("kept"), "kept");
+    }
     let names: Vec<_> = std::fs::read_dir(bench.folder.path())
         .expect("readable")
         .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))

@@ -1,4 +1,4 @@
-//! Output files that appear whole or not at all: they are written beside their place, then renamed.
+//! Output files that appear whole or not at all, together: they are written beside their place, then renamed.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write as _};
@@ -41,15 +41,47 @@ impl Staged {
         self.removed.push(name.to_owned());
     }
 
-    /// Moves every file to its place.
+    /// Removes those files of earlier runs that `ours` knows by name and this run does not replace.
+    pub fn remove_stale(&mut self, ours: impl Fn(&str) -> bool) {
+        // A folder that cannot be listed, or is not there yet, has no earlier run.
+        let Ok(entries) = self.folder.read_dir() else { return };
+        for name in entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()) {
+            if ours(&name) && !self.names.contains(&name) && self.folder.join(&name).is_file() {
+                self.removed.push(name);
+            }
+        }
+    }
+
+    /// Moves every file to its place. When one cannot be moved, those of an earlier run come back.
     pub fn publish(self) -> Result<(), Error> {
         std::fs::create_dir_all(&self.folder).map_err(|error| Error::output(&self.folder, error))?;
-        // What cannot be replaced is found before anything is.
+        let kept = tempfile::tempdir_in(self.stage.path());
+        let kept = kept.map_err(|error| Error::output(self.stage.path(), error))?;
+        self.keep(kept.path())?;
+        self.replace().inspect_err(|_| self.restore(kept.path()))
+    }
+
+    /// Links what is about to go, so that it can come back.
+    fn keep(&self, kept: &Path) -> Result<(), Error> {
         for name in self.names.iter().chain(&self.removed) {
-            let to = self.folder.join(name);
-            if to.is_dir() {
-                return Err(Error::file(&to, "is a folder, and a file belongs there"));
+            let (place, copy) = (self.folder.join(name), kept.join(name));
+            if place.is_dir() {
+                return Err(Error::file(&place, "is a folder, and a file belongs there"));
             }
+            if place.exists() {
+                // Some file systems have no hard links.
+                let linked =
+                    std::fs::hard_link(&place, &copy).or_else(|_| std::fs::copy(&place, &copy).map(|_| ()));
+                linked.map_err(|error| Error::output(&place, error))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn replace(&self) -> Result<(), Error> {
+        for name in &self.names {
+            let to = self.folder.join(name);
+            std::fs::rename(self.stage.path().join(name), &to).map_err(|error| Error::output(&to, error))?;
         }
         for name in &self.removed {
             let stale = self.folder.join(name);
@@ -57,11 +89,15 @@ impl Staged {
                 std::fs::remove_file(&stale).map_err(|error| Error::output(&stale, error))?;
             }
         }
-        for name in &self.names {
-            let to = self.folder.join(name);
-            std::fs::rename(self.stage.path().join(name), &to).map_err(|error| Error::output(&to, error))?;
-        }
         Ok(())
+    }
+
+    /// Puts the folder back as it was, as far as the disk allows: the first error is what the user hears of.
+    fn restore(&self, kept: &Path) {
+        for name in self.names.iter().chain(&self.removed) {
+            let (place, copy) = (self.folder.join(name), kept.join(name));
+            let _ = if copy.exists() { std::fs::rename(copy, place) } else { std::fs::remove_file(place) };
+        }
     }
 }
 
@@ -92,4 +128,42 @@ pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Error> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| Error::output("JSON", error))?;
     bytes.push(b'\n');
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(folder: &Path, name: &str) -> Option<String> {
+        std::fs::read_to_string(folder.join(name)).ok()
+    }
+
+    #[test]
+    fn a_run_that_fails_halfway_leaves_the_earlier_one() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let out = folder.path().join("out");
+        std::fs::create_dir(&out).expect("writable");
+        for name in ["a", "b", "stale"] {
+            std::fs::write(out.join(name), "old").expect("writable");
+        }
+        let stage = |complete: bool| {
+            let mut staged = Staged::new(&out).expect("writable");
+            for name in ["a", "new", "b"] {
+                let path = staged.path(name);
+                if complete || name != "b" {
+                    std::fs::write(path, "new").expect("writable");
+                }
+            }
+            staged.remove_stale(|name| name == "stale" || name == "a");
+            staged
+        };
+        // `b` was never written, so it cannot be moved, after `a` and `new` were.
+        assert!(stage(false).publish().is_err());
+        let old = || Some("old".to_owned());
+        assert_eq!(["a", "b", "stale", "new"].map(|name| read(&out, name)), [old(), old(), old(), None]);
+        stage(true).publish().expect("complete");
+        let new = || Some("new".to_owned());
+        assert_eq!(["a", "b", "stale", "new"].map(|name| read(&out, name)), [new(), new(), None, new()]);
+        assert_eq!(out.read_dir().expect("readable").count(), 3, "nothing is left beside them");
+    }
 }

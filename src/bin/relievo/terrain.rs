@@ -342,6 +342,7 @@ impl Terrain {
             notes: made.notes.clone(),
         };
         write_bytes(&staged.path("report.json"), &json(&report)?)?;
+        staged.remove_stale(is_of_a_patch);
         staged.publish()?;
         say(format_args!(
             "{} patches of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",
@@ -356,7 +357,7 @@ impl Terrain {
 
 #[cfg(feature = "gpu")]
 mod on_device {
-    use relievo::gpu::{Buffer, Gpu, GpuError};
+    use relievo::gpu::{Buffer, Gpu};
     use relievo::render::{Picture, Style, picture::framing};
     use relievo::terrain::blend::BlendPass;
     use relievo::terrain::fields::Fields;
@@ -436,23 +437,24 @@ mod on_device {
             context: &Context,
             made: &mut Made,
         ) -> Result<(), Error> {
-            let gpu = match context.gpu() {
-                Ok(gpu) => gpu,
-                Err(Error::Gpu(GpuError::NoAdapter { wanted, seen })) => {
-                    made.notes.push(format!("terrain.png was not made: no GPU adapter {wanted}; {seen}"));
-                    return Ok(());
-                }
-                Err(error) => return Err(error),
-            };
+            match context.gpu().and_then(|gpu| self.draw_cpu_heights(plan, &gpu, made)) {
+                // The heights need no device.
+                Err(Error::Gpu(error)) => made.notes.push(format!("terrain.png was not made: {error}")),
+                drawn => drawn?,
+            }
+            Ok(())
+        }
+
+        fn draw_cpu_heights(&self, plan: &Plan, gpu: &Gpu, made: &mut Made) -> Result<(), Error> {
             let width = plan.recipe.config.patch_size + 2;
-            let per_part = Fields::most(&gpu, width);
+            let per_part = Fields::most(gpu, width);
             let mut parts = Vec::new();
             for windows in made.windows.chunks(per_part) {
-                let fields = Fields::new(&gpu, "terrain heights", width, windows.len() as u32)?;
-                fields.heights.write(&gpu, &windows.concat())?;
+                let fields = Fields::new(gpu, "terrain heights", width, windows.len() as u32)?;
+                fields.heights.write(gpu, &windows.concat())?;
                 parts.push(fields);
             }
-            made.view = Some(self.view(&gpu, plan, &parts, &made.windows)?);
+            made.view = Some(self.view(gpu, plan, &parts, &made.windows)?);
             made.adapter = Some((gpu.adapter().name.clone(), gpu.adapter().driver.clone()));
             Ok(())
         }
@@ -502,6 +504,18 @@ fn grid_patches(
         patches.push([coordinate(origin[0], x, 0)?, coordinate(origin[1], y, 1)?]);
     }
     Ok(patches)
+}
+
+/// Whether a file's name is one that a patch's files have.
+fn is_of_a_patch(name: &str) -> bool {
+    let Some((stem, extension)) = name.rsplit_once('.') else { return false };
+    let coordinates = match extension {
+        "png" | "i32" => stem.strip_prefix("heights_"),
+        "obj" => stem.strip_prefix("patch_"),
+        _ => None,
+    };
+    let canonical = |text: &str| text.parse::<i32>().is_ok_and(|number| number.to_string() == text);
+    coordinates.and_then(|text| text.split_once('_')).is_some_and(|(px, py)| canonical(px) && canonical(py))
 }
 
 /// The patches' maps in one image; neighbours share a row or column of pixels.
