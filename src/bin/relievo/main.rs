@@ -6,6 +6,7 @@ mod bench;
 mod demo;
 #[cfg(feature = "gpu")]
 mod info;
+mod memory;
 mod output;
 mod progress;
 #[cfg(feature = "gpu")]

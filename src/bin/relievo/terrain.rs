@@ -20,6 +20,7 @@ use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
+use crate::memory::Load;
 use crate::output::{Staged, json, say};
 use crate::progress::bar;
 
@@ -209,8 +210,15 @@ impl Terrain {
         }
         let thermal = self.thermal.map(|iterations| Thermal { iterations, talus: self.talus });
         thermal.map_or(Ok(()), |thermal| thermal.validate())?;
-        let patches = grid_patches(&config, grid, origin, &self.patches, self.reach())?;
-        let features = self.read_features(&config, grid, origin)?;
+        if grid.contains(&0) {
+            return Err(InputError::new("patches", &self.patches, "must be at least 1x1").into());
+        }
+        let width = u64::from(config.patch_size) + 2 * self.reach();
+        let load = Load { grid, width, features: 0 };
+        load.check(&self.patches)?;
+        let patches = grid_patches(grid, origin)?;
+        let features = self.read_features(&config, load, origin)?;
+        Load { features: features.len() as u64, ..load }.check(&self.patches)?;
         let recipe = Recipe {
             despike: self.despike.map(|threshold| Despike { threshold }),
             thermal,
@@ -230,7 +238,7 @@ impl Terrain {
         1 + u64::from(self.thermal.unwrap_or(0)) + u64::from(self.despike.is_some())
     }
 
-    fn read_features(&self, config: &Config, grid: [u32; 2], origin: [i32; 2]) -> Result<Features, Error> {
+    fn read_features(&self, config: &Config, load: Load, origin: [i32; 2]) -> Result<Features, Error> {
         let mode = match self.feature_mode {
             Mode::Keep => FeatureMode::Keep,
             Mode::Additive => FeatureMode::Additive,
@@ -251,7 +259,8 @@ impl Terrain {
                     .range
                     .unwrap_or(HeightRange { low: -config.scale_factor, high: config.scale_factor }),
             };
-            for file in image.features(config, origin, grid, every, range)? {
+            load.with_samples(image.samples.len(), every).check(&self.patches)?;
+            for file in image.features(config, origin, load.grid, every, range)? {
                 add(path, &file)?;
             }
         }
@@ -467,34 +476,8 @@ mod on_device {
     }
 }
 
-/// The patches of a grid, row by row, if they fit memory.
-fn grid_patches(
-    config: &Config,
-    grid: [u32; 2],
-    origin: [i32; 2],
-    text: &str,
-    reach: u64,
-) -> Result<Vec<[i32; 2]>, Error> {
-    if grid.contains(&0) {
-        return Err(InputError::new("patches", text, "must be at least 1x1").into());
-    }
-    let width = u64::from(config.patch_size) + 2 * reach;
-    // Two windows while it is made; heights, map and files' bytes while it is written.
-    let bytes = u128::from(grid[0]) * u128::from(grid[1]) * u128::from(width * width) * 24;
-    // Where the system does not say, allocation decides.
-    let available = sysinfo::System::new().map_or(u64::MAX, |mut system| {
-        system.refresh_memory();
-        system.available_memory()
-    });
-    if bytes > u128::from(available) {
-        let gibibytes = |bytes: f64| bytes / f64::from(1 << 30);
-        let bound = format!(
-            "needs about {:.1} GiB of memory, and {:.1} GiB are available",
-            gibibytes(bytes as f64),
-            gibibytes(available as f64)
-        );
-        return Err(InputError::new("patches", text, bound).into());
-    }
+/// The patches of a grid, row by row.
+fn grid_patches(grid: [u32; 2], origin: [i32; 2]) -> Result<Vec<[i32; 2]>, Error> {
     let coordinate = |origin: i32, index: u32, axis: usize| {
         i32::try_from(i64::from(origin) + i64::from(index))
             .map_err(|_| InputError::new(format!("origin[{axis}]"), origin, "patch coordinates must fit i32"))
