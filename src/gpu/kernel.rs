@@ -7,7 +7,7 @@ use super::{Gpu, GpuError};
 #[derive(Debug, Clone)]
 pub struct Kernel {
     shader: &'static Shader,
-    pipeline: wgpu::ComputePipeline,
+    pub(super) pipeline: wgpu::ComputePipeline,
     layouts: Vec<wgpu::BindGroupLayout>,
 }
 
@@ -18,11 +18,17 @@ pub type Resource<'a> = wgpu::BindingResource<'a>;
 pub type Group = wgpu::BindGroup;
 
 impl Kernel {
-    /// Compiles the pipeline. `overrides` sets override constants by name.
+    /// Compiles the pipeline, or shares the same one that was compiled on this device before. `overrides` sets
+    /// override constants by name.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
+        let key = format!("{} {overrides:?}", shader.name);
+        gpu.kernels.get(key, || Self::compile(gpu, shader, overrides))
+    }
+
+    fn compile(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
         let layouts = layouts(gpu, shader)?;
         let pipeline = gpu.scoped(|| {
             gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

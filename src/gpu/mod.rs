@@ -12,6 +12,7 @@ mod kernel;
 pub(crate) mod layout;
 mod readback;
 pub mod shaders;
+mod shared;
 mod timer;
 
 use std::sync::{Arc, Mutex};
@@ -26,6 +27,8 @@ pub use kernel::{
 };
 pub use timer::{Measurement, TimedBy, Timer};
 
+use shared::Shared;
+
 /// How long a wait for the device may take before it counts as hung.
 const PATIENCE: Duration = Duration::from_secs(300);
 
@@ -36,14 +39,20 @@ struct Heard {
     error: Option<GpuError>,
 }
 
-/// A device and its queue, with what relievo needs to know of the adapter. Clones share the device.
+/// A device and its queue, with what relievo needs to know of the adapter. Clones share the device, and the
+/// pipelines compiled on it.
 #[derive(Debug, Clone)]
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     summary: AdapterSummary,
     heard: Arc<Mutex<Heard>>,
+    pub(crate) kernels: Arc<Shared<Kernel>>,
+    pub(crate) render_pipelines: Arc<Shared<RenderPipeline>>,
 }
+
+/// A render pipeline with its bind group layouts.
+pub(crate) type RenderPipeline = (wgpu::RenderPipeline, Vec<wgpu::BindGroupLayout>);
 
 impl Gpu {
     /// Opens a device of its own, without a window, with WebGPU's default limits; storage bindings may be larger
@@ -75,14 +84,19 @@ impl Gpu {
         })?;
         let heard = Arc::new(Mutex::new(Heard::default()));
         listen(&device, &heard);
-        Ok(Self { device, queue, summary, heard })
+        Ok(Self { heard, ..Self::new(device, queue, summary) })
     }
 
     /// Embeds in a program that has its own device. Its error handlers are left alone; relievo's own calls
     /// are wrapped in error scopes.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let summary = AdapterSummary::of(&device.adapter_info());
-        Self { device, queue, summary, heard: Arc::default() }
+        Self::new(device, queue, summary)
+    }
+
+    fn new(device: wgpu::Device, queue: wgpu::Queue, summary: AdapterSummary) -> Self {
+        let (heard, kernels, render_pipelines) = Default::default();
+        Self { device, queue, summary, heard, kernels, render_pipelines }
     }
 
     /// The wgpu device.

@@ -7,7 +7,9 @@ use glam::Mat4;
 
 pub use scene::{FieldsId, TerrainScene};
 
-use crate::gpu::{Buffer, Gpu, GpuError, Uniform, bind, layouts, module, pipeline_layout, shaders, storage};
+use crate::gpu::{
+    Buffer, Gpu, GpuError, RenderPipeline, Uniform, bind, layouts, module, pipeline_layout, shaders, storage,
+};
 use crate::render::target::DEPTH_FORMAT;
 use crate::terrain::blend::{Light, Shading, Zone, ZoneRange};
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
@@ -40,11 +42,17 @@ pub struct TerrainRenderer {
 }
 
 impl TerrainRenderer {
-    /// Compiles the pipeline for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
+    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<Self, GpuError> {
+        let key = format!("{} {color:?} {style:?}", shaders::RENDER_TERRAIN.name);
+        let (pipeline, layouts) = gpu.render_pipelines.get(key, || Self::compile(gpu, color, style))?;
+        Ok(Self { pipeline, layouts })
+    }
+
+    fn compile(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<RenderPipeline, GpuError> {
         let shader = &shaders::RENDER_TERRAIN;
         let layouts = layouts(gpu, shader)?;
         let constants = [("WIREFRAME", f64::from(u8::from(style == Style::Wireframe)))];
@@ -82,7 +90,7 @@ impl TerrainRenderer {
                 cache: None,
             })
         })?;
-        Ok(Self { pipeline, layouts })
+        Ok((pipeline, layouts))
     }
 
     /// Binds materials and a view of them.

@@ -57,13 +57,19 @@ enum Command {
 pub struct Context {
     #[cfg(feature = "gpu")]
     options: relievo::gpu::Options,
+    #[cfg(feature = "gpu")]
+    opened: std::cell::OnceCell<relievo::gpu::Gpu>,
 }
 
 #[cfg(feature = "gpu")]
 impl Context {
-    /// Opens the chosen adapter.
+    /// The chosen adapter's device, opened at the first call.
     fn gpu(&self) -> Result<relievo::gpu::Gpu, relievo::Error> {
-        Ok(relievo::gpu::Gpu::headless(&self.options)?)
+        if let Some(gpu) = self.opened.get() {
+            return Ok(gpu.clone());
+        }
+        let gpu = relievo::gpu::Gpu::headless(&self.options)?;
+        Ok(self.opened.get_or_init(|| gpu).clone())
     }
 }
 
@@ -75,6 +81,8 @@ fn main() -> ExitCode {
     let context = Context {
         #[cfg(feature = "gpu")]
         options: relievo::gpu::Options { adapter: arguments.adapter },
+        #[cfg(feature = "gpu")]
+        opened: Default::default(),
     };
     let outcome = match arguments.command {
         #[cfg(feature = "gpu")]
