@@ -9,13 +9,13 @@ CARGO ?= cargo
 ONLY ?=
 OUT ?= target/demo
 
-.PHONY: demo test bench bless lint setup
+.PHONY: demo test bench bless lint setup adapter
 
-demo: setup
+demo: adapter
 	$(CARGO) run --bin relievo -- demo --out $(OUT)
 	@echo "open $(OUT)/index.html"
 
-test: setup
+test: adapter
 	$(CARGO) test
 	$(CARGO) test --no-default-features
 
@@ -23,7 +23,7 @@ bench: setup
 	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
 
 # The only way to write a golden.
-bless: setup
+bless: adapter
 	RELIEVO_BLESS=1 $(CARGO) test --test golden
 
 lint: setup
@@ -36,3 +36,7 @@ lint: setup
 
 setup:
 	@scripts/setup.sh
+
+# Opens a device, which tells more than a driver's file.
+adapter:
+	@CARGO=$(CARGO) scripts/setup.sh adapter

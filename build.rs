@@ -31,10 +31,11 @@ mod shaders {
                 let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
                 std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
                 shader.describe(&mut manifest, &path);
-                all.push(shader.constant());
+                all.push(shader);
             }
         }
-        let list = all.iter().map(|constant| format!("&{constant}")).collect::<Vec<_>>().join(", ");
+        refuse_unused_module_bindings(&root, &all);
+        let list = all.iter().map(|shader| format!("&{}", shader.constant())).collect::<Vec<_>>().join(", ");
         writeln!(manifest, "/// Every shader of the crate.\npub static ALL: &[&Shader] = &[{list}];")
             .expect("a string");
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
@@ -54,6 +55,60 @@ mod shaders {
         files
     }
 
+    /// Refuses bindings of modules that no shader uses.
+    fn refuse_unused_module_bindings(root: &Path, shaders: &[Shader]) {
+        for file in shader_files(&root.join("wgsl")) {
+            for name in declared_bindings(root, &file) {
+                if !shaders.iter().any(|shader| shader.uses(&name)) {
+                    refuse_binding(root, &file, &name);
+                }
+            }
+        }
+    }
+
+    /// Composes a file with what it imports. With `whole`, all that the file itself declares stays in.
+    fn flatten(root: &Path, file: &Path, whole: bool, mangler: wesl::ManglerKind) -> String {
+        let relative = file.strip_prefix(root).expect("below the root");
+        let path = format!("package::{}", relative.with_extension("").display()).replace('/', "::");
+        let mut compiler = wesl::Wesl::new(root);
+        // Eager: an import that nothing uses must exist too.
+        compiler.set_options(wesl::CompileOptions { lazy: false, keep_root: whole, ..Default::default() });
+        compiler.set_mangler(mangler);
+        compiler.set_missing_feature_behavior(wesl::Feature::Error);
+        match compiler.compile(&path.parse().expect("a module path")) {
+            Ok(result) => result.to_string(),
+            Err(error) => refuse(relative, &error.to_string()),
+        }
+    }
+
+    /// Names of the bindings that a file itself declares.
+    fn declared_bindings(root: &Path, file: &Path) -> Vec<String> {
+        // Mangling changes the names of imports alone, and so tells them from the file's own.
+        let flat = flatten(root, file, true, wesl::ManglerKind::Escape);
+        let module = naga::front::wgsl::parse_str(&flat)
+            .unwrap_or_else(|error| refuse(file, &error.emit_to_string(&flat)));
+        let names = module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some());
+        names
+            .filter_map(|(_, variable)| variable.name.clone())
+            .filter(|name| line_of(file, name) > 0)
+            .collect()
+    }
+
+    /// The line that declares `name`, counted from 1; 0 where none does.
+    fn line_of(file: &Path, name: &str) -> usize {
+        let source = std::fs::read_to_string(file).unwrap_or_default();
+        let declares = |line: &str| {
+            line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name)
+                && !line.trim_start().starts_with("//")
+        };
+        source.lines().position(declares).map_or(0, |index| index + 1)
+    }
+
+    fn refuse_binding(root: &Path, file: &Path, name: &str) -> ! {
+        let relative = file.strip_prefix(root).unwrap_or(file);
+        refuse(relative, &format!("line {}: nothing uses the binding `{name}`", line_of(file, name)))
+    }
+
     struct Shader {
         name: String,
         flat: String,
@@ -64,18 +119,8 @@ mod shaders {
     impl Shader {
         fn compose(root: &Path, file: &Path, name: String) -> Self {
             let relative = file.strip_prefix(root).expect("below the root");
-            let module_path =
-                format!("package::{}", relative.with_extension("").display()).replace('/', "::");
-            let mut compiler = wesl::Wesl::new(root);
-            // Eager: an import that nothing uses must exist too.
-            compiler.set_options(wesl::CompileOptions { lazy: false, ..Default::default() });
             // Without mangling the flat shader reads like its sources; a clash of names is a naga error.
-            compiler.set_mangler(wesl::ManglerKind::None);
-            compiler.set_missing_feature_behavior(wesl::Feature::Error);
-            let flat = match compiler.compile(&module_path.parse().expect("a module path")) {
-                Ok(result) => result.to_string(),
-                Err(error) => refuse(relative, &error.to_string()),
-            };
+            let flat = flatten(root, file, false, wesl::ManglerKind::None);
             let flat = format!("// relievo {name}: generated from {}\n\n{flat}", relative.display());
             let module = naga::front::wgsl::parse_str(&flat).unwrap_or_else(|error| {
                 let at = error.location(&flat).map_or(0, |location| location.line_number as usize);
@@ -90,34 +135,27 @@ mod shaders {
                 refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
             });
             let shader = Self { name, flat, module, info };
-            shader.refuse_unused_bindings(file, relative);
+            shader.refuse_unused_bindings(root, file);
             shader
         }
 
         /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat
         /// shader lacks is one that nothing uses.
-        fn refuse_unused_bindings(&self, file: &Path, relative: &Path) {
-            let source = std::fs::read_to_string(file).expect("it was just composed");
-            for (line, text) in source.lines().enumerate() {
-                let Some((_, declaration)) = text.split_once("@binding(") else { continue };
-                let Some(name) = declaration.split(" var").nth(1).and_then(|rest| {
-                    let rest = rest
-                        .split_once('>')
-                        .filter(|_| rest.starts_with('<'))
-                        .map_or(rest, |(_, after)| after);
-                    rest.trim().split(':').next().map(str::trim)
-                }) else {
-                    continue;
-                };
-                let used = self.module.global_variables.iter().any(|(handle, variable)| {
-                    variable.name.as_deref() == Some(name)
-                        && (0..self.module.entry_points.len())
-                            .any(|entry| !self.info.get_entry_point(entry)[handle].is_empty())
-                });
-                if !used {
-                    refuse(relative, &format!("line {}: nothing uses the binding `{name}`", line + 1));
+        fn refuse_unused_bindings(&self, root: &Path, file: &Path) {
+            for name in declared_bindings(root, file) {
+                if !self.uses(&name) {
+                    refuse_binding(root, file, &name);
                 }
             }
+        }
+
+        /// Whether an entry point uses a binding of this name.
+        fn uses(&self, name: &str) -> bool {
+            self.module.global_variables.iter().any(|(handle, variable)| {
+                let here = variable.binding.is_some() && variable.name.as_deref() == Some(name);
+                let mut entries = 0..self.module.entry_points.len();
+                here && entries.any(|entry| !self.info.get_entry_point(entry)[handle].is_empty())
+            })
         }
 
         fn constant(&self) -> String {

@@ -1,9 +1,10 @@
 #!/bin/bash
-# Makes sure that there is a Vulkan adapter and what the build needs besides cargo: installs Debian's packages
-# as root, and otherwise says the one command to run. Does nothing, and needs no network, where all is there.
+# Makes sure that there is what the build needs besides cargo, and with `adapter` that a Vulkan adapter works:
+# installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no
+# network, where all is there.
 set -euo pipefail
+cargo=${CARGO:-cargo}
 
-missing=()
 have_driver() {
     [ -n "${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-}" ] ||
         compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null ||
@@ -12,21 +13,37 @@ have_driver() {
 have_loader() {
     ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' || compgen -G '/usr/lib/*/libvulkan.so.1' >/dev/null
 }
+# A driver's file may be there without its library or its hardware: only opening a device tells.
+have_adapter() {
+    "$cargo" run --quiet --bin relievo -- info >/dev/null 2>&1
+}
+provide() {
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+        echo "installing $*"
+        export DEBIAN_FRONTEND=noninteractive
+        apt-get install -y --no-install-recommends "$@" >/dev/null 2>&1 ||
+            { apt-get update && apt-get install -y --no-install-recommends "$@"; }
+    else
+        echo "missing: $*. Run: sudo apt-get update && sudo apt-get install $*" >&2
+        exit 1
+    fi
+}
+
+command -v "$cargo" >/dev/null || { echo "cargo is missing: install Rust 1.95 or newer from https://rustup.rs" >&2; exit 1; }
+missing=()
 if [ "$(uname -s)" = Linux ]; then
     have_driver || missing+=(mesa-vulkan-drivers)
     have_loader || missing+=(libvulkan1)
     # FLIP, the image comparison of the tests, is C++.
     command -v c++ >/dev/null || missing+=(g++)
 fi
-command -v cargo >/dev/null || { echo "cargo is missing: install Rust 1.95 or newer from https://rustup.rs" >&2; exit 1; }
-[ ${#missing[@]} -gt 0 ] || exit 0
+[ ${#missing[@]} = 0 ] || provide "${missing[@]}"
 
-if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    echo "installing ${missing[*]}"
-    export DEBIAN_FRONTEND=noninteractive
-    apt-get install -y --no-install-recommends "${missing[@]}" >/dev/null 2>&1 ||
-        { apt-get update && apt-get install -y --no-install-recommends "${missing[@]}"; }
-else
-    echo "missing: ${missing[*]}. Run: sudo apt-get install ${missing[*]}" >&2
-    exit 1
+[ "${1:-}" = adapter ] || exit 0
+"$cargo" build --bin relievo
+have_adapter && exit 0
+# A driver that was chosen by name is the user's business.
+if [ "$(uname -s)" = Linux ] && [ -z "${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-}${RELIEVO_ADAPTER:-}" ]; then
+    provide mesa-vulkan-drivers
 fi
+have_adapter || { "$cargo" run --quiet --bin relievo -- info >/dev/null; exit 1; }

@@ -36,9 +36,17 @@ pub enum Error {
         /// What is wrong in it.
         source: InputError,
     },
-    /// A file cannot be read, written or understood.
+    /// A file cannot be read or understood.
     #[error("{}: {reason}", path.display())]
     File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A file cannot be written.
+    #[error("{}: {reason}", path.display())]
+    Output {
         /// The file.
         path: PathBuf,
         /// Why.
@@ -51,9 +59,14 @@ pub enum Error {
 }
 
 impl Error {
-    /// A file that cannot be read, written or understood.
+    /// A file that cannot be read or understood.
     pub fn file(path: impl AsRef<Path>, reason: impl Display) -> Self {
         Self::File { path: path.as_ref().to_owned(), reason: reason.to_string() }
+    }
+
+    /// A file that cannot be written.
+    pub fn output(path: impl AsRef<Path>, reason: impl Display) -> Self {
+        Self::Output { path: path.as_ref().to_owned(), reason: reason.to_string() }
     }
 
     /// Whether the user's input is at fault, rather than the machine.

@@ -4,12 +4,20 @@
 #[path = "harness/mod.rs"]
 mod harness;
 
+use std::pin::pin;
+use std::task::{Context, Poll, Wake};
+
 use harness::gpu;
-use relievo::gpu::{Buffer, Gpu, GpuError, Options, TimedBy, Timer, adapters};
+use relievo::gpu::{
+    Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION, Options, Step, TimedBy, Timer, adapters,
+};
 use relievo::reference::terrain::height::height;
 use relievo::terrain::config::{Config, Offset};
 use relievo::terrain::features::Features;
+use relievo::terrain::fields::Fields;
 use relievo::terrain::height::{HeightBatch, HeightPass, Window};
+use relievo::terrain::thermal::{Thermal, ThermalPass};
+use relievo::verify::terrain::random_heights;
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
 fn foreign() -> (wgpu::Device, wgpu::Queue) {
@@ -62,6 +70,36 @@ fn a_validation_error_is_returned_and_the_device_goes_on() {
     }
 }
 
+/// Counts how often it is woken.
+#[derive(Default)]
+struct Alarm(std::sync::atomic::AtomicUsize);
+
+impl Wake for Alarm {
+    fn wake(self: std::sync::Arc<Self>) {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+    }
+}
+
+#[test]
+fn reading_waits_without_blocking_and_is_woken_by_the_device() {
+    let gpu = gpu();
+    let buffer = Buffer::from_slice(&gpu, "data", &[1_u32, 2, 3, 4]).expect("uploaded");
+    let alarm = std::sync::Arc::new(Alarm::default());
+    let waker = alarm.clone().into();
+    let mut context = Context::from_waker(&waker);
+    let mut read = pin!(buffer.read(&gpu));
+    for _ in 0..3 {
+        assert!(read.as_mut().poll(&mut context).is_pending(), "nobody listens to the device yet");
+    }
+    assert_eq!(alarm.0.load(std::sync::atomic::Ordering::SeqCst), 0);
+    gpu.wait().expect("the device answers");
+    assert_eq!(alarm.0.load(std::sync::atomic::Ordering::SeqCst), 1);
+    let Poll::Ready(Ok(data)) = read.as_mut().poll(&mut context) else { panic!("not ready") };
+    assert_eq!(data, [1, 2, 3, 4]);
+    let empty = Buffer::<u32>::new(&gpu, "empty", 0).expect("allocated");
+    assert_eq!(pollster::block_on(empty.read(&gpu)).expect("nothing to wait for"), [0_u32; 0]);
+}
+
 #[test]
 fn a_lost_device_is_an_error() {
     let gpu = gpu();
@@ -77,8 +115,34 @@ fn a_buffer_beyond_the_limit_names_it() {
     let gpu = gpu();
     let words = gpu.max_binding() as usize / 4;
     let error = Buffer::<u32>::new(&gpu, "huge", words + 1).expect_err("too large").to_string();
-    assert!(error.contains("maxStorageBufferBindingSize") && error.contains("split"), "{error}");
-    assert!(Buffer::<u32>::new(&gpu, "just", words).is_ok());
+    for part in ["maxStorageBufferBindingSize", "split the batch", "smaller patches", "--backend cpu"] {
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(Buffer::<u32>::new(&gpu, "just", words.min(1 << 25)).is_ok());
+}
+
+/// A window cannot be split: it takes what the adapter offers beyond WebGPU's default.
+#[test]
+fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_elsewhere() {
+    let (device, queue) = foreign();
+    for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
+        let config = Config::new(4097, 20.0, "large").expect("valid");
+        let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
+        let reach = 850;
+        match HeightBatch::new(&gpu, &pass, &config, [1, reach], 0) {
+            Ok(batch) => {
+                assert!(gpu.max_binding() > 128 << 20);
+                batch.set(&gpu, &[[0, 0]], &Features::default()).expect("set");
+                gpu.run("test", |encoder| batch.record(encoder)).expect("run");
+                let actual = batch.fields()[0].heights.read_blocking(&gpu).expect("read");
+                assert!(actual == height(&config, &Features::default(), Window { patch: [0, 0], reach }));
+            }
+            Err(error) => {
+                assert!(gpu.max_binding() == 128 << 20, "{error}");
+                assert!(error.to_string().contains("smaller patches or a smaller reach"), "{error}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -98,6 +162,34 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let expected = height(&config, &Features::default(), Window { patch: [32, -32], reach: 0 });
     assert!(last[last.len() - points..] == expected);
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
+}
+
+/// Watchdogs of operating systems end submissions of seconds.
+#[test]
+fn long_jobs_go_to_the_device_in_pieces() {
+    let gpu = gpu();
+    let pass = ThermalPass::new(&gpu).expect("compiled");
+    let (width, iterations) = (67, 20);
+    let heights = random_heights(1, (width * width) as usize, 1 << 24);
+    let run = |most| {
+        let [windows, other] = [0, 1].map(|_| Fields::new(&gpu, "windows", width, 1).expect("allocated"));
+        windows.heights.write(&gpu, &heights).expect("written");
+        let params = Thermal { iterations, ..Thermal::default() };
+        let job = pass.prepare(&gpu, params, 1.0, &windows, &other).expect("prepared");
+        let pieces = job.submissions(most);
+        assert_eq!(pieces.iter().map(|steps| steps.len()).sum::<usize>(), iterations as usize);
+        let invocations = |steps: &[Step]| {
+            steps.iter().map(|step| 64 * step.workgroups.iter().product::<u32>()).sum::<u32>()
+        };
+        assert!(pieces.iter().all(|steps| steps.len() == 1 || u64::from(invocations(steps)) <= most));
+        job.run(&gpu, most).expect("run");
+        (pieces.len(), windows.cropped(iterations).heights.read_blocking(&gpu).expect("read"))
+    };
+    let whole = run(INVOCATIONS_A_SUBMISSION);
+    let (some, one) = (run(40_000), run(1));
+    assert_eq!((whole.0, one.0), (1, 20));
+    assert!((2..20).contains(&some.0), "{} submissions", some.0);
+    assert!(whole.1 == some.1 && whole.1 == one.1);
 }
 
 #[test]

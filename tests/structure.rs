@@ -2,7 +2,14 @@
 //! out as the shaders see them.
 #![cfg(feature = "gpu")]
 
+#[path = "harness/mod.rs"]
+mod harness;
+
+use std::collections::BTreeSet;
 use std::path::Path;
+
+use relievo::bench::{self, Backend};
+use relievo::verify;
 
 use relievo::gpu::shaders::{ALL, Stage};
 
@@ -42,6 +49,45 @@ fn every_kernel_has_host_twin_parity_cases_and_benchmark() {
 #[test]
 fn a_kernel_without_them_is_reported() {
     assert_eq!(lacking("terrain/nothing").len(), 6);
+}
+
+/// What a kernel's benchmark lacks: a kernel and a twin in every case, and something that both are measured
+/// against.
+fn unmeasured(stem: &bench::Stem) -> Vec<String> {
+    let rows = bench::unmeasured(&harness::gpu(), stem).expect("the device works");
+    let cases: BTreeSet<_> = rows.iter().map(|row| row.case.as_str()).collect();
+    if cases.is_empty() {
+        return vec!["a case".to_owned()];
+    }
+    let has = |case: &str, backends: &[Backend]| {
+        rows.iter().any(|row| row.case == case && row.items > 0 && backends.contains(&row.backend))
+    };
+    let needed = [&[Backend::Gpu][..], &[Backend::Twin], &[Backend::Copy, Backend::Limit]];
+    (cases.iter().flat_map(|case| needed.map(|backends| (case, backends))))
+        .filter(|(case, backends)| !has(case, backends))
+        .map(|(case, backends)| format!("one of {backends:?} in {case}"))
+        .collect()
+}
+
+#[test]
+fn every_benchmark_measures_kernel_twin_and_baseline() {
+    for stem in bench::STEMS {
+        assert_eq!(unmeasured(stem), Vec::<String>::new(), "{}", stem.name);
+    }
+    let idle = bench::Stem { name: "terrain/height", run: |_| Ok(()) };
+    assert_eq!(unmeasured(&idle), ["a case"]);
+}
+
+/// `tests/parity.rs` runs the cases of all.
+#[test]
+fn a_kernel_whose_parity_cases_add_nothing_does_not_hold() {
+    let idle = verify::Stem { name: "terrain/height", run: |_| Ok(()) };
+    let copy = verify::STEMS.iter().find(|stem| stem.name == "baseline/copy").expect("a stem");
+    let run = |stems: &[verify::Stem]| {
+        verify::run_stems(&harness::gpu(), stems, &mut |_| ()).expect("the device works").holds
+    };
+    assert!(run(&[*copy]));
+    assert!(!run(&[*copy, idle]));
 }
 
 #[test]

@@ -64,6 +64,7 @@ pub struct Bench<'a> {
     name: &'static str,
     timer: Timer,
     rows: Vec<Row>,
+    measure: bool,
     progress: &'a mut dyn FnMut(&Row),
 }
 
@@ -73,7 +74,12 @@ impl<'a> Bench<'a> {
         name: &'static str,
         progress: &'a mut dyn FnMut(&Row),
     ) -> Result<Self, Error> {
-        Ok(Self { gpu, name, timer: Timer::new(gpu)?, rows: Vec::new(), progress })
+        Ok(Self { gpu, name, timer: Timer::new(gpu)?, rows: Vec::new(), measure: true, progress })
+    }
+
+    /// Sets cases up without measuring them: every time is 0.
+    pub(super) fn unmeasured(self) -> Self {
+        Self { measure: false, ..self }
     }
 
     pub(super) fn into_rows(self) -> Vec<Row> {
@@ -91,25 +97,12 @@ impl<'a> Bench<'a> {
         bytes: u64,
         mut contenders: Vec<Contender<'_>>,
     ) -> Result<(), Error> {
-        let mut times = vec![Vec::new(); contenders.len()];
-        let mut clocks = vec![TimedBy::Wall; contenders.len()];
-        let mut start = Instant::now();
-        for repetition in 0..WARM_UP + REPETITIONS.end() {
-            if repetition == WARM_UP {
-                times.iter_mut().for_each(Vec::clear);
-                start = Instant::now();
-            }
-            if repetition >= WARM_UP + REPETITIONS.start() && start.elapsed() > ENOUGH {
-                break;
-            }
-            for (index, contender) in contenders.iter_mut().enumerate() {
-                let (nanoseconds, clock) = contender.once(self.gpu, &self.timer)?;
-                times[index].push(nanoseconds);
-                clocks[index] = clock;
-            }
-        }
+        let (mut times, clocks) = match self.measure {
+            true => self.repeat(&mut contenders)?,
+            false => (vec![vec![0.0]; contenders.len()], vec![TimedBy::Wall; contenders.len()]),
+        };
         let case = case.into();
-        for ((contender, mut times), timed_by) in contenders.iter().zip(times).zip(clocks) {
+        for ((contender, times), timed_by) in contenders.iter().zip(&mut times).zip(clocks) {
             times.sort_by(f64::total_cmp);
             let row = Row {
                 name: self.name,
@@ -127,5 +120,27 @@ impl<'a> Bench<'a> {
             self.rows.push(row);
         }
         Ok(())
+    }
+
+    /// The contenders' times, and the clocks that took them.
+    fn repeat(&self, contenders: &mut [Contender<'_>]) -> Result<(Vec<Vec<f64>>, Vec<TimedBy>), Error> {
+        let mut times = vec![Vec::new(); contenders.len()];
+        let mut clocks = vec![TimedBy::Wall; contenders.len()];
+        let mut start = Instant::now();
+        for repetition in 0..WARM_UP + REPETITIONS.end() {
+            if repetition == WARM_UP {
+                times.iter_mut().for_each(Vec::clear);
+                start = Instant::now();
+            }
+            if repetition >= WARM_UP + REPETITIONS.start() && start.elapsed() > ENOUGH {
+                break;
+            }
+            for (index, contender) in contenders.iter_mut().enumerate() {
+                let (nanoseconds, clock) = contender.once(self.gpu, &self.timer)?;
+                times[index].push(nanoseconds);
+                clocks[index] = clock;
+            }
+        }
+        Ok((times, clocks))
     }
 }

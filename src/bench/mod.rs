@@ -113,6 +113,17 @@ pub struct Summary {
     pub rows: Vec<Row>,
 }
 
+/// What a kernel's benchmark would measure: its rows, set up but not measured.
+///
+/// # Errors
+/// What the device reports.
+pub fn unmeasured(gpu: &Gpu, stem: &Stem) -> Result<Vec<Row>, Error> {
+    let progress = &mut |_: &Row| ();
+    let mut bench = Bench::new(gpu, stem.name, progress)?.unmeasured();
+    (stem.run)(&mut bench)?;
+    Ok(bench.into_rows())
+}
+
 /// Runs the benchmarks of every selected kernel; `progress` hears of each row.
 ///
 /// # Errors

@@ -1,12 +1,14 @@
 //! Rows as a table for people.
 
 use super::{Backend, Row};
+use crate::gpu::TimedBy;
 
-/// The rows, with items a second, bytes a second, and how a kernel compares with its case's other rows.
+/// The rows, with items a second, bytes a second, how a kernel compares with its case's other rows, and the
+/// clock: the device's own, or the host's, which counts submission and waiting too.
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
-        "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11} {:>11} {:>8}\n",
-        "name", "case", "backend", "median", "min", "M items/s", "GB/s", "gpu is"
+        "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11} {:>11} {:>8}  {}\n",
+        "name", "case", "backend", "median", "min", "M items/s", "GB/s", "gpu is", "clock"
     );
     for row in rows {
         let seconds = row.nanoseconds * 1e-9;
@@ -16,7 +18,7 @@ pub fn table(rows: &[Row]) -> String {
         let ratio = (kernel.filter(|_| row.backend != Backend::Gpu))
             .map_or(String::new(), |kernel| format!("{:.2}×", row.nanoseconds / kernel.nanoseconds));
         text += &format!(
-            "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11.1} {:>11.2} {:>8}\n",
+            "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11.1} {:>11.2} {:>8}  {}\n",
             row.name,
             row.case,
             row.backend.name(),
@@ -25,6 +27,10 @@ pub fn table(rows: &[Row]) -> String {
             row.items as f64 / seconds / 1e6,
             row.bytes as f64 / seconds / 1e9,
             ratio,
+            match row.timed_by {
+                TimedBy::Timestamp => "device",
+                TimedBy::Wall => "wall",
+            },
         );
     }
     text
@@ -36,5 +42,30 @@ fn duration(nanoseconds: f64) -> String {
         n if n < 1e7 => format!("{:.1} µs", n / 1e3),
         n if n < 1e10 => format!("{:.1} ms", n / 1e6),
         n => format!("{:.1} s", n / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_say_which_clock_timed_them() {
+        let row = |backend, timed_by| Row {
+            name: "terrain/height",
+            case: "33x33".to_owned(),
+            backend,
+            nanoseconds: 2e6,
+            min: 1e6,
+            max: 3e6,
+            items: 1089,
+            item: "point",
+            bytes: 4356,
+            timed_by,
+        };
+        let rows = [row(Backend::Gpu, TimedBy::Timestamp), row(Backend::Copy, TimedBy::Wall)];
+        let text = table(&rows);
+        let ends: Vec<_> = text.lines().filter_map(|line| line.split_whitespace().last()).collect();
+        assert_eq!(ends, ["clock", "device", "wall"], "{text}");
     }
 }

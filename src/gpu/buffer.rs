@@ -5,7 +5,9 @@ use std::marker::PhantomData;
 use encase::internal::WriteInto;
 use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
 
+use super::readback::Readback;
 use super::{Gpu, GpuError};
+use crate::InputError;
 
 /// A storage buffer of `len` elements. Usable as storage, vertex and copy source and destination.
 #[derive(Debug, Clone)]
@@ -28,7 +30,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 limit: "maxStorageBufferBindingSize",
                 needed: size,
                 available: gpu.max_binding(),
-                remedy: "split the batch",
+                remedy: "split the batch, use smaller patches or a smaller reach (fewer iterations of erosion), or compute on the CPU (--backend cpu)",
             });
         }
         let usage = wgpu::BufferUsages::STORAGE
@@ -61,23 +63,33 @@ impl<T: bytemuck::Pod> Buffer<T> {
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, bytemuck::cast_slice(data)))
     }
 
-    /// The elements, once everything submitted so far has run.
+    /// The elements, once everything that was submitted before the first poll has run.
+    ///
+    /// Never blocks: the future is woken when the device has answered. A browser's event loop hears the device
+    /// by itself. Elsewhere somebody has to listen, or the future never wakes: call
+    /// `gpu.device().poll(wgpu::PollType::Poll)` once a frame, or [`Gpu::wait`] on a thread of its own.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
-        let size = (self.len * size_of::<T>()) as u64;
-        let bytes = read_bytes(gpu, &self.raw, size).await?;
+        let bytes = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await?;
         // The mapped bytes may lie anywhere, so the elements are copied, not cast in place.
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// [`Buffer::read`], blocking.
+    /// [`Buffer::read`], blocking until the device has finished. Not for browsers, which never answer while a
+    /// program waits.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Whatever the device reports, or [`GpuError::Hung`].
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
-        pollster::block_on(self.read(gpu))
+        let readback = Readback::start(gpu, &self.raw, self.content_bytes())?;
+        gpu.wait()?;
+        Ok(bytemuck::pod_collect_to_vec(&pollster::block_on(readback.answer())?))
+    }
+
+    fn content_bytes(&self) -> u64 {
+        (self.len * size_of::<T>()) as u64
     }
 
     /// The wgpu buffer.
@@ -93,6 +105,18 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// Whether it has no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
+    }
+
+    /// Checks that the buffer holds at least `needed` elements.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `field`.
+    pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
+        if self.len >= needed {
+            return Ok(());
+        }
+        let value = format!("[{} elements]", self.len);
+        Err(InputError::new(field, value, format!("must hold at least {needed}")))
     }
 
     /// Bytes in the buffer.
@@ -151,9 +175,17 @@ pub fn storage<T: ShaderType + WriteInto>(
     label: &'static str,
     value: &T,
 ) -> Result<Buffer<u8>, GpuError> {
+    Buffer::from_slice(gpu, label, &storage_bytes(value)?)
+}
+
+/// The bytes of `value` in WGSL's storage layout.
+///
+/// # Errors
+/// [`GpuError::Internal`] when encase cannot write them.
+pub(crate) fn storage_bytes<T: ShaderType + WriteInto>(value: &T) -> Result<Vec<u8>, GpuError> {
     let mut writer = StorageBuffer::new(Vec::new());
     writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;
-    Buffer::from_slice(gpu, label, &writer.into_inner())
+    Ok(writer.into_inner())
 }
 
 /// The bytes of `value` in WGSL's uniform layout.
@@ -164,37 +196,4 @@ pub(crate) fn uniform_bytes<T: ShaderSize + WriteInto>(value: &T) -> Result<Vec<
     let mut writer = UniformBuffer::new(Vec::new());
     writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;
     Ok(writer.into_inner())
-}
-
-/// Copies the first `size` bytes of `buffer` to the host.
-pub(crate) async fn read_bytes(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>, GpuError> {
-    if size == 0 {
-        return Ok(Vec::new());
-    }
-    let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
-    let (sender, receiver) = futures_channel::oneshot::channel();
-    let staging = gpu.scoped(|| {
-        let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: padded,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut encoder = gpu.encoder("readback");
-        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, padded);
-        gpu.queue().submit([encoder.finish()]);
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only when the caller gave up waiting.
-            let _ = sender.send(result);
-        });
-        staging
-    })?;
-    gpu.wait()?;
-    let lost = |reason: String| GpuError::DeviceLost { reason };
-    receiver.await.map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
-    let view = staging.get_mapped_range(..).map_err(|error| lost(error.to_string()))?;
-    let bytes = view[..size as usize].to_vec();
-    drop(view);
-    staging.unmap();
-    Ok(bytes)
 }

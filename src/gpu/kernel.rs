@@ -7,7 +7,7 @@ use super::{Gpu, GpuError};
 #[derive(Debug, Clone)]
 pub struct Kernel {
     shader: &'static Shader,
-    pipeline: wgpu::ComputePipeline,
+    pub(super) pipeline: wgpu::ComputePipeline,
     layouts: Vec<wgpu::BindGroupLayout>,
 }
 
@@ -18,11 +18,17 @@ pub type Resource<'a> = wgpu::BindingResource<'a>;
 pub type Group = wgpu::BindGroup;
 
 impl Kernel {
-    /// Compiles the pipeline. `overrides` sets override constants by name.
+    /// Compiles the pipeline, or shares the same one that was compiled on this device before. `overrides` sets
+    /// override constants by name.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
+        let key = format!("{} {overrides:?}", shader.name);
+        gpu.kernels.get(key, || Self::compile(gpu, shader, overrides))
+    }
+
+    fn compile(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
         let layouts = layouts(gpu, shader)?;
         let pipeline = gpu.scoped(|| {
             gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -74,6 +80,18 @@ pub struct Step {
     pub workgroups: [u32; 3],
 }
 
+impl Step {
+    /// Invocations of the dispatch.
+    fn invocations(&self) -> u64 {
+        let size = self.kernel.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size);
+        self.workgroups.into_iter().chain(size).map(u64::from).fold(1, u64::saturating_mul)
+    }
+}
+
+/// Invocations after which [`Job::run`] submits what it has: some tenths of a second on a slow GPU. Watchdogs of
+/// operating systems end what takes seconds.
+pub const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
+
 /// Dispatches that belong together: prepared once, recorded as often as wanted without allocation.
 #[derive(Debug, Clone)]
 pub struct Job {
@@ -103,9 +121,40 @@ impl Job {
 
     /// Records one compute pass with all steps, in order.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.record_steps(encoder, &self.steps);
+    }
+
+    /// Runs all steps and waits. Long jobs go to the device in several submissions, each with at most `most`
+    /// invocations (see [`INVOCATIONS_A_SUBMISSION`]) or one step.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn run(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
+        self.submissions(most)
+            .into_iter()
+            .try_for_each(|steps| gpu.run(self.label, |encoder| self.record_steps(encoder, steps)))
+    }
+
+    /// The steps of each submission of [`Job::run`].
+    pub fn submissions(&self, most: u64) -> Vec<&[Step]> {
+        let mut submissions = Vec::new();
+        let (mut start, mut work) = (0, 0_u64);
+        for (index, step) in self.steps.iter().enumerate() {
+            let more = step.invocations();
+            if index > start && work.saturating_add(more) > most {
+                submissions.push(&self.steps[start..index]);
+                (start, work) = (index, 0);
+            }
+            work = work.saturating_add(more);
+        }
+        submissions.push(&self.steps[start..]);
+        submissions
+    }
+
+    fn record_steps(&self, encoder: &mut wgpu::CommandEncoder, steps: &[Step]) {
         let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
-        for step in &self.steps {
+        for step in steps {
             pass.set_pipeline(&step.kernel.pipeline);
             for (index, group) in step.groups.iter().enumerate() {
                 pass.set_bind_group(index as u32, group, &[]);

@@ -10,17 +10,24 @@ mod error;
 mod kernel;
 #[cfg(test)]
 pub(crate) mod layout;
+mod readback;
 pub mod shaders;
+mod shared;
 mod timer;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 pub use adapter::{AdapterSummary, Options, adapters};
+pub(crate) use buffer::storage_bytes;
 pub use buffer::{Buffer, Uniform, storage};
 pub use error::GpuError;
-pub use kernel::{Group, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout};
+pub use kernel::{
+    Group, INVOCATIONS_A_SUBMISSION, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout,
+};
 pub use timer::{Measurement, TimedBy, Timer};
+
+use shared::Shared;
 
 /// How long a wait for the device may take before it counts as hung.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -32,17 +39,24 @@ struct Heard {
     error: Option<GpuError>,
 }
 
-/// A device and its queue, with what relievo needs to know of the adapter. Clones share the device.
+/// A device and its queue, with what relievo needs to know of the adapter. Clones share the device, and the
+/// pipelines compiled on it.
 #[derive(Debug, Clone)]
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     summary: AdapterSummary,
     heard: Arc<Mutex<Heard>>,
+    pub(crate) kernels: Arc<Shared<Kernel>>,
+    pub(crate) render_pipelines: Arc<Shared<RenderPipeline>>,
 }
 
+/// A render pipeline with its bind group layouts.
+pub(crate) type RenderPipeline = (wgpu::RenderPipeline, Vec<wgpu::BindGroupLayout>);
+
 impl Gpu {
-    /// Opens a device of its own, without a window.
+    /// Opens a device of its own, without a window, with WebGPU's default limits; storage bindings may be larger
+    /// where the adapter offers it.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
@@ -62,7 +76,7 @@ impl Gpu {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("relievo"),
             required_features: adapter.features() & wanted,
-            required_limits: wgpu::Limits::default(),
+            required_limits: limits(&adapter.limits()),
             ..Default::default()
         };
         let (device, queue) = (adapter.request_device(&descriptor).await).map_err(|error| {
@@ -70,14 +84,19 @@ impl Gpu {
         })?;
         let heard = Arc::new(Mutex::new(Heard::default()));
         listen(&device, &heard);
-        Ok(Self { device, queue, summary, heard })
+        Ok(Self { heard, ..Self::new(device, queue, summary) })
     }
 
     /// Embeds in a program that has its own device. Its error handlers are left alone; relievo's own calls
     /// are wrapped in error scopes.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let summary = AdapterSummary::of(&device.adapter_info());
-        Self { device, queue, summary, heard: Arc::default() }
+        Self::new(device, queue, summary)
+    }
+
+    fn new(device: wgpu::Device, queue: wgpu::Queue, summary: AdapterSummary) -> Self {
+        let (heard, kernels, render_pipelines) = Default::default();
+        Self { device, queue, summary, heard, kernels, render_pipelines }
     }
 
     /// The wgpu device.
@@ -95,7 +114,7 @@ impl Gpu {
         &self.summary
     }
 
-    /// The largest storage binding in bytes.
+    /// The largest storage binding in bytes: at least WebGPU's default of 128 MiB.
     pub fn max_binding(&self) -> u64 {
         let limits = self.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
@@ -167,6 +186,19 @@ impl Gpu {
         let _ = self.device.poll(wgpu::PollType::Poll);
         self.check()?;
         Err(GpuError::from(error))
+    }
+}
+
+/// WebGPU's default limits, but for the storage bindings that the adapter offers: some buffers cannot be split.
+fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
+    let default = wgpu::Limits::default();
+    // Shaders count words in u32 with room to spare.
+    let most = u64::from(u32::MAX) / 4 * 4;
+    let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
+    wgpu::Limits {
+        max_storage_buffer_binding_size: default.max_storage_buffer_binding_size.max(binding),
+        max_buffer_size: default.max_buffer_size.max(binding),
+        ..default
     }
 }
 

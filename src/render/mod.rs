@@ -12,4 +12,4 @@ pub use color::ColorTexture;
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 pub use target::Target;
-pub use terrain::{Materials, Style, TerrainRenderer, TerrainScene};
+pub use terrain::{FieldsId, Materials, Style, TerrainRenderer, TerrainScene};

@@ -1,16 +1,17 @@
 //! Draws terrain fields into the caller's render pass, straight from their heights: no mesh, no index buffer.
 
+mod scene;
+
 use encase::ShaderType;
-use glam::{IVec2, Mat4, Vec2};
+use glam::Mat4;
+
+pub use scene::{FieldsId, TerrainScene};
 
 use crate::gpu::{
-    Buffer, Gpu, GpuError, Group, Uniform, bind, layouts, module, pipeline_layout, shaders, storage,
+    Buffer, Gpu, GpuError, RenderPipeline, Uniform, bind, layouts, module, pipeline_layout, shaders, storage,
 };
-use crate::render::camera::Camera;
 use crate::render::target::DEPTH_FORMAT;
 use crate::terrain::blend::{Light, Shading, Zone, ZoneRange};
-use crate::terrain::config::{Config, HEIGHT_ONE};
-use crate::terrain::fields::Fields;
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
 
@@ -21,23 +22,6 @@ pub(crate) struct View {
     pub light: Light,
     pub zone_count: u32,
     pub additive: u32,
-}
-
-/// `FieldParams` of the shader.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct FieldParams {
-    pub in_width: u32,
-    pub size: u32,
-    pub spacing: f32,
-    pub run: f32,
-    pub tiling: f32,
-}
-
-/// `Place` of the shader.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct Place {
-    pub origin: IVec2,
-    pub uv: Vec2,
 }
 
 /// How terrain is drawn.
@@ -58,11 +42,17 @@ pub struct TerrainRenderer {
 }
 
 impl TerrainRenderer {
-    /// Compiles the pipeline for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
+    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<Self, GpuError> {
+        let key = format!("{} {color:?} {style:?}", shaders::RENDER_TERRAIN.name);
+        let (pipeline, layouts) = gpu.render_pipelines.get(key, || Self::compile(gpu, color, style))?;
+        Ok(Self { pipeline, layouts })
+    }
+
+    fn compile(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<RenderPipeline, GpuError> {
         let shader = &shaders::RENDER_TERRAIN;
         let layouts = layouts(gpu, shader)?;
         let constants = [("WIREFRAME", f64::from(u8::from(style == Style::Wireframe)))];
@@ -100,7 +90,7 @@ impl TerrainRenderer {
                 cache: None,
             })
         })?;
-        Ok(Self { pipeline, layouts })
+        Ok((pipeline, layouts))
     }
 
     /// Binds materials and a view of them.
@@ -131,7 +121,7 @@ impl TerrainRenderer {
             wgpu::BindingResource::Sampler(&materials.sampler),
         ];
         let group = bind(gpu, &shaders::RENDER_TERRAIN, &self.layouts, 0, &resources)?;
-        Ok(TerrainScene { renderer: self.clone(), view, uniform, group, parts: Vec::new() })
+        Ok(TerrainScene::new(self.clone(), view, uniform, group))
     }
 }
 
@@ -208,107 +198,10 @@ fn sampler(gpu: &Gpu) -> wgpu::Sampler {
     })
 }
 
-/// Fields of one buffer, bound.
-#[derive(Debug, Clone)]
-struct Part {
-    group: Group,
-    vertices: u32,
-    instances: u32,
-}
-
-/// Terrain to draw: add fields, set the camera, then draw in any render pass.
-#[derive(Debug, Clone)]
-pub struct TerrainScene {
-    renderer: TerrainRenderer,
-    view: View,
-    uniform: Uniform<View>,
-    group: Group,
-    parts: Vec<Part>,
-}
-
-impl TerrainScene {
-    /// Adds the fields of `patches`, which reach at least one sample beyond them. World position 0 is the first
-    /// sample of patch `origin`.
-    ///
-    /// # Errors
-    /// [`InputError`] for fields without a margin, or patches so far from the origin that `f32` cannot tell
-    /// their samples apart; [`GpuError`].
-    pub fn add(
-        &mut self,
-        gpu: &Gpu,
-        config: &Config,
-        fields: &Fields,
-        patches: &[[i32; 2]],
-        origin: [i32; 2],
-    ) -> Result<(), Error> {
-        let size = config.patch_size;
-        if fields.width < size + 2
-            || !(fields.width - size).is_multiple_of(2)
-            || patches.len() > fields.count as usize
-        {
-            let bound = format!("must be {size} and an even margin, for each of {} patches", patches.len());
-            return Err(InputError::new("fields.width", fields.width, bound).into());
-        }
-        let tiles = 10.0 * config.terrain_scale;
-        let places =
-            patches.iter().map(|patch| place(size, tiles, *patch, origin)).collect::<Result<Vec<_>, _>>()?;
-        let params = FieldParams {
-            in_width: fields.width,
-            size,
-            spacing: config.terrain_scale as f32,
-            run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
-            tiling: (tiles / f64::from(size - 1)) as f32,
-        };
-        let uniform = Uniform::new(gpu, "field", &params)?;
-        let places = storage(gpu, "places", &places)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            fields.heights.raw().as_entire_binding(),
-            places.raw().as_entire_binding(),
-        ];
-        let group = bind(gpu, &shaders::RENDER_TERRAIN, &self.renderer.layouts, 1, &resources)?;
-        self.parts.push(Part { group, vertices: 2 * size, instances: (size - 1) * patches.len() as u32 });
-        Ok(())
-    }
-
-    /// Chooses the camera of the next submission.
-    ///
-    /// # Errors
-    /// [`InputError`] for what is no camera; [`GpuError`].
-    pub fn set_camera(&mut self, gpu: &Gpu, camera: &Camera, aspect: f32) -> Result<(), Error> {
-        self.view.clip_from_world = camera.clip_from_world(aspect)?;
-        Ok(self.uniform.write(gpu, &self.view)?)
-    }
-
-    /// Draws everything that was added.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.renderer.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
-        for part in &self.parts {
-            pass.set_bind_group(1, &part.group, &[]);
-            pass.draw(0..part.vertices, 0..part.instances);
-        }
-    }
-}
-
-fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Place, InputError> {
-    let edge = i64::from(size) - 1;
-    let samples = [0, 1].map(|axis| (i64::from(patch[axis]) - i64::from(origin[axis])) * edge);
-    // Positions are whole samples, exact in f32 up to 2^24.
-    if samples.iter().any(|sample| sample.abs() + edge > 1 << 24) {
-        let bound = format!("must lie within 2^24 samples of the origin {origin:?} to be drawn");
-        return Err(InputError::new("patchCoordinates", format!("{patch:?}"), bound));
-    }
-    let uv = patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32);
-    Ok(Place { origin: IVec2::new(samples[0] as i32, samples[1] as i32), uv: Vec2::from(uv) })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gpu::layout::layout_test;
 
     layout_test!(view_layout: View = RENDER_TERRAIN "View");
-    layout_test!(field_params_layout: FieldParams = RENDER_TERRAIN "FieldParams");
-    layout_test!(place_layout: Place = RENDER_TERRAIN "Place");
 }

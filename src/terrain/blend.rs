@@ -116,17 +116,7 @@ impl Zone {
     /// # Errors
     /// [`InputError`] that names the field below `path`.
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
-        finite(&format!("{path}.min"), self.min, -32768.0, 32768.0)?;
-        finite(&format!("{path}.max"), self.max, -32768.0, 32768.0)?;
-        // As the shaders see them: a range that vanishes in f32, or may be flushed to 0, would divide by zero.
-        if self.max as f32 - (self.min as f32) < f32::MIN_POSITIVE {
-            return Err(InputError::new(
-                format!("{path}.max"),
-                self.max,
-                format!("must be above min = {}", self.min),
-            ));
-        }
-        Ok(())
+        check_range(path, self.min, self.max)
     }
 
     /// The texture of the zone at `index` of its list.
@@ -139,6 +129,16 @@ impl Zone {
             *path = folder.join(&*path);
         }
     }
+}
+
+fn check_range(path: &str, min: f64, max: f64) -> Result<(), InputError> {
+    finite(&format!("{path}.min"), min, -32768.0, 32768.0)?;
+    finite(&format!("{path}.max"), max, -32768.0, 32768.0)?;
+    // As the shaders see them: a range that vanishes in f32, or may be flushed to 0, would divide by zero.
+    if max as f32 - (min as f32) < f32::MIN_POSITIVE {
+        return Err(InputError::new(format!("{path}.max"), max, format!("must be above min = {min}")));
+    }
+    Ok(())
 }
 
 /// How a colour map is shaded.
@@ -159,6 +159,21 @@ impl Default for Shading {
     }
 }
 
+impl Shading {
+    /// Checks that the light's direction is a unit vector and the ambient share in 0..=1.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `light` or `ambient`.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let length = self.light.iter().map(|part| f64::from(*part).powi(2)).sum::<f64>().sqrt();
+        if length.is_nan() || (length - 1.0).abs() > 1e-3 {
+            let bound = format!("must have length 1, and has {length}");
+            return Err(InputError::new("light", format!("{:?}", self.light), bound));
+        }
+        finite("ambient", self.ambient.into(), 0.0, 1.0)
+    }
+}
+
 /// A zone of a colour map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapZone {
@@ -168,6 +183,24 @@ pub struct MapZone {
     pub min: f32,
     /// Upper end, height units.
     pub max: f32,
+}
+
+/// Checks that there are 1 to [`MAX_ZONES`] zones, each a range of heights with a finite colour.
+///
+/// # Errors
+/// [`InputError`] that names the zone.
+pub fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
+    if zones.is_empty() || zones.len() > MAX_ZONES {
+        let bound = format!("must hold 1 to {MAX_ZONES} zones");
+        return Err(InputError::new("zones", format!("[{} zones]", zones.len()), bound));
+    }
+    for (index, zone) in zones.iter().enumerate() {
+        check_range(&format!("zones[{index}]"), zone.min.into(), zone.max.into())?;
+        for channel in zone.color {
+            finite(&format!("zones[{index}].color"), channel.into(), 0.0, 1.0)?;
+        }
+    }
+    Ok(())
 }
 
 /// How far a pixel of a colour map may lie from the twin's: one level of 255. The colour carries some tens of

@@ -137,7 +137,7 @@ impl Config {
         if self.coarse_levels > 8 {
             return Err(InputError::new("coarseLevels", self.coarse_levels, "must be in 0..=8"));
         }
-        finite("terrainScale", self.terrain_scale, 1e-6, 1e6)?;
+        check_terrain_scale(self.terrain_scale)?;
         let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
         for (index, &corner) in self.corners.iter().enumerate() {
             finite(&format!("corners[{index}]"), corner, -most, most)?;
@@ -237,6 +237,11 @@ impl Config {
     pub fn fixed_corners(&self) -> [i32; 4] {
         self.corners.map(|height| (height * HEIGHT_ONE).round_ties_even() as i32)
     }
+}
+
+/// World units between neighbouring samples.
+pub(crate) fn check_terrain_scale(terrain_scale: f64) -> Result<(), InputError> {
+    finite("terrainScale", terrain_scale, 1e-6, 1e6)
 }
 
 /// A number that must be finite and in `low..=high`.

@@ -68,9 +68,9 @@ pub fn cropped(field: &[i32], width: usize, samples: usize) -> Vec<i32> {
 /// Writes heights, rows of `width`, as a 16-bit greyscale PNG.
 ///
 /// # Errors
-/// [`Error::File`].
+/// [`Error::Output`].
 pub fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -> Result<(), Error> {
-    let failed = |error: &dyn std::fmt::Display| Error::file(path, error);
+    let failed = |error: &dyn std::fmt::Display| Error::output(path, error);
     let file = std::fs::File::create(path).map_err(|error| failed(&error))?;
     let mut encoder = png::Encoder::new(BufWriter::new(file), width, heights.len() as u32 / width.max(1));
     encoder.set_color(png::ColorType::Grayscale);
@@ -169,8 +169,8 @@ impl HeightImage {
 /// Writes bytes to a new file.
 ///
 /// # Errors
-/// [`Error::File`].
+/// [`Error::Output`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let write = || std::fs::File::create(path)?.write_all(bytes);
-    write().map_err(|error: std::io::Error| Error::file(path, error))
+    write().map_err(|error: std::io::Error| Error::output(path, error))
 }

@@ -1,5 +1,6 @@
 //! Square height fields of a batch on the device, one after the other.
 
+use crate::InputError;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
 /// `count` fields of `width`² heights (1/65536 units), row by row.
@@ -23,20 +24,47 @@ impl Fields {
         Ok(Self { heights: Buffer::new(gpu, label, points)?, width, count })
     }
 
-    /// Fields of `width` that one binding and one dispatch may hold, at least one.
+    /// Fields of `width` to a part: as many as fit a binding of WebGPU's default size, 128 MiB, and one
+    /// dispatch; at least one. Batches are split there even where the device allows more, so that one part's
+    /// work stays short.
     pub fn most(gpu: &Gpu, width: u32) -> usize {
         let bytes = 4 * u64::from(width) * u64::from(width);
-        (gpu.max_binding() / bytes.max(1)).clamp(1, 65_535) as usize
+        let binding = gpu.max_binding().min(wgpu::Limits::default().max_storage_buffer_binding_size);
+        (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
-    /// The same memory seen as smaller fields.
+    /// The same memory seen as fields that are `samples` smaller on every side; without a sample where
+    /// nothing is left.
     pub fn cropped(&self, samples: u32) -> Self {
-        Self { width: self.width - 2 * samples, ..self.clone() }
+        Self { width: self.inner_width(samples), ..self.clone() }
+    }
+
+    /// Samples along an edge of fields that are `crop` samples smaller on every side.
+    fn inner_width(&self, crop: u32) -> u32 {
+        self.width.saturating_sub(crop.saturating_mul(2))
+    }
+
+    /// Samples in all fields, `crop` samples smaller on every side.
+    pub(crate) fn points(&self, crop: u32) -> usize {
+        (self.inner_width(crop) as usize).pow(2) * self.count as usize
+    }
+
+    /// Checks that something is left of the fields when they are `crop` samples smaller on every side, and that
+    /// the buffer holds them all.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `field`.
+    pub(crate) fn check(&self, field: &str, crop: u32) -> Result<(), InputError> {
+        if self.inner_width(crop) == 0 {
+            let bound = format!("must exceed {}, a rim of {crop} samples", crop.saturating_mul(2));
+            return Err(InputError::new(format!("{field}.width"), self.width, bound));
+        }
+        self.heights.check_holds(&format!("{field}.heights"), self.points(0))
     }
 
     /// Workgroups for one thread a sample of fields that are `crop` samples smaller on every side.
     pub(crate) fn workgroups(&self, kernel: &crate::gpu::Kernel, crop: u32) -> [u32; 3] {
-        let width = self.width - 2 * crop;
+        let width = self.inner_width(crop);
         [kernel.groups_for(width), width, self.count]
     }
 }

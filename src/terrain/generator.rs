@@ -2,7 +2,7 @@
 //! [`crate::reference::terrain::field`].
 
 use crate::Error;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, INVOCATIONS_A_SUBMISSION};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::DespikePass;
@@ -123,7 +123,7 @@ impl Generator {
         gpu.run("terrain/wrap", |encoder| job.record(encoder))?;
         if let Border::Blend(width) = config.border {
             let job = self.border.prepare(gpu, size, width, &neighbours(patches), &fields.heights)?;
-            gpu.run("terrain/border", |encoder| job.record(encoder))?;
+            job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
         }
         let all = surrounds(config, patches);
         let injected = self.recipe.injected(patches, reach);
@@ -160,7 +160,7 @@ impl Generator {
         if let Some(thermal) = self.recipe.thermal {
             let scale = self.recipe.config.terrain_scale;
             let job = self.thermal.prepare(gpu, thermal, scale, &current, &other)?;
-            gpu.run("terrain/thermal", |encoder| job.record(encoder))?;
+            job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
             let result = if thermal.iterations % 2 == 0 { current } else { other };
             current = result.cropped(thermal.iterations);
         }

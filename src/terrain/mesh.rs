@@ -1,6 +1,7 @@
 //! Explicit meshes of height fields (B section 4.4), for those who want one: relievo itself draws straight from
 //! the heights. And height queries on the CPU.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 
 use crate::terrain::config::HEIGHT_ONE;
@@ -66,6 +67,22 @@ impl HeightField {
         }
         Mesh { positions, uvs, strip: strip(self.size) }
     }
+
+    /// Writes the mesh as Wavefront OBJ in world space: `first` is the world index of the first sample, such as
+    /// patch coordinates times patchSize − 1. Positions are decimals in full `f64` precision, and the edges
+    /// that patches share are equal to the letter.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_obj(&self, out: &mut impl Write, first: [i64; 2]) -> io::Result<()> {
+        let at = |index: usize, axis: usize| (first[axis] + index as i64) as f64 * self.spacing;
+        let positions = self.heights.iter().enumerate().map(|(index, height)| {
+            let (x, y) = (index % self.size, index / self.size);
+            [at(x, 0), f64::from(*height) / HEIGHT_ONE, at(y, 1)]
+        });
+        let mesh = self.mesh();
+        write_obj(out, positions, &mesh.uvs, &mesh.triangles())
+    }
 }
 
 /// Indices of one triangle strip over a grid of `size`² points: rows are joined by degenerate triangles. Front
@@ -118,20 +135,28 @@ impl Mesh {
     /// # Errors
     /// Those of `out`.
     pub fn write_obj(&self, out: &mut impl Write) -> io::Result<()> {
-        writeln!(out, "# relievo terrain: {} points", self.positions.len())?;
-        for [x, y, z] in &self.positions {
-            writeln!(out, "v {x} {y} {z}")?;
-        }
-        for [u, v] in &self.uvs {
-            // OBJ's texture origin is the bottom.
-            writeln!(out, "vt {u} {}", 1.0 - v)?;
-        }
-        for [a, b, c] in self.triangles() {
-            let corner = |index: u32| format!("{0}/{0}", index + 1);
-            writeln!(out, "f {} {} {}", corner(a), corner(b), corner(c))?;
-        }
-        Ok(())
+        write_obj(out, self.positions.iter().copied(), &self.uvs, &self.triangles())
     }
+}
+
+fn write_obj<T: Display>(
+    out: &mut impl Write,
+    positions: impl Iterator<Item = [T; 3]>,
+    uvs: &[[f32; 2]],
+    triangles: &[[u32; 3]],
+) -> io::Result<()> {
+    writeln!(out, "# relievo terrain: {} points", uvs.len())?;
+    for [x, y, z] in positions {
+        writeln!(out, "v {x} {y} {z}")?;
+    }
+    for [u, v] in uvs {
+        // OBJ's texture origin is the bottom.
+        writeln!(out, "vt {u} {}", 1.0 - v)?;
+    }
+    for [a, b, c] in triangles {
+        writeln!(out, "f {0}/{0} {1}/{1} {2}/{2}", a + 1, b + 1, c + 1)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -182,5 +207,19 @@ mod tests {
         let count = |prefix: &str| text.lines().filter(|line| line.starts_with(prefix)).count();
         assert_eq!((count("v "), count("vt "), count("f ")), (9, 9, 8));
         assert!(text.contains("v 0.5 3 0.5"));
+    }
+
+    #[test]
+    fn obj_in_world_space_is_exact_wherever_it_lies() {
+        let text = |first| {
+            let mut text = Vec::new();
+            ramp().write_obj(&mut text, first).expect("a vector takes everything");
+            String::from_utf8(text).expect("ASCII")
+        };
+        let mut at_origin = Vec::new();
+        ramp().mesh().write_obj(&mut at_origin).expect("a vector takes everything");
+        assert_eq!(text([0, 0]).as_bytes(), at_origin);
+        // Beyond what f32 can tell apart.
+        assert!(text([1 << 30, -3]).contains("\nv 536870912.5 3 -1\n"));
     }
 }

@@ -94,10 +94,20 @@ fn a_file_in_the_place_of_the_folder_is_left_alone() {
 
 #[test]
 fn unknown_words_are_refused_by_name() {
-    for arguments in [&["frobnicate"][..], &["terrain", "--frobnicate"], &["terrain"], &["verify", "--only"]]
-    {
+    for (arguments, words) in [
+        (&["frobnicate"][..], &["'frobnicate'"][..]),
+        (&["terrain", "--frobnicate"], &["'--frobnicate'"]),
+        (&["terrain"], &["--config <FILE>", "--out <DIR>"]),
+        (&["verify", "--only"], &["--only <STEM>"]),
+        (&["terrain", "--thermal", "many"], &["'many'", "--thermal"]),
+        (&["terrain", "--weights", "odd"], &["'odd'", "normalized"]),
+        (&[], &["--help"]),
+    ] {
         let run = relievo(arguments);
         assert_eq!(run.code, Some(2), "{arguments:?}: {}", run.stderr);
+        assert_eq!(run.stderr.lines().count(), 1, "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.starts_with("relievo: ") && run.stdout.is_empty(), "{}", run.stderr);
+        assert!(words.iter().all(|word| run.stderr.contains(word)), "{arguments:?}: {}", run.stderr);
     }
     let run = relievo(&["verify", "--only", "nothing/like/it"]);
     assert_eq!(run.code, Some(2), "{}", run.stderr);
@@ -113,4 +123,22 @@ fn an_adapter_that_does_not_exist_is_named_with_those_that_do() {
         "{}",
         run.stderr
     );
+}
+
+/// The machine is at fault, not the input.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_written_is_no_bad_input() {
+    let bench = Bench::new(GOOD);
+    let config = bench.path("config.json");
+    for arguments in [
+        &["terrain", "--config", &config, "--out", "/proc/relievo/out"][..],
+        &["shaders", "--out", "/proc/relievo/out"],
+        &["verify", "--only", "baseline/copy", "--json", "/dev/full"],
+    ] {
+        let run = relievo(arguments);
+        assert_eq!(run.code, Some(1), "{arguments:?}: {}", run.stderr);
+        assert_eq!(run.stderr.lines().count(), 1, "{arguments:?}: {}", run.stderr);
+    }
+    assert!(!Path::new("/dev/full").is_file(), "a device was replaced by a file");
 }

@@ -88,3 +88,19 @@ fn help_teaches() {
         assert!(words.iter().all(|word| run.stdout.contains(word)), "{}", run.stdout);
     }
 }
+
+/// `relievo info | true`
+#[test]
+fn a_closed_pipe_is_nothing_to_shout_about() {
+    for arguments in [&["info"][..], &["--help"], &["terrain", "--help"], &["verify", "--only", "baseline"]] {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_relievo"))
+            .args(arguments)
+            .stdout(writer)
+            .output()
+            .expect("the program starts");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(output.stderr.is_empty(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}

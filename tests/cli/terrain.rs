@@ -105,7 +105,15 @@ fn the_report_describes_the_files() {
     assert_eq!(view.dimensions(), (64, 48));
     let map = image::open(bench.path("out/map.png")).expect("a map");
     assert_eq!((map.width(), map.height()), (65, 33));
-    assert!(std::fs::read_to_string(bench.path("out/patch_-1_4.obj")).expect("a mesh").contains("\nf "));
+    // The first column of one patch is the last of the other.
+    let edge = |name: &str, x: &str| -> Vec<String> {
+        let text = std::fs::read_to_string(bench.path(name)).expect("a mesh");
+        text.lines().filter(|line| line.starts_with(&format!("v {x} "))).map(str::to_owned).collect()
+    };
+    let shared = edge("out/patch_-1_4.obj", "0");
+    assert!(shared.len() == 33 && shared[0].ends_with(" 128") && shared[32].ends_with(" 160"), "{shared:?}");
+    assert_eq!(shared, edge("out/patch_0_4.obj", "0"));
+    assert_eq!(edge("out/patch_-1_4.obj", "-32").len(), 33);
     assert!(report["seconds"]["generate"].as_f64().is_some() && report["adapter"].is_string());
 }
 
@@ -169,9 +177,25 @@ fn the_cpu_needs_no_adapter_and_says_what_is_missing() {
 fn an_existing_folder_is_reused_and_nothing_is_left_beside_it() {
     let bench = Bench::new(CONFIGS[0].0);
     bench.terrain("out", &[]);
-    std::fs::write(bench.path("out/mine.txt"), "kept").expect("writable");
+    bench.terrain("out", &["--patches", "1x3", "--origin", "-1,0", "--obj"]);
+    let mine = ["mine.txt", "heights_0_2.png.bak", "heights_00_2.png", "heights_1.i32", "patch_x_1.obj"];
+    for name in mine {
+        std::fs::write(bench.path("out").to_owned() + "/" + name, "kept").expect("writable");
+    }
     bench.terrain("out", &["--patches", "2x1"]);
-    assert_eq!(std::fs::read_to_string(bench.path("out/mine.txt")).expect("kept"), "kept");
+    let mut left: Vec<_> = std::fs::read_dir(bench.path("out"))
+        .expect("readable")
+        .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
+        .filter(|name| !mine.contains(&name.as_str()))
+        .collect();
+    left.sort();
+    let expected = ["heights_0_0.i32", "heights_0_0.png", "heights_1_0.i32", "heights_1_0.png"];
+    assert_eq!(left[..4], expected, "heights of earlier patches are gone");
+    assert_eq!(left[4..], ["map.png", "report.json", "terrain.png"]);
+    for name in mine {
+        let path = bench.path("out") + "/" + name;
+        assert_eq!(std::fs::read_to_string(path).expect("kept"), "kept");
+    }
     let names: Vec<_> = std::fs::read_dir(bench.folder.path())
         .expect("readable")
         .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))

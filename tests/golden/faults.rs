@@ -2,7 +2,7 @@
 
 use image::{Rgba, RgbaImage};
 
-use crate::harness::{Tolerance, check_golden_in};
+use crate::harness::{Tolerance, blesses, check_golden_in};
 
 fn picture() -> RgbaImage {
     RgbaImage::from_fn(64, 48, |x, y| Rgba([(4 * x) as u8, (5 * y) as u8, ((x * y) % 200) as u8, 255]))
@@ -17,6 +17,13 @@ fn blessed() -> tempfile::TempDir {
 
 fn check(folder: &tempfile::TempDir, actual: &RgbaImage) -> Result<(), String> {
     check_golden_in(folder.path(), "picture", actual, Tolerance::IMAGE, false).map(|_| ())
+}
+
+#[test]
+fn only_a_value_blesses() {
+    for (value, expected) in [(None, false), (Some(""), false), (Some("0"), false), (Some("1"), true)] {
+        assert_eq!(blesses(value.map(std::ffi::OsStr::new)), expected, "{value:?}");
+    }
 }
 
 #[test]

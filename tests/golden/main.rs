@@ -6,6 +6,7 @@ mod harness;
 
 mod cracks;
 mod faults;
+mod scene;
 
 use harness::{Tolerance, check_golden, relievo};
 

@@ -76,7 +76,12 @@ fn flip(actual: &RgbaImage, expected: &RgbaImage) -> f32 {
 
 /// Whether this run writes goldens: `make bless` alone.
 pub fn blessing() -> bool {
-    std::env::var_os("RELIEVO_BLESS").is_some()
+    blesses(std::env::var_os("RELIEVO_BLESS").as_deref())
+}
+
+/// Whether a value of `RELIEVO_BLESS` blesses: not when it is empty or 0.
+pub fn blesses(value: Option<&std::ffi::OsStr>) -> bool {
+    value.is_some_and(|value| !value.is_empty() && value != "0")
 }
 
 fn goldens() -> PathBuf {

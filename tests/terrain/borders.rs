@@ -1,6 +1,8 @@
 //! What happens at borders after generation, where windows show other patches or the patch's other side.
 
-use relievo::reference::terrain::field::field;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use relievo::reference::terrain::field::{field, field_with};
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
 use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
@@ -38,5 +40,23 @@ fn blended_neighbours_still_agree_after_despiking_beside_features() {
     let patches = despiked_beside_features("{\"blend\": 1}", &[[-1, 0], [0, 0]]);
     for row in 0..33 {
         assert_eq!(patches[0][row * 33 + 32], patches[1][row * 33], "row {row}");
+    }
+}
+
+/// Every patch is heard of once.
+#[test]
+fn progress_hears_of_every_patch_and_changes_nothing() {
+    let patches: Vec<[i32; 2]> = (0..6).map(|i| [i % 3, i / 3]).collect();
+    for border in ["\"seamless\"", "\"wrap\"", "{\"blend\": 3}"] {
+        let text = format!(r#"{{"patchSize": 17, "scaleFactor": 4, "seed": "s", "border": {border}}}"#);
+        let thermal = Some(Thermal { iterations: 2, talus: 35.0 });
+        let recipe = Recipe { thermal, ..Recipe::new(Config::from_json(&text).expect("valid")) };
+        let heard = AtomicUsize::new(0);
+        let count = || {
+            heard.fetch_add(1, Ordering::Relaxed);
+        };
+        let fields = field_with(&recipe, &patches, 1, &count).expect("valid");
+        assert_eq!(heard.load(Ordering::Relaxed), patches.len(), "{border}");
+        assert_eq!(fields, field(&recipe, &patches, 1).expect("valid"));
     }
 }

@@ -8,7 +8,7 @@ use relievo::Error;
 use relievo::bench::{Row, run, table};
 
 use crate::Context;
-use crate::output::{json, write_file};
+use crate::output::{json, say, write_file};
 
 /// Measures every kernel beside its CPU twin and a copy of the same bytes, in one run.
 #[derive(Args)]
@@ -24,9 +24,9 @@ pub struct Bench {
 impl Bench {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let gpu = context.gpu()?;
-        println!("adapter: {}", gpu.adapter());
+        say(format_args!("adapter: {}", gpu.adapter()))?;
         if cfg!(debug_assertions) {
-            println!("this is a debug build: the twins are slower than they should be (use --release)");
+            say("this is a debug build: the twins are slower than they should be (use --release)")?;
         }
         let spinner = indicatif::ProgressBar::new_spinner();
         let summary = run(&gpu, self.only.as_deref(), &mut |row: &Row| {
@@ -34,13 +34,14 @@ impl Bench {
             spinner.tick();
         })?;
         spinner.finish_and_clear();
-        print!("{}", table(&summary.rows));
-        println!(
-            "`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn."
-        );
+        say(table(&summary.rows).trim_end())?;
+        say(
+            "`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn. `clock`: \
+             wall includes submission and waiting.",
+        )?;
         if let Some(path) = &self.json {
             write_file(path, &json(&summary)?)?;
-            println!("written to {}", path.display());
+            say(format_args!("written to {}", path.display()))?;
         }
         Ok(ExitCode::SUCCESS)
     }

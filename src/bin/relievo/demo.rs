@@ -9,7 +9,7 @@ use relievo::Error;
 use relievo::terrain::export::write_bytes;
 
 use crate::Context;
-use crate::output::Staged;
+use crate::output::{Staged, say};
 use crate::progress::bar;
 use crate::terrain::{Pictures, Terrain, save};
 
@@ -147,7 +147,7 @@ const ENTRIES: &[Entry] = &[
 impl Demo {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let mut staged = Staged::new(&self.out)?;
-        let inputs = tempfile::tempdir().map_err(|error| Error::file("temporary folder", error))?;
+        let inputs = tempfile::tempdir().map_err(|error| Error::output("temporary folder", error))?;
         let progress = bar(ENTRIES.len() as u64, "drawing");
         let mut figures = String::new();
         for entry in ENTRIES {
@@ -166,7 +166,7 @@ impl Demo {
         let adapter = context.gpu()?.adapter().to_string();
         write_bytes(&staged.path("index.html"), page(&adapter, &figures).as_bytes())?;
         staged.publish()?;
-        println!("{} pictures, and {}", 2 * ENTRIES.len(), self.out.join("index.html").display());
+        say(format_args!("{} pictures, and {}", 2 * ENTRIES.len(), self.out.join("index.html").display()))?;
         Ok(ExitCode::SUCCESS)
     }
 

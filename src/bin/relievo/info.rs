@@ -6,22 +6,23 @@ use relievo::Error;
 use relievo::gpu::{TimedBy, Timer, adapters, shaders};
 
 use crate::Context;
+use crate::output::say;
 
 pub fn run(context: &Context) -> Result<ExitCode, Error> {
-    println!("relievo {}", env!("CARGO_PKG_VERSION"));
-    println!("\nadapters (choose with --adapter or RELIEVO_ADAPTER):");
+    say(format_args!("relievo {}", env!("CARGO_PKG_VERSION")))?;
+    say("\nadapters (choose with --adapter or RELIEVO_ADAPTER):")?;
     for adapter in adapters() {
-        println!("  {adapter}");
+        say(format_args!("  {adapter}"))?;
     }
     let gpu = context.gpu()?;
-    println!("\nchosen: {}", gpu.adapter());
+    say(format_args!("\nchosen: {}", gpu.adapter()))?;
     let timing = match Timer::new(&gpu)?.timed_by() {
         TimedBy::Timestamp => "the device's timestamps",
         TimedBy::Wall => "wall time (the adapter has no timestamps)",
     };
-    println!("timing: {timing}");
+    say(format_args!("timing: {timing}"))?;
     let limits = gpu.device().limits();
-    println!("limits (WebGPU's defaults suffice for every pass):");
+    say("limits (WebGPU's defaults suffice for every pass):")?;
     for (name, value) in [
         ("maxStorageBufferBindingSize", limits.max_storage_buffer_binding_size),
         ("maxBufferSize", limits.max_buffer_size),
@@ -30,9 +31,9 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
         ("maxComputeWorkgroupsPerDimension", limits.max_compute_workgroups_per_dimension.into()),
         ("maxStorageBuffersPerShaderStage", limits.max_storage_buffers_per_shader_stage.into()),
     ] {
-        println!("  {name:<34} {value}");
+        say(format_args!("  {name:<34} {value}"))?;
     }
-    println!("\npasses:");
+    say("\npasses:")?;
     for shader in shaders::ALL {
         let entries: Vec<_> = shader.entry_points.iter().map(|entry| entry.name).collect();
         let overrides = if shader.overrides.is_empty() {
@@ -40,7 +41,7 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
         } else {
             format!("  [{}]", shader.overrides.join(", "))
         };
-        println!("  {:<18} {}{overrides}", shader.name, entries.join(" + "));
+        say(format_args!("  {:<18} {}{overrides}", shader.name, entries.join(" + ")))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -6,6 +6,7 @@ mod bench;
 mod demo;
 #[cfg(feature = "gpu")]
 mod info;
+mod memory;
 mod output;
 mod progress;
 #[cfg(feature = "gpu")]
@@ -14,8 +15,10 @@ mod terrain;
 #[cfg(feature = "gpu")]
 mod verify;
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
@@ -54,21 +57,32 @@ enum Command {
 pub struct Context {
     #[cfg(feature = "gpu")]
     options: relievo::gpu::Options,
+    #[cfg(feature = "gpu")]
+    opened: std::cell::OnceCell<relievo::gpu::Gpu>,
 }
 
 #[cfg(feature = "gpu")]
 impl Context {
-    /// Opens the chosen adapter.
+    /// The chosen adapter's device, opened at the first call.
     fn gpu(&self) -> Result<relievo::gpu::Gpu, relievo::Error> {
-        Ok(relievo::gpu::Gpu::headless(&self.options)?)
+        if let Some(gpu) = self.opened.get() {
+            return Ok(gpu.clone());
+        }
+        let gpu = relievo::gpu::Gpu::headless(&self.options)?;
+        Ok(self.opened.get_or_init(|| gpu).clone())
     }
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return refused(&error),
+    };
     let context = Context {
         #[cfg(feature = "gpu")]
         options: relievo::gpu::Options { adapter: arguments.adapter },
+        #[cfg(feature = "gpu")]
+        opened: Default::default(),
     };
     let outcome = match arguments.command {
         #[cfg(feature = "gpu")]
@@ -86,9 +100,32 @@ fn main() -> ExitCode {
     match outcome {
         Ok(code) => code,
         Err(error) => {
-            let line = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-            eprintln!("relievo: {line}");
+            complain(&error.to_string());
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
     }
+}
+
+/// Says in one line what is wrong with the arguments; shows help or version where they were asked for.
+fn refused(error: &clap::Error) -> ExitCode {
+    if error.exit_code() == 0 {
+        // Whoever closed the pipe has read enough.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        complain("which command? `relievo --help` lists them");
+        return ExitCode::from(2);
+    }
+    let text = error.to_string();
+    let what = text.split("\n\nUsage:").next().unwrap_or_default().split("\n\nFor more").next();
+    let what = what.unwrap_or_default().trim_start_matches("error: ").trim_end();
+    complain(&format!("{what}; see --help"));
+    ExitCode::from(2)
+}
+
+/// One line on standard error, if anybody is there to read it.
+fn complain(text: &str) {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let _ = writeln!(std::io::stderr(), "relievo: {line}");
 }

@@ -8,7 +8,7 @@ use relievo::Error;
 use relievo::gpu::shaders::{ALL, Shader};
 use relievo::terrain::export::write_bytes;
 
-use crate::output::{Staged, json};
+use crate::output::{Staged, json, say};
 
 /// Writes the flat WGSL of every pass, and `manifest.json` with entry points, bindings and workgroup sizes.
 #[derive(Args)]
@@ -36,7 +36,7 @@ impl Shaders {
         }
         write_bytes(&staged.path("manifest.json"), &json(&entries)?)?;
         staged.publish()?;
-        println!("{} shaders and manifest.json in {}", ALL.len(), self.out.display());
+        say(format_args!("{} shaders and manifest.json in {}", ALL.len(), self.out.display()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

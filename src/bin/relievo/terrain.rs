@@ -5,8 +5,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use rayon::prelude::*;
 use relievo::reference::terrain::blend::blend;
-use relievo::reference::terrain::field::field;
+use relievo::reference::terrain::field::field_with;
 use relievo::terrain::blend::{Shading, WeightMode};
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
@@ -19,7 +20,8 @@ use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
-use crate::output::{Staged, json};
+use crate::memory::Load;
+use crate::output::{Staged, json, say};
 use crate::progress::bar;
 
 /// Generates terrain from B's JSON: heights, a colour map and a perspective view.
@@ -81,7 +83,7 @@ pub struct Terrain {
     /// Pixels of terrain.png.
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: String,
-    /// Also writes each patch as a mesh, `patch_<px>_<py>.obj`.
+    /// Also writes each patch as a mesh at its place in the world, `patch_<px>_<py>.obj`.
     #[arg(long)]
     obj: bool,
     /// Draws triangle edges in terrain.png instead of textures.
@@ -208,8 +210,15 @@ impl Terrain {
         }
         let thermal = self.thermal.map(|iterations| Thermal { iterations, talus: self.talus });
         thermal.map_or(Ok(()), |thermal| thermal.validate())?;
-        let patches = grid_patches(&config, grid, origin, &self.patches, self.reach())?;
-        let features = self.read_features(&config, grid, origin)?;
+        if grid.contains(&0) {
+            return Err(InputError::new("patches", &self.patches, "must be at least 1x1").into());
+        }
+        let width = u64::from(config.patch_size) + 2 * self.reach();
+        let load = Load { grid, width, features: 0 };
+        load.check(&self.patches)?;
+        let patches = grid_patches(grid, origin)?;
+        let features = self.read_features(&config, load, origin)?;
+        Load { features: features.len() as u64, ..load }.check(&self.patches)?;
         let recipe = Recipe {
             despike: self.despike.map(|threshold| Despike { threshold }),
             thermal,
@@ -229,7 +238,7 @@ impl Terrain {
         1 + u64::from(self.thermal.unwrap_or(0)) + u64::from(self.despike.is_some())
     }
 
-    fn read_features(&self, config: &Config, grid: [u32; 2], origin: [i32; 2]) -> Result<Features, Error> {
+    fn read_features(&self, config: &Config, load: Load, origin: [i32; 2]) -> Result<Features, Error> {
         let mode = match self.feature_mode {
             Mode::Keep => FeatureMode::Keep,
             Mode::Additive => FeatureMode::Additive,
@@ -250,7 +259,8 @@ impl Terrain {
                     .range
                     .unwrap_or(HeightRange { low: -config.scale_factor, high: config.scale_factor }),
             };
-            for file in image.features(config, origin, grid, every, range)? {
+            load.with_samples(image.samples.len(), every).check(&self.patches)?;
+            for file in image.features(config, origin, load.grid, every, range)? {
                 add(path, &file)?;
             }
         }
@@ -260,15 +270,21 @@ impl Terrain {
     fn on_cpu(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
         let start = Instant::now();
         let progress = bar(plan.patches.len() as u64, "generating");
-        let windows = field(&plan.recipe, &plan.patches, 1)?;
+        let windows = field_with(&plan.recipe, &plan.patches, 1, &|| progress.inc(1))?;
         progress.finish_and_clear();
         let generate = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let config = &plan.recipe.config;
         let zones = map_zones(&config.zones, &plan.textures);
         let width = config.patch_size as usize + 2;
-        let map = |window: &Vec<i32>| blend(window, width, config.terrain_scale, &zones, &plan.shading);
-        let maps = windows.iter().map(map).collect();
+        let progress = bar(plan.patches.len() as u64, "colouring");
+        let map = |window: &Vec<i32>| {
+            let pixels = blend(window, width, config.terrain_scale, &zones, &plan.shading);
+            progress.inc(1);
+            pixels
+        };
+        let maps = windows.par_iter().map(map).collect();
+        progress.finish_and_clear();
         let mut made = Made {
             windows,
             maps,
@@ -311,7 +327,7 @@ impl Terrain {
             write_png(&staged.path(format!("heights_{px}_{py}.png")), heights, size, range)?;
             write_bytes(&staged.path(format!("heights_{px}_{py}.i32")), &to_bytes(heights))?;
             if self.obj {
-                write_obj(&staged.path(format!("patch_{px}_{py}.obj")), heights, config)?;
+                write_obj(&staged.path(format!("patch_{px}_{py}.obj")), heights, config, [*px, *py])?;
             }
             reports.push(PatchReport { px: *px, py: *py, size, sha256: sha256(heights) });
             progress.inc(1);
@@ -335,22 +351,22 @@ impl Terrain {
             notes: made.notes.clone(),
         };
         write_bytes(&staged.path("report.json"), &json(&report)?)?;
+        staged.remove_stale(is_of_a_patch);
         staged.publish()?;
-        println!(
+        say(format_args!(
             "{} patches of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",
             plan.patches.len(),
             made.seconds.generate,
             made.seconds.render,
             self.out.display()
-        );
-        made.notes.iter().for_each(|note| println!("{note}"));
-        Ok(())
+        ))?;
+        made.notes.iter().try_for_each(say)
     }
 }
 
 #[cfg(feature = "gpu")]
 mod on_device {
-    use relievo::gpu::{Buffer, Gpu, GpuError};
+    use relievo::gpu::{Buffer, Gpu};
     use relievo::render::{Picture, Style, picture::framing};
     use relievo::terrain::blend::BlendPass;
     use relievo::terrain::fields::Fields;
@@ -430,23 +446,24 @@ mod on_device {
             context: &Context,
             made: &mut Made,
         ) -> Result<(), Error> {
-            let gpu = match context.gpu() {
-                Ok(gpu) => gpu,
-                Err(Error::Gpu(GpuError::NoAdapter { wanted, seen })) => {
-                    made.notes.push(format!("terrain.png was not made: no GPU adapter {wanted}; {seen}"));
-                    return Ok(());
-                }
-                Err(error) => return Err(error),
-            };
+            match context.gpu().and_then(|gpu| self.draw_cpu_heights(plan, &gpu, made)) {
+                // The heights need no device.
+                Err(Error::Gpu(error)) => made.notes.push(format!("terrain.png was not made: {error}")),
+                drawn => drawn?,
+            }
+            Ok(())
+        }
+
+        fn draw_cpu_heights(&self, plan: &Plan, gpu: &Gpu, made: &mut Made) -> Result<(), Error> {
             let width = plan.recipe.config.patch_size + 2;
-            let per_part = Fields::most(&gpu, width);
+            let per_part = Fields::most(gpu, width);
             let mut parts = Vec::new();
             for windows in made.windows.chunks(per_part) {
-                let fields = Fields::new(&gpu, "terrain heights", width, windows.len() as u32)?;
-                fields.heights.write(&gpu, &windows.concat())?;
+                let fields = Fields::new(gpu, "terrain heights", width, windows.len() as u32)?;
+                fields.heights.write(gpu, &windows.concat())?;
                 parts.push(fields);
             }
-            made.view = Some(self.view(&gpu, plan, &parts, &made.windows)?);
+            made.view = Some(self.view(gpu, plan, &parts, &made.windows)?);
             made.adapter = Some((gpu.adapter().name.clone(), gpu.adapter().driver.clone()));
             Ok(())
         }
@@ -459,34 +476,8 @@ mod on_device {
     }
 }
 
-/// The patches of a grid, row by row, if they fit memory.
-fn grid_patches(
-    config: &Config,
-    grid: [u32; 2],
-    origin: [i32; 2],
-    text: &str,
-    reach: u64,
-) -> Result<Vec<[i32; 2]>, Error> {
-    if grid.contains(&0) {
-        return Err(InputError::new("patches", text, "must be at least 1x1").into());
-    }
-    let width = u64::from(config.patch_size) + 2 * reach;
-    // Two windows while it is made; heights, map and files' bytes while it is written.
-    let bytes = u128::from(grid[0]) * u128::from(grid[1]) * u128::from(width * width) * 24;
-    // Where the system does not say, allocation decides.
-    let available = sysinfo::System::new().map_or(u64::MAX, |mut system| {
-        system.refresh_memory();
-        system.available_memory()
-    });
-    if bytes > u128::from(available) {
-        let gibibytes = |bytes: f64| bytes / f64::from(1 << 30);
-        let bound = format!(
-            "needs about {:.1} GiB of memory, and {:.1} GiB are available",
-            gibibytes(bytes as f64),
-            gibibytes(available as f64)
-        );
-        return Err(InputError::new("patches", text, bound).into());
-    }
+/// The patches of a grid, row by row.
+fn grid_patches(grid: [u32; 2], origin: [i32; 2]) -> Result<Vec<[i32; 2]>, Error> {
     let coordinate = |origin: i32, index: u32, axis: usize| {
         i32::try_from(i64::from(origin) + i64::from(index))
             .map_err(|_| InputError::new(format!("origin[{axis}]"), origin, "patch coordinates must fit i32"))
@@ -496,6 +487,18 @@ fn grid_patches(
         patches.push([coordinate(origin[0], x, 0)?, coordinate(origin[1], y, 1)?]);
     }
     Ok(patches)
+}
+
+/// Whether a file's name is one that a patch's files have.
+fn is_of_a_patch(name: &str) -> bool {
+    let Some((stem, extension)) = name.rsplit_once('.') else { return false };
+    let coordinates = match extension {
+        "png" | "i32" => stem.strip_prefix("heights_"),
+        "obj" => stem.strip_prefix("patch_"),
+        _ => None,
+    };
+    let canonical = |text: &str| text.parse::<i32>().is_ok_and(|number| number.to_string() == text);
+    coordinates.and_then(|text| text.split_once('_')).is_some_and(|(px, py)| canonical(px) && canonical(py))
 }
 
 /// The patches' maps in one image; neighbours share a row or column of pixels.
@@ -515,10 +518,14 @@ fn mosaic(plan: &Plan, maps: &[Vec<u32>]) -> image::RgbaImage {
 
 /// Writes a PNG.
 pub fn save(path: &std::path::Path, image: &image::RgbaImage) -> Result<(), Error> {
-    image.save_with_format(path, image::ImageFormat::Png).map_err(|error| Error::file(path, error))
+    // In memory first: the image crate forgets what the disk says about the last bytes.
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png).map_err(|error| Error::output(path, error))?;
+    write_bytes(path, bytes.get_ref())
 }
 
-fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result<(), Error> {
+fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config, patch: [i32; 2]) -> Result<(), Error> {
+    let first = patch.map(|index| i64::from(index) * (i64::from(config.patch_size) - 1));
     let field = relievo::terrain::mesh::HeightField::new(
         heights.to_vec(),
         config.patch_size as usize,
@@ -526,7 +533,7 @@ fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config) -> Result
     );
     let mut text = Vec::new();
     if let Some(field) = field {
-        field.mesh().write_obj(&mut text).map_err(|error| Error::file(path, error))?;
+        field.write_obj(&mut text, first).map_err(|error| Error::output(path, error))?;
     }
     write_bytes(path, &text)
 }

@@ -8,7 +8,7 @@ use relievo::Error;
 use relievo::verify::{CaseResult, Report, run};
 
 use crate::Context;
-use crate::output::{json, write_file};
+use crate::output::{json, say, write_file};
 
 /// Runs every kernel against its CPU twin on your adapter and says what holds. Exits 1 when something does not.
 #[derive(Args)]
@@ -24,14 +24,14 @@ pub struct Verify {
 impl Verify {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let gpu = context.gpu()?;
-        println!("adapter: {}", gpu.adapter());
+        say(format_args!("adapter: {}", gpu.adapter()))?;
         let spinner = indicatif::ProgressBar::new_spinner();
         let report = run(&gpu, self.only.as_deref(), &mut |case: &CaseResult| {
             spinner.set_message(format!("{} {}", case.stem, case.case));
             spinner.tick();
         })?;
         spinner.finish_and_clear();
-        print!("{}", summary(&report));
+        say(summary(&report).trim_end())?;
         if let Some(path) = &self.json {
             write_file(path, &json(&report)?)?;
         }

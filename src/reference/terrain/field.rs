@@ -17,14 +17,39 @@ use crate::terrain::recipe::Recipe;
 /// # Errors
 /// [`InputError`] as [`Recipe::validate`].
 pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<Vec<i32>>, InputError> {
+    field_with(recipe, patches, margin, &|| ())
+}
+
+/// [`field`]; `progress` hears of every patch that is done, on whichever thread made it.
+///
+/// # Errors
+/// [`InputError`] as [`Recipe::validate`].
+pub fn field_with(
+    recipe: &Recipe,
+    patches: &[[i32; 2]],
+    margin: u32,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Vec<Vec<i32>>, InputError> {
     recipe.validate(patches, margin)?;
     let reach = recipe.reach(margin);
-    let windows = generate(&recipe.config, &recipe.features, patches, reach);
+    let (config, features) = (&recipe.config, &recipe.features);
+    let width = (config.patch_size + 2 * reach) as usize;
+    let finished = |window: Vec<i32>, injected: &[(u32, u32)]| {
+        let field = finish(recipe, width, injected, window);
+        progress();
+        field
+    };
     let injected = recipe.injected(patches, reach);
-    let width = recipe.config.patch_size + 2 * reach;
-    Ok((windows.into_par_iter().zip(injected))
-        .map(|(window, injected)| finish(recipe, width as usize, &injected, window))
-        .collect())
+    // The patches of `blend` depend on each other; the others are made one by one from start to end.
+    if let Border::Blend(_) = config.border {
+        let windows = generate(config, features, patches, reach);
+        return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
+    }
+    let made = |(patch, at): (&[i32; 2], &Vec<_>)| {
+        let window = generate(config, features, std::slice::from_ref(patch), reach).swap_remove(0);
+        finished(window, at)
+    };
+    Ok(patches.par_iter().zip(&injected).map(made).collect())
 }
 
 /// The windows of `patches` before despiking and erosion.

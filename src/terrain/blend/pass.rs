@@ -3,9 +3,10 @@
 use encase::ShaderType;
 use glam::Vec3;
 
-use super::{MapZone, Shading};
+use super::{MapZone, Shading, check_map_zones};
+use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders, storage};
-use crate::terrain::config::HEIGHT_ONE;
+use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
 /// `Light` of the shaders.
@@ -64,7 +65,8 @@ impl BlendPass {
     /// lowest, sRGB).
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`crate::InputError`] for a spacing, zones or shading out of bounds, windows without a rim, or an
+    /// output that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -73,7 +75,12 @@ impl BlendPass {
         shading: &Shading,
         windows: &Fields,
         pixels: &Buffer<u32>,
-    ) -> Result<Job, GpuError> {
+    ) -> Result<Job, Error> {
+        check_terrain_scale(terrain_scale)?;
+        check_map_zones(zones)?;
+        shading.validate()?;
+        windows.check("windows", 1)?;
+        pixels.check_holds("pixels", windows.points(1))?;
         let params = MapParams {
             light: Light { direction: shading.light.into(), ambient: shading.ambient },
             in_width: windows.width,
@@ -95,7 +102,7 @@ impl BlendPass {
             groups: vec![self.kernel.bind(gpu, 0, &resources)?],
             workgroups: windows.workgroups(&self.kernel, 1),
         };
-        Job::new(gpu, "terrain/blend", vec![step])
+        Ok(Job::new(gpu, "terrain/blend", vec![step])?)
     }
 }
 

@@ -3,8 +3,8 @@
 use encase::ShaderType;
 
 use super::{Neighbours, waves};
-use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
 
 /// `BorderParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -34,7 +34,8 @@ impl BorderPass {
     /// after the other; `neighbours` are indices of earlier ones.
     ///
     /// # Errors
-    /// [`crate::InputError`] as [`waves`]; [`GpuError`].
+    /// [`InputError`] as [`waves`], and for a width outside 1..`size` or heights that are too short;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -43,6 +44,11 @@ impl BorderPass {
         neighbours: &[Neighbours],
         heights: &Buffer<i32>,
     ) -> Result<Job, Error> {
+        if width == 0 || width >= size {
+            let bound = format!("must be at least 1 and below size = {size}");
+            return Err(InputError::new("width", width, bound).into());
+        }
+        heights.check_holds("heights", neighbours.len() * (size as usize).pow(2))?;
         let waves = waves(neighbours)?;
         let around: Vec<[u32; 4]> = (neighbours.iter())
             .map(|around| around.map(|neighbour| neighbour.map_or(u32::MAX, |index| index as u32)))

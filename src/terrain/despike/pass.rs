@@ -3,10 +3,10 @@
 use encase::ShaderType;
 
 use super::Despike;
-use crate::Error;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::terrain::features::{FeatureGrid, FeatureIndex};
 use crate::terrain::fields::Fields;
+use crate::{Error, InputError};
 
 /// `DespikeParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -36,7 +36,8 @@ impl DespikePass {
     /// `features` covers the windows.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a threshold out of bounds; [`GpuError`].
+    /// [`InputError`] for a threshold out of bounds, windows without a rim, features of other windows, or an
+    /// output that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -46,11 +47,15 @@ impl DespikePass {
         cropped: &Fields,
     ) -> Result<Job, Error> {
         despike.validate()?;
-        let params = DespikeParams {
-            features: features.grid(0),
-            in_width: windows.width,
-            threshold: despike.fixed_threshold(),
-        };
+        windows.check("windows", 1)?;
+        cropped.heights.check_holds("cropped.heights", windows.points(1))?;
+        let grid = features.grid(0);
+        if grid.width != windows.width {
+            let bound = format!("must be that of the windows, {}", windows.width);
+            return Err(InputError::new("features.width", grid.width, bound).into());
+        }
+        let params =
+            DespikeParams { features: grid, in_width: windows.width, threshold: despike.fixed_threshold() };
         let uniform = Uniform::new(gpu, "despike", &params)?;
         let resources = [
             uniform.raw().as_entire_binding(),

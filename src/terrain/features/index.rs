@@ -4,7 +4,7 @@
 use crate::gpu::{Buffer, Gpu, GpuError};
 
 /// One grid of the index, as shaders see it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, encase::ShaderType)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, encase::ShaderType)]
 pub struct FeatureGrid {
     /// Points along an edge of the window.
     pub width: u32,
@@ -31,7 +31,10 @@ impl FeatureIndex {
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, widths: &[u32], windows: u32, capacity: usize) -> Result<Self, GpuError> {
-        let mut start = 0;
+        if capacity > 0 {
+            check_words(widths, windows)?;
+        }
+        let mut start = 0_u32;
         let grids = (widths.iter())
             .map(|&width| {
                 let words_per_row = (width + 2).div_ceil(32);
@@ -41,7 +44,8 @@ impl FeatureIndex {
                     words_per_window: words_per_row * (width + 2),
                     start,
                 };
-                start += grid.words_per_window * windows;
+                // Without features nothing reads the words.
+                start = start.wrapping_add(grid.words_per_window.wrapping_mul(windows));
                 grid
             })
             .collect();
@@ -95,9 +99,9 @@ impl FeatureIndex {
         self.heights.write(gpu, &heights)
     }
 
-    /// Grid `index`, in the order of the widths.
+    /// Grid `index`, in the order of the widths; one without points where there is none.
     pub fn grid(&self, index: usize) -> FeatureGrid {
-        self.grids[index]
+        self.grids.get(index).copied().unwrap_or_default()
     }
 
     /// The resources of bind group 1.
@@ -109,4 +113,20 @@ impl FeatureIndex {
     pub fn bytes(&self) -> u64 {
         self.words.bytes() + self.heights.bytes()
     }
+}
+
+/// Checks that `u32` counts the words of all grids.
+fn check_words(widths: &[u32], windows: u32) -> Result<(), GpuError> {
+    let words = |width: &u32| (u128::from(*width) + 2).div_ceil(32) * (u128::from(*width) + 2);
+    let needed = widths.iter().map(words).sum::<u128>() * u128::from(windows);
+    if needed <= u128::from(u32::MAX) {
+        return Ok(());
+    }
+    Err(GpuError::Limit {
+        pass: "terrain features",
+        limit: "feature words",
+        needed: needed.min(u128::from(u64::MAX)) as u64,
+        available: u32::MAX.into(),
+        remedy: "split the batch",
+    })
 }

@@ -81,7 +81,8 @@ impl HeightPass {
     /// in every window that sees them.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration that is not `seamless` or out of bounds; [`GpuError`].
+    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, a reach out of bounds, or
+    /// buffers that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -98,8 +99,9 @@ impl HeightPass {
                 InputError::new("border", value, "must be \"seamless\" for windows of the plane").into()
             );
         }
+        Window { patch: [0, 0], reach }.validate(config)?;
         let widths = level_widths(config, reach);
-        check_length("output", output, HeightJob::output_points(config, count, reach))?;
+        output.check_holds("output", HeightJob::output_points(config, count, reach))?;
         scratch.check(&widths, count)?;
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
         let features = FeatureIndex::new(gpu, &widths, count, capacity)?;
@@ -158,13 +160,6 @@ impl HeightPass {
     }
 }
 
-fn check_length(what: &str, buffer: &Buffer<i32>, needed: usize) -> Result<(), InputError> {
-    if buffer.len() >= needed {
-        return Ok(());
-    }
-    Err(InputError::new(what, format!("[{} heights]", buffer.len()), format!("must hold at least {needed}")))
-}
-
 /// Points along an edge at every level, enough for windows of any alignment; the base lattice first.
 fn level_widths(config: &Config, reach: u32) -> Vec<u32> {
     let mut widths = vec![config.patch_size + 2 * reach];
@@ -175,8 +170,7 @@ fn level_widths(config: &Config, reach: u32) -> Vec<u32> {
     widths
 }
 
-/// A batch of any size: split where it exceeds the largest storage binding (128 MiB by default), in one
-/// recording.
+/// A batch of any size: split where it exceeds a storage binding of 128 MiB, in one recording.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     jobs: Vec<HeightJob>,
@@ -285,10 +279,7 @@ impl HeightScratch {
 
     fn check(&self, widths: &[u32], count: u32) -> Result<(), InputError> {
         let needed = Self::points(widths, count);
-        self.buffers
-            .iter()
-            .zip(needed)
-            .try_for_each(|(buffer, needed)| check_length("scratch", buffer, needed))
+        self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
 }
 

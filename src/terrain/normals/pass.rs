@@ -2,8 +2,9 @@
 
 use encase::ShaderType;
 
+use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::terrain::config::HEIGHT_ONE;
+use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
 /// `NormalsParams` of the kernel.
@@ -32,7 +33,8 @@ impl NormalsPass {
     /// rim, a central difference in `gradients` and three components (x, up, z) in `normals`.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`crate::InputError`] for a spacing out of bounds, windows without a rim, or outputs that are too
+    /// short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -40,7 +42,11 @@ impl NormalsPass {
         windows: &Fields,
         gradients: &Buffer<[i32; 2]>,
         normals: &Buffer<f32>,
-    ) -> Result<Job, GpuError> {
+    ) -> Result<Job, Error> {
+        check_terrain_scale(terrain_scale)?;
+        windows.check("windows", 1)?;
+        gradients.check_holds("gradients", windows.points(1))?;
+        normals.check_holds("normals", 3 * windows.points(1))?;
         let params =
             NormalsParams { in_width: windows.width, run: (2.0 * terrain_scale * HEIGHT_ONE) as f32 };
         let uniform = Uniform::new(gpu, "normals", &params)?;
@@ -55,7 +61,7 @@ impl NormalsPass {
             groups: vec![self.kernel.bind(gpu, 0, &resources)?],
             workgroups: windows.workgroups(&self.kernel, 1),
         };
-        Job::new(gpu, "terrain/normals", vec![step])
+        Ok(Job::new(gpu, "terrain/normals", vec![step])?)
     }
 }
 

@@ -3,8 +3,8 @@
 use encase::ShaderType;
 
 use super::{Surround, validate};
-use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
 
 /// `PadParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -32,7 +32,8 @@ impl PadPass {
     /// `surrounds`, from `patches` to `windows`.
     ///
     /// # Errors
-    /// [`crate::InputError`] when the reach is `size` or more; [`GpuError`].
+    /// [`InputError`] when the reach is `size` or more, a surrounding lacks its own patch or names one beyond
+    /// `patches`, or `windows` is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -42,6 +43,9 @@ impl PadPass {
         windows: &Buffer<i32>,
     ) -> Result<Job, Error> {
         validate(size, reach)?;
+        let width = size + 2 * reach;
+        check_surrounds(surrounds, patches.len() / (size as usize).pow(2).max(1))?;
+        windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
         let around: Vec<u32> =
             (surrounds.iter().flatten()).map(|tile| tile.map_or(u32::MAX, |index| index as u32)).collect();
         let around = Buffer::from_slice(gpu, "surroundings", &around)?;
@@ -52,7 +56,6 @@ impl PadPass {
             around.raw().as_entire_binding(),
             windows.raw().as_entire_binding(),
         ];
-        let width = size + 2 * reach;
         let step = Step {
             kernel: self.kernel.clone(),
             groups: vec![self.kernel.bind(gpu, 0, &resources)?],
@@ -60,6 +63,24 @@ impl PadPass {
         };
         Ok(Job::new(gpu, "terrain/pad", vec![step])?)
     }
+}
+
+/// Checks that every patch is there itself, and that all of them are among `count`.
+fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputError> {
+    for (index, around) in surrounds.iter().enumerate() {
+        if around[4].is_none() {
+            return Err(InputError::new(
+                format!("surrounds[{index}][4]"),
+                "none",
+                "must be the patch itself",
+            ));
+        }
+        if let Some(beyond) = around.iter().flatten().find(|patch| **patch >= count) {
+            let bound = format!("must be below {count}, the patches in the buffer");
+            return Err(InputError::new(format!("surrounds[{index}]"), beyond, bound));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

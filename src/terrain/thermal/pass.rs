@@ -3,9 +3,10 @@
 use encase::ShaderType;
 
 use super::Thermal;
+use crate::Error;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
-use crate::{Error, InputError};
 
 /// `ThermalParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -33,7 +34,8 @@ impl ThermalPass {
     /// one sample on every side; the result lies in `windows` if their number is even, else in `other`.
     ///
     /// # Errors
-    /// [`crate::InputError`] for parameters out of bounds; [`GpuError`].
+    /// [`crate::InputError`] for parameters out of bounds, windows that the iterations use up, or a buffer that
+    /// is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -43,10 +45,9 @@ impl ThermalPass {
         other: &Fields,
     ) -> Result<Job, Error> {
         thermal.validate()?;
-        if windows.width <= 2 * thermal.iterations {
-            let bound = format!("must exceed {}, two samples an iteration", 2 * thermal.iterations);
-            return Err(InputError::new("windows.width", windows.width, bound).into());
-        }
+        check_terrain_scale(terrain_scale)?;
+        windows.check("windows", thermal.iterations)?;
+        other.heights.check_holds("other.heights", windows.points(thermal.iterations.min(1)))?;
         let threshold = thermal.fixed_threshold(terrain_scale);
         let mut steps = Vec::new();
         for iteration in 0..thermal.iterations {

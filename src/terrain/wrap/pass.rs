@@ -54,7 +54,8 @@ impl WrapPass {
     /// `scratch` of [`WrapJob::scratch_points`] and room for `feature_capacity` injected points.
     ///
     /// # Errors
-    /// [`InputError`] for a `seamless` configuration or one out of bounds; [`GpuError`].
+    /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -69,6 +70,8 @@ impl WrapPass {
             let bound = "must be \"wrap\" or {\"blend\": samples} for patches by themselves";
             return Err(InputError::new("border", "\"seamless\"", bound).into());
         }
+        output.check_holds("output", count as usize * (config.patch_size as usize).pow(2))?;
+        scratch.check_holds("scratch", WrapJob::scratch_points(config, count))?;
         let levels = config.levels() as usize;
         let widths: Vec<u32> = (0..=levels).map(|level| (1 << level) + 1).collect();
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };

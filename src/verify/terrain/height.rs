@@ -35,7 +35,31 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     }
     windows_and_batches(cases)?;
     with_features(cases)?;
+    large(cases)?;
     block_sizes(cases)
+}
+
+/// Large patches with what small ones are tested with: coarse levels, reach, neighbours, features.
+fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for (size, coarse_levels, reach, offset, mode) in [
+        (513, 8, 3, Offset::Gaussian, None),
+        (1025, 4, 17, Offset::Positive, None),
+        (1025, 8, 0, Offset::Signed, None),
+        (513, 3, 1, Offset::Positive, Some(FeatureMode::Keep)),
+        (1025, 1, 0, Offset::Signed, Some(FeatureMode::Additive)),
+        (1025, 6, 5, Offset::Gaussian, Some(FeatureMode::Keep)),
+        (2049, 0, 2, Offset::Signed, Some(FeatureMode::Keep)),
+    ] {
+        let pass = HeightPass::new(cases.gpu, offset, mode)?;
+        let config = Config { coarse_levels, offset, ..Config::new(size, 40.0, "large")? };
+        let features = match mode {
+            Some(mode) => scattered(&config, [2, -3], mode, size + coarse_levels)?,
+            None => Features::default(),
+        };
+        let patches = if size < 2000 { &[[2, -3], [3, -4]][..] } else { &[[3, -3]] };
+        check(cases, &pass, &config, &features, patches, reach)?;
+    }
+    Ok(())
 }
 
 fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {

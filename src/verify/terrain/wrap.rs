@@ -31,7 +31,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     }
     for mode in [FeatureMode::Keep, FeatureMode::Additive] {
         let pass = WrapPass::new(cases.gpu, Offset::Signed, Some(mode))?;
-        for (case, size) in [3, 5, 33, 65].into_iter().enumerate() {
+        for (case, size) in [3, 5, 33, 65, 513].into_iter().enumerate() {
             let config =
                 config(&json!({"patchSize": size, "scaleFactor": 40.0, "seed": "wrap", "border": "wrap"}))?;
             let features = scattered(&config, [2, -3], mode, 50 + case as u32)?;

@@ -1,0 +1,55 @@
+//! Bytes on their way from the device to the host.
+
+use futures_channel::oneshot::{Receiver, channel};
+
+use super::{Gpu, GpuError};
+
+/// A copy that was submitted, and the device's answer that it has arrived.
+pub(super) struct Readback {
+    staging: wgpu::Buffer,
+    size: u64,
+    // None where there is nothing to read.
+    mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
+}
+
+impl Readback {
+    /// Submits a copy of the first `size` bytes of `buffer`, and asks for them.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn start(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Self, GpuError> {
+        let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        gpu.scoped(|| {
+            let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: padded.max(wgpu::COPY_BUFFER_ALIGNMENT),
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            if size == 0 {
+                return Self { staging, size, mapped: None };
+            }
+            let mut encoder = gpu.encoder("readback");
+            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, padded);
+            gpu.queue().submit([encoder.finish()]);
+            let (sender, receiver) = channel();
+            staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                // The receiver is gone only when the caller gave up waiting.
+                let _ = sender.send(result);
+            });
+            Self { staging, size, mapped: Some(receiver) }
+        })
+    }
+
+    /// The bytes, once the device has answered. Pending for ever where nobody polls the device.
+    ///
+    /// # Errors
+    /// [`GpuError::DeviceLost`].
+    pub async fn answer(self) -> Result<Vec<u8>, GpuError> {
+        let lost = |reason: String| GpuError::DeviceLost { reason };
+        let Some(mapped) = self.mapped else { return Ok(Vec::new()) };
+        mapped.await.map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
+        let view = self.staging.get_mapped_range(..).map_err(|error| lost(error.to_string()))?;
+        Ok(view[..self.size as usize].to_vec())
+    }
+}

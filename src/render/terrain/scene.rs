@@ -1,0 +1,203 @@
+//! What a terrain renderer draws: fields that are added, moved and removed as the viewer travels.
+
+use encase::{ShaderSize, ShaderType};
+use glam::{IVec2, Vec2};
+
+use super::{TerrainRenderer, View};
+use crate::gpu::{Buffer, Gpu, Group, Uniform, bind, shaders, storage_bytes};
+use crate::render::camera::Camera;
+use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::fields::Fields;
+use crate::{Error, InputError};
+
+/// `FieldParams` of the shader.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct FieldParams {
+    pub in_width: u32,
+    pub size: u32,
+    pub spacing: f32,
+    pub run: f32,
+    pub tiling: f32,
+}
+
+/// `Place` of the shader.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct Place {
+    pub origin: IVec2,
+    pub uv: Vec2,
+}
+
+/// Fields that were added to a [`TerrainScene`]. Never used again, not even after they were removed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct FieldsId(u64);
+
+/// Fields of one buffer, bound.
+#[derive(Debug, Clone)]
+struct Part {
+    id: FieldsId,
+    group: Group,
+    places: Buffer<u8>,
+    size: u32,
+    /// Texture tiles along a patch's edge.
+    tiles: f64,
+    capacity: u32,
+    patches: u32,
+}
+
+impl Part {
+    /// Chooses the places of the next submission, in the buffer that there is.
+    fn set_places(&mut self, gpu: &Gpu, patches: &[[i32; 2]], origin: [i32; 2]) -> Result<(), Error> {
+        if patches.len() > self.capacity as usize {
+            let bound = format!("must be at most {}, the fields' count", self.capacity);
+            return Err(InputError::new("patches", patches.len(), bound).into());
+        }
+        let places = (patches.iter())
+            .map(|patch| place(self.size, self.tiles, *patch, origin))
+            .collect::<Result<Vec<_>, _>>()?;
+        if !places.is_empty() {
+            self.places.write(gpu, &storage_bytes(&places)?)?;
+        }
+        self.patches = patches.len() as u32;
+        Ok(())
+    }
+}
+
+/// Terrain to draw: add fields, set the camera, then draw in any render pass.
+///
+/// A world that streams keeps a set of [`Fields`] and adds them once. As the viewer travels, it generates new
+/// patches into them and tells the scene with [`TerrainScene::set_places`], which allocates nothing. World
+/// position 0 is the first sample of the patch `origin`: move it along with the viewer, so that `f32` positions
+/// stay small.
+#[derive(Debug, Clone)]
+pub struct TerrainScene {
+    renderer: TerrainRenderer,
+    view: View,
+    uniform: Uniform<View>,
+    group: Group,
+    parts: Vec<Part>,
+    added: u64,
+}
+
+impl TerrainScene {
+    pub(super) fn new(renderer: TerrainRenderer, view: View, uniform: Uniform<View>, group: Group) -> Self {
+        Self { renderer, view, uniform, group, parts: Vec::new(), added: 0 }
+    }
+
+    /// Adds the fields of `patches`, which reach at least one sample beyond them. World position 0 is the first
+    /// sample of patch `origin`. There is room for as many patches as there are fields; those beyond
+    /// `patches` are not drawn.
+    ///
+    /// # Errors
+    /// [`InputError`] for a configuration out of bounds, fields without a margin, or patches so far from the
+    /// origin that `f32` cannot tell their samples apart; [`crate::gpu::GpuError`].
+    pub fn add(
+        &mut self,
+        gpu: &Gpu,
+        config: &Config,
+        fields: &Fields,
+        patches: &[[i32; 2]],
+        origin: [i32; 2],
+    ) -> Result<FieldsId, Error> {
+        config.validate()?;
+        let size = config.patch_size;
+        if fields.width < size + 2 || !(fields.width - size).is_multiple_of(2) {
+            let bound = format!("must be patchSize = {size} and an even margin of at least 2");
+            return Err(InputError::new("fields.width", fields.width, bound).into());
+        }
+        let tiles = 10.0 * config.terrain_scale;
+        let params = FieldParams {
+            in_width: fields.width,
+            size,
+            spacing: config.terrain_scale as f32,
+            run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
+            tiling: (tiles / f64::from(size - 1)) as f32,
+        };
+        let uniform = Uniform::new(gpu, "field", &params)?;
+        let bytes = fields.count as usize * Place::SHADER_SIZE.get() as usize;
+        let places = Buffer::new(gpu, "places", bytes.max(Place::SHADER_SIZE.get() as usize))?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            fields.heights.raw().as_entire_binding(),
+            places.raw().as_entire_binding(),
+        ];
+        let group = bind(gpu, &shaders::RENDER_TERRAIN, &self.renderer.layouts, 1, &resources)?;
+        let id = FieldsId(self.added);
+        let mut part = Part { id, group, places, size, tiles, capacity: fields.count, patches: 0 };
+        part.set_places(gpu, patches, origin)?;
+        self.parts.push(part);
+        self.added += 1;
+        Ok(id)
+    }
+
+    /// Draws the fields `id` as `patches` from the next submission on: at most as many as there are fields,
+    /// the first patch from the first field. Allocates nothing on the device; the heights are whatever the
+    /// fields hold by then.
+    ///
+    /// # Errors
+    /// [`InputError`] for fields that were removed, too many patches, or patches too far from `origin`; then
+    /// nothing has changed. [`crate::gpu::GpuError`].
+    pub fn set_places(
+        &mut self,
+        gpu: &Gpu,
+        id: FieldsId,
+        patches: &[[i32; 2]],
+        origin: [i32; 2],
+    ) -> Result<(), Error> {
+        match self.parts.iter_mut().find(|part| part.id == id) {
+            Some(part) => part.set_places(gpu, patches, origin),
+            None => Err(InputError::new("fields", id.0, "must be fields of this scene").into()),
+        }
+    }
+
+    /// Removes fields, and lets go of their buffers. Whether they were there.
+    pub fn remove(&mut self, id: FieldsId) -> bool {
+        let before = self.parts.len();
+        self.parts.retain(|part| part.id != id);
+        self.parts.len() < before
+    }
+
+    /// Removes all fields.
+    pub fn clear(&mut self) {
+        self.parts.clear();
+    }
+
+    /// Chooses the camera of the next submission.
+    ///
+    /// # Errors
+    /// [`InputError`] for what is no camera; [`crate::gpu::GpuError`].
+    pub fn set_camera(&mut self, gpu: &Gpu, camera: &Camera, aspect: f32) -> Result<(), Error> {
+        self.view.clip_from_world = camera.clip_from_world(aspect)?;
+        Ok(self.uniform.write(gpu, &self.view)?)
+    }
+
+    /// Draws everything that was added.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.renderer.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        for part in &self.parts {
+            pass.set_bind_group(1, &part.group, &[]);
+            pass.draw(0..2 * part.size, 0..(part.size - 1) * part.patches);
+        }
+    }
+}
+
+fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Place, InputError> {
+    let edge = i64::from(size) - 1;
+    let samples = [0, 1].map(|axis| (i64::from(patch[axis]) - i64::from(origin[axis])) * edge);
+    // Positions are whole samples, exact in f32 up to 2^24.
+    if samples.iter().any(|sample| sample.abs() + edge > 1 << 24) {
+        let bound = format!("must lie within 2^24 samples of the origin {origin:?} to be drawn");
+        return Err(InputError::new("patchCoordinates", format!("{patch:?}"), bound));
+    }
+    let uv = patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32);
+    Ok(Place { origin: IVec2::new(samples[0] as i32, samples[1] as i32), uv: Vec2::from(uv) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(field_params_layout: FieldParams = RENDER_TERRAIN "FieldParams");
+    layout_test!(place_layout: Place = RENDER_TERRAIN "Place");
+}

@@ -1,0 +1,56 @@
+//! `scripts/setup.sh` with everything around it faked: it says the one command to run, or is silent.
+#![cfg(target_os = "linux")]
+
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs the script for a user who is not root and whose programs are those in `fakes`, as shell scripts.
+fn setup(arguments: &[&str], fakes: &[(&str, &str)], environment: &[(&str, &str)]) -> Output {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for tool in ["uname", "grep", "ldconfig"] {
+        let found = ["/usr/bin", "/bin", "/usr/sbin", "/sbin"]
+            .map(|place| Path::new(place).join(tool))
+            .into_iter()
+            .find(|path| path.exists());
+        symlink(found.expect("every Linux has it"), folder.path().join(tool)).expect("writable");
+    }
+    for (name, script) in [("id", "echo 1000")].iter().chain(fakes) {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("#!/bin/bash\n{script}\n")).expect("writable");
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).expect("writable");
+    }
+    Command::new("/bin/bash")
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/setup.sh"))
+        .args(arguments)
+        .env_clear()
+        .env("PATH", folder.path())
+        .envs(environment.iter().copied())
+        .output()
+        .expect("bash starts")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn what_is_missing_is_named_with_the_command_that_gets_it() {
+    let output = setup(&[], &[("cargo", "")], &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = stderr(&output);
+    assert!(text.contains("g++") && text.contains("sudo apt-get update && sudo apt-get install"), "{text}");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(stderr(&setup(&[], &[("c++", "")], &[])).contains("cargo is missing"));
+}
+
+#[test]
+fn a_driver_without_a_working_adapter_is_missing() {
+    let broken = [("cargo", "[ \"$1\" = build ]"), ("c++", "")];
+    let output = setup(&["adapter"], &broken, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("apt-get install mesa-vulkan-drivers"), "{}", stderr(&output));
+    let works = setup(&["adapter"], &[("cargo", ""), ("c++", "")], &[("VK_DRIVER_FILES", "chosen.json")]);
+    assert_eq!(works.status.code(), Some(0), "{}", stderr(&works));
+    assert!(works.stderr.is_empty() && works.stdout.is_empty());
+}

@@ -1,0 +1,196 @@
+//! `prepare` refuses buffers, sizes and parameters that do not fit, one field at a time, and takes what just fits.
+
+use relievo::Error;
+use relievo::gpu::{Buffer, Gpu, Options};
+use relievo::terrain::blend::{BlendPass, MapZone, Shading, WeightMode};
+use relievo::terrain::border::BorderPass;
+use relievo::terrain::config::{Border, Config, Offset};
+use relievo::terrain::despike::{Despike, DespikePass};
+use relievo::terrain::features::FeatureIndex;
+use relievo::terrain::fields::Fields;
+use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::terrain::normals::NormalsPass;
+use relievo::terrain::pad::PadPass;
+use relievo::terrain::thermal::{Thermal, ThermalPass};
+use relievo::terrain::wrap::{WrapJob, WrapPass};
+
+fn gpu() -> Gpu {
+    Gpu::headless(&Options::default()).expect("the suite needs an adapter")
+}
+
+#[track_caller]
+fn refuses<T>(result: Result<T, Error>, parts: &[&str]) {
+    let Err(error) = result else { panic!("accepted what should be refused with {parts:?}") };
+    assert!(matches!(error, Error::Input(_)), "{error}");
+    let text = error.to_string();
+    for part in parts {
+        assert!(text.contains(part), "\"{text}\" does not say \"{part}\"");
+    }
+}
+
+fn buffer<T: bytemuck::Pod>(gpu: &Gpu, len: usize) -> Buffer<T> {
+    Buffer::new(gpu, "test", len).expect("allocated")
+}
+
+fn fields(gpu: &Gpu, width: u32, count: u32) -> Fields {
+    Fields::new(gpu, "test", width, count).expect("allocated")
+}
+
+/// Fields that say they are larger than their buffer.
+fn short(gpu: &Gpu) -> Fields {
+    Fields { heights: buffer(gpu, 49), width: 5, count: 2 }
+}
+
+#[test]
+fn fields_without_samples_are_empty_not_huge() {
+    let gpu = gpu();
+    let fields = fields(&gpu, 3, 1);
+    assert_eq!([0, 1, 2, u32::MAX].map(|samples| fields.cropped(samples).width), [3, 1, 0, 0]);
+}
+
+#[test]
+fn normals() {
+    let gpu = gpu();
+    let pass = NormalsPass::new(&gpu).expect("compiled");
+    let prepare = |scale, windows: &Fields, gradients, normals| {
+        pass.prepare(&gpu, scale, windows, &buffer(&gpu, gradients), &buffer(&gpu, normals)).map(|_| ())
+    };
+    let windows = fields(&gpu, 5, 2);
+    assert!(prepare(1.0, &windows, 18, 54).is_ok());
+    refuses(prepare(1.0, &windows, 17, 54), &["gradients = [17 elements]", "at least 18"]);
+    refuses(prepare(1.0, &windows, 18, 53), &["normals = [53 elements]", "at least 54"]);
+    for scale in [0.0, -1.0, f64::NAN, 2e6] {
+        refuses(prepare(scale, &windows, 18, 54), &["terrainScale = ", "0.000001..=1000000"]);
+    }
+    for width in 0..=2 {
+        let thin = fields(&gpu, width, 1);
+        refuses(prepare(1.0, &thin, 18, 54), &[&format!("windows.width = {width}: "), "exceed 2"]);
+    }
+    refuses(prepare(1.0, &short(&gpu), 18, 54), &["windows.heights = [49 elements]", "at least 50"]);
+}
+
+#[test]
+fn blend() {
+    let gpu = gpu();
+    let pass = BlendPass::new(&gpu).expect("compiled");
+    let zone = MapZone { color: [0.5; 3], min: 0.0, max: 1.0 };
+    let good = Shading::default();
+    let windows = fields(&gpu, 5, 2);
+    let prepare = |scale, zones: &[MapZone], shading, windows: &Fields, pixels| {
+        pass.prepare(&gpu, scale, zones, &shading, windows, &buffer(&gpu, pixels)).map(|_| ())
+    };
+    assert!(prepare(1.0, &[zone; 32], good, &windows, 18).is_ok());
+    refuses(prepare(1.0, &[zone], good, &windows, 17), &["pixels = [17 elements]", "at least 18"]);
+    refuses(prepare(f64::INFINITY, &[zone], good, &windows, 18), &["terrainScale = inf"]);
+    refuses(prepare(1.0, &[], good, &windows, 18), &["zones = [0 zones]", "1 to 32"]);
+    refuses(prepare(1.0, &[zone; 33], good, &windows, 18), &["zones = [33 zones]", "1 to 32"]);
+    for (bad, part) in [
+        (MapZone { max: 0.0, ..zone }, "zones[1].max = 0: must be above min = 0"),
+        (MapZone { min: f32::NAN, ..zone }, "zones[1].min = NaN"),
+        (MapZone { color: [0.0, f32::INFINITY, 0.0], ..zone }, "zones[1].color = inf"),
+    ] {
+        refuses(prepare(1.0, &[zone, bad], good, &windows, 18), &[part]);
+    }
+    let weights = WeightMode::Additive;
+    let dark = Shading { light: [0.0; 3], weights, ..good };
+    refuses(prepare(1.0, &[zone], dark, &windows, 18), &["light = [0.0, 0.0, 0.0]", "length 1"]);
+    let blind = Shading { light: [f32::NAN, 0.0, 0.0], ..good };
+    refuses(prepare(1.0, &[zone], blind, &windows, 18), &["light = [NaN, 0.0, 0.0]"]);
+    refuses(prepare(1.0, &[zone], Shading { ambient: 1.5, ..good }, &windows, 18), &["ambient = 1.5"]);
+    refuses(prepare(1.0, &[zone], good, &fields(&gpu, 2, 1), 18), &["windows.width = 2"]);
+    refuses(prepare(1.0, &[zone], good, &short(&gpu), 18), &["windows.heights = [49 elements]"]);
+}
+
+#[test]
+fn despike() {
+    let gpu = gpu();
+    let pass = DespikePass::new(&gpu, true).expect("compiled");
+    let params = Despike { threshold: 1.0 };
+    let index = |widths: &[u32]| FeatureIndex::new(&gpu, widths, 2, 1).expect("allocated");
+    let prepare = |windows: &Fields, widths: &[u32], cropped: usize| {
+        let cropped = Fields { heights: buffer(&gpu, cropped), width: 3, count: 2 };
+        pass.prepare(&gpu, params, windows, &index(widths), &cropped).map(|_| ())
+    };
+    let windows = fields(&gpu, 5, 2);
+    assert!(prepare(&windows, &[5], 18).is_ok());
+    refuses(prepare(&windows, &[5], 17), &["cropped.heights = [17 elements]", "at least 18"]);
+    refuses(prepare(&windows, &[6, 5], 18), &["features.width = 6: must be that of the windows, 5"]);
+    refuses(prepare(&windows, &[], 18), &["features.width = 0"]);
+    refuses(prepare(&fields(&gpu, 1, 1), &[1], 18), &["windows.width = 1"]);
+    refuses(prepare(&short(&gpu), &[5], 18), &["windows.heights = [49 elements]"]);
+}
+
+#[test]
+fn thermal() {
+    let gpu = gpu();
+    let pass = ThermalPass::new(&gpu).expect("compiled");
+    let prepare = |iterations, scale, windows: &Fields, other| {
+        let other = Fields { heights: buffer(&gpu, other), width: 5, count: 2 };
+        let params = Thermal { iterations, ..Thermal::default() };
+        pass.prepare(&gpu, params, scale, windows, &other).map(|_| ())
+    };
+    let windows = fields(&gpu, 5, 2);
+    assert!(prepare(2, 1.0, &windows, 18).is_ok() && prepare(0, 1.0, &windows, 50).is_ok());
+    refuses(prepare(2, 1.0, &windows, 17), &["other.heights = [17 elements]", "at least 18"]);
+    refuses(prepare(3, 1.0, &windows, 50), &["windows.width = 5: ", "exceed 6"]);
+    refuses(prepare(1, 0.0, &windows, 50), &["terrainScale = 0"]);
+    refuses(prepare(1, 1.0, &short(&gpu), 50), &["windows.heights = [49 elements]"]);
+}
+
+#[test]
+fn border() {
+    let gpu = gpu();
+    let pass = BorderPass::new(&gpu).expect("compiled");
+    let around = [[None; 4], [Some(0), None, None, None]];
+    let prepare =
+        |size, width, heights| pass.prepare(&gpu, size, width, &around, &buffer(&gpu, heights)).map(|_| ());
+    assert!(prepare(5, 4, 50).is_ok());
+    refuses(prepare(5, 4, 49), &["heights = [49 elements]", "at least 50"]);
+    for width in [0, 5, u32::MAX] {
+        refuses(prepare(5, width, 50), &[&format!("width = {width}: "), "below size = 5"]);
+    }
+    refuses(prepare(0, 1, 50), &["width = 1"]);
+}
+
+#[test]
+fn pad() {
+    let gpu = gpu();
+    let pass = PadPass::new(&gpu).expect("compiled");
+    let own = |index| std::array::from_fn(|tile| (tile == 4).then_some(index));
+    let prepare = |shape, surrounds: &[[Option<usize>; 9]], patches, windows| {
+        pass.prepare(&gpu, shape, surrounds, &buffer(&gpu, patches), &buffer(&gpu, windows)).map(|_| ())
+    };
+    let surrounds = [own(0), own(1)];
+    assert!(prepare([5, 1], &surrounds, 50, 98).is_ok());
+    refuses(prepare([5, 1], &surrounds, 49, 98), &["surrounds[1] = 1: must be below 1"]);
+    refuses(prepare([5, 1], &surrounds, 50, 97), &["windows = [97 elements]", "at least 98"]);
+    refuses(prepare([5, 1], &[[None; 9]], 50, 98), &["surrounds[0][4] = none"]);
+    refuses(prepare([5, 5], &surrounds, 50, 450), &["reach = 5"]);
+    refuses(prepare([0, 0], &surrounds, 50, 98), &["reach = 0"]);
+}
+
+#[test]
+fn generation() {
+    let gpu = gpu();
+    let config = Config::new(5, 1.0, "short").expect("valid");
+    let height = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
+    let scratch = HeightScratch::new(&gpu, &config, 2, 1).expect("allocated");
+    let points = HeightJob::output_points(&config, 2, 1);
+    let prepare = |reach, output| {
+        height.prepare(&gpu, &config, [2, reach], 0, &buffer(&gpu, output), &scratch).map(|_| ())
+    };
+    assert!(prepare(1, points).is_ok());
+    refuses(prepare(1, points - 1), &["output = [97 elements]", "at least 98"]);
+    refuses(prepare(2, 2 * points), &["scratch = "]);
+    refuses(prepare(u32::MAX, points), &["reach = 4294967295: must be at most 4096"]);
+
+    let config = Config { border: Border::Wrap, ..config };
+    let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");
+    let needed = WrapJob::scratch_points(&config, 2);
+    let prepare = |output, scratch| {
+        wrap.prepare(&gpu, &config, 2, 0, &buffer(&gpu, output), &buffer(&gpu, scratch)).map(|_| ())
+    };
+    assert!(prepare(50, needed).is_ok());
+    refuses(prepare(49, needed), &["output = [49 elements]", "at least 50"]);
+    refuses(prepare(50, needed - 1), &["scratch = "]);
+}
