@@ -3,6 +3,7 @@
 
 pub mod baseline;
 mod measure;
+pub mod surface;
 mod table;
 pub mod terrain;
 
@@ -36,6 +37,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/normals", run: terrain::normals::cases },
     Stem { name: "terrain/morph", run: terrain::morph::cases },
     Stem { name: "terrain/blend", run: terrain::blend::cases },
+    Stem { name: "surface/tangent", run: surface::tangent::cases },
 ];
 
 /// What a row measures.

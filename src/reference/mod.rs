@@ -3,4 +3,5 @@
 
 pub mod baseline;
 pub mod hash;
+pub mod surface;
 pub mod terrain;

@@ -3,6 +3,7 @@
 
 pub mod builtin;
 pub mod map;
+pub mod tangent;
 
 pub use builtin::BuiltInMap;
 pub use map::{Address, HeightMap};

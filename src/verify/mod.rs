@@ -4,6 +4,7 @@
 pub mod baseline;
 pub mod compare;
 pub mod poison;
+pub mod surface;
 pub mod terrain;
 
 use serde::Serialize;
@@ -34,6 +35,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/normals", run: terrain::normals::cases },
     Stem { name: "terrain/morph", run: terrain::morph::cases },
     Stem { name: "terrain/blend", run: terrain::blend::cases },
+    Stem { name: "surface/tangent", run: surface::tangent::cases },
 ];
 
 /// One case's result.

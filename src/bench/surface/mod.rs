@@ -1,0 +1,3 @@
+//! Benchmarks of `kernels/surface/`.
+
+pub mod tangent;

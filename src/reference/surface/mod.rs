@@ -1,0 +1,3 @@
+//! Twins of `kernels/surface/`.
+
+pub mod tangent;

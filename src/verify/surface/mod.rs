@@ -1,0 +1,3 @@
+//! Parity of `kernels/surface/`.
+
+pub mod tangent;
