@@ -40,6 +40,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/blend", run: terrain::blend::cases },
     Stem { name: "surface/height_pyramid", run: surface::height_pyramid::cases },
     Stem { name: "surface/cone_map", run: surface::cone_map::cases },
+    Stem { name: "surface/tangent", run: surface::tangent::cases },
     // Draws pictures: last, for the sake of lavapipe's clock (see its cases).
     Stem { name: "surface/relief", run: surface::relief::cases },
 ];

@@ -9,6 +9,7 @@ pub mod material;
 pub mod mesh;
 pub mod mips;
 pub mod relief;
+pub mod tangent;
 #[cfg(feature = "gpu")]
 pub mod texture;
 

@@ -39,6 +39,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/height_pyramid", run: surface::height_pyramid::cases },
     Stem { name: "surface/cone_map", run: surface::cone_map::cases },
     Stem { name: "surface/relief", run: surface::relief::cases },
+    Stem { name: "surface/tangent", run: surface::tangent::cases },
 ];
 
 /// One case's result.

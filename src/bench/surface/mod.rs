@@ -3,3 +3,4 @@
 pub mod cone_map;
 pub mod height_pyramid;
 pub mod relief;
+pub mod tangent;

@@ -12,3 +12,4 @@ pub mod linear;
 pub mod quadtree;
 pub mod relief;
 pub mod shadow;
+pub mod tangent;

@@ -3,6 +3,7 @@
 pub mod cone_map;
 pub mod height_pyramid;
 pub mod relief;
+pub mod tangent;
 
 use crate::InputError;
 use crate::surface::map::HeightMap;

@@ -1,0 +1,3 @@
+//! Surface mapping on the CPU.
+
+mod tangents;
