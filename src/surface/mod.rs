@@ -6,18 +6,22 @@ pub mod cone_map;
 pub mod height_pyramid;
 pub mod map;
 pub mod material;
+pub mod measure;
 pub mod mesh;
 pub mod mips;
 pub mod relief;
 pub mod tangent;
 #[cfg(feature = "gpu")]
 pub mod texture;
+pub mod view;
 
 pub use builtin::BuiltInMap;
 pub use map::{Address, HeightMap};
 pub use material::{Material, Shadow};
+pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
 pub use relief::{Hit, March, Method, Outcome, Ray};
 #[cfg(feature = "gpu")]
 pub use texture::{HeightBatch, SurfaceTextures};
+pub use view::SquareView;

@@ -9,6 +9,7 @@ pub mod grid;
 pub mod height;
 pub mod height_pyramid;
 pub mod linear;
+pub mod picture;
 pub mod quadtree;
 pub mod relief;
 pub mod shadow;

@@ -1,0 +1,53 @@
+//! Error and cost of a method: against the exact intersection, and in texels loaded.
+
+use rayon::prelude::*;
+
+use crate::reference::surface::exact::exact;
+use crate::surface::map::{Address, HeightMap};
+use crate::surface::relief::{Hit, Outcome, Ray};
+
+/// What tracing a list of rays came to.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Measured {
+    /// Rays that the exact intersection has a hit for.
+    pub rays: usize,
+    /// Mean distance of the results from the exact ones, in texels.
+    pub mean_error_texels: f64,
+    /// What 99 of 100 are below.
+    pub p99_error_texels: f64,
+    /// The largest.
+    pub max_error_texels: f64,
+    /// Rays that ended without a hit though the exact one has one: misses, and methods that ran out of steps.
+    pub misses: usize,
+    /// Mean texels loaded a ray, those of acceleration maps included.
+    pub mean_samples: f64,
+    /// The most that one ray loaded.
+    pub max_samples: u32,
+}
+
+impl Measured {
+    /// Measures results against the exact intersections of their rays.
+    pub fn of(map: &HeightMap, address: Address, rays: &[Ray], hits: &[Hit]) -> Self {
+        let found = rays.par_iter().zip(hits).filter_map(|(ray, hit)| {
+            exact(map, ray, address).map(|exact| (exact.error(hit, map), hit.outcome() != Outcome::Hit))
+        });
+        let found: Vec<(f64, bool)> = found.collect();
+        let mut errors: Vec<f64> = found.iter().map(|(error, _)| *error).collect();
+        errors.par_sort_unstable_by(f64::total_cmp);
+        let count = errors.len().max(1) as f64;
+        let quantile = |share: f64| {
+            let rank = (share * errors.len() as f64).ceil() as usize;
+            errors.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
+        };
+        Self {
+            rays: errors.len(),
+            mean_error_texels: errors.iter().sum::<f64>() / count,
+            p99_error_texels: quantile(0.99),
+            max_error_texels: quantile(1.0),
+            misses: found.iter().filter(|(_, missed)| *missed).count(),
+            mean_samples: hits.iter().map(|hit| f64::from(hit.samples)).sum::<f64>()
+                / hits.len().max(1) as f64,
+            max_samples: hits.iter().map(|hit| hit.samples).max().unwrap_or(0),
+        }
+    }
+}
