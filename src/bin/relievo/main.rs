@@ -7,6 +7,8 @@ mod demo;
 #[cfg(feature = "gpu")]
 mod info;
 mod output;
+#[allow(dead_code, reason = "the first command that draws charts comes with the relief methods")]
+mod plot;
 mod progress;
 #[cfg(feature = "gpu")]
 mod shaders;
