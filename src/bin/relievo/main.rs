@@ -8,6 +8,8 @@ mod demo;
 mod info;
 mod memory;
 mod output;
+#[allow(dead_code, reason = "the first command that draws charts comes with the relief methods")]
+mod plot;
 mod progress;
 #[cfg(feature = "gpu")]
 mod shaders;
