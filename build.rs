@@ -27,7 +27,7 @@ mod shaders {
             for file in shader_files(&root.join(folder)) {
                 let stem = file.strip_prefix(root.join(folder)).expect("found below it").with_extension("");
                 let name = format!("{prefix}{}", stem.display());
-                let shader = Shader::compose(&root, &file, name);
+                let shader = Shader::compose(&root, &file, name, Keep::Entries);
                 let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
                 std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
                 shader.describe(&mut manifest, &path);
@@ -35,10 +35,33 @@ mod shaders {
             }
         }
         refuse_unused_module_bindings(&root, &all);
+        write_modules(&root, &out, &mut manifest);
         let list = all.iter().map(|shader| format!("&{}", shader.constant())).collect::<Vec<_>>().join(", ");
         writeln!(manifest, "/// Every shader of the crate.\npub static ALL: &[&Shader] = &[{list}];")
             .expect("a string");
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
+    }
+
+    /// Writes the modules that others' shaders import: `module.wgsl` of a folder, with all that it imports.
+    fn write_modules(root: &Path, out: &Path, manifest: &mut String) {
+        let mut all = Vec::new();
+        for file in shader_files(&root.join("wgsl")) {
+            if file.file_stem().is_none_or(|stem| stem != "module") {
+                continue;
+            }
+            let folder = file.parent().and_then(|folder| folder.file_name()).expect("below wgsl/");
+            let name = folder.to_string_lossy().into_owned();
+            let module = Shader::compose(root, &file, name.clone(), Keep::All);
+            let path = out.join(format!("module_{name}.wgsl"));
+            std::fs::write(&path, &module.flat).expect("OUT_DIR is writable");
+            all.push(format!("Module {{ name: {name:?}, source: include_str!({path:?}) }}"));
+        }
+        writeln!(
+            manifest,
+            "/// Every module for others' shaders.\npub static MODULES: &[Module] = &[{}];",
+            all.join(", ")
+        )
+        .expect("a string");
     }
 
     fn shader_files(folder: &Path) -> Vec<PathBuf> {
@@ -66,13 +89,29 @@ mod shaders {
         }
     }
 
-    /// Composes a file with what it imports. With `whole`, all that the file itself declares stays in.
-    fn flatten(root: &Path, file: &Path, whole: bool, mangler: wesl::ManglerKind) -> String {
+    /// What stays in a composed shader.
+    #[derive(Clone, Copy, PartialEq)]
+    enum Keep {
+        /// What entry points reach.
+        Entries,
+        /// And all that the file itself declares.
+        Root,
+        /// Everything, also of imported modules.
+        All,
+    }
+
+    /// Composes a file with what it imports.
+    fn flatten(root: &Path, file: &Path, keep: Keep, mangler: wesl::ManglerKind) -> String {
         let relative = file.strip_prefix(root).expect("below the root");
         let path = format!("package::{}", relative.with_extension("").display()).replace('/', "::");
         let mut compiler = wesl::Wesl::new(root);
         // Eager: an import that nothing uses must exist too.
-        compiler.set_options(wesl::CompileOptions { lazy: false, keep_root: whole, ..Default::default() });
+        compiler.set_options(wesl::CompileOptions {
+            lazy: false,
+            strip: keep != Keep::All,
+            keep_root: keep == Keep::Root,
+            ..Default::default()
+        });
         compiler.set_mangler(mangler);
         compiler.set_missing_feature_behavior(wesl::Feature::Error);
         match compiler.compile(&path.parse().expect("a module path")) {
@@ -84,7 +123,7 @@ mod shaders {
     /// Names of the bindings that a file itself declares.
     fn declared_bindings(root: &Path, file: &Path) -> Vec<String> {
         // Mangling changes the names of imports alone, and so tells them from the file's own.
-        let flat = flatten(root, file, true, wesl::ManglerKind::Escape);
+        let flat = flatten(root, file, Keep::Root, wesl::ManglerKind::Escape);
         let module = naga::front::wgsl::parse_str(&flat)
             .unwrap_or_else(|error| refuse(file, &error.emit_to_string(&flat)));
         let names = module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some());
@@ -117,10 +156,10 @@ mod shaders {
     }
 
     impl Shader {
-        fn compose(root: &Path, file: &Path, name: String) -> Self {
+        fn compose(root: &Path, file: &Path, name: String, keep: Keep) -> Self {
             let relative = file.strip_prefix(root).expect("below the root");
             // Without mangling the flat shader reads like its sources; a clash of names is a naga error.
-            let flat = flatten(root, file, false, wesl::ManglerKind::None);
+            let flat = flatten(root, file, keep, wesl::ManglerKind::None);
             let flat = format!("// relievo {name}: generated from {}\n\n{flat}", relative.display());
             let module = naga::front::wgsl::parse_str(&flat).unwrap_or_else(|error| {
                 let at = error.location(&flat).map_or(0, |location| location.line_number as usize);

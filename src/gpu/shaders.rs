@@ -88,4 +88,14 @@ pub struct Shader {
     pub structs: &'static [Struct],
 }
 
+/// WGSL to put before your own shader, for programs that do not compose theirs with WESL: functions and structs
+/// without entry points or bindings.
+#[derive(Debug, Clone, Copy)]
+pub struct Module {
+    /// The folder below `wgsl/`.
+    pub name: &'static str,
+    /// WGSL.
+    pub source: &'static str,
+}
+
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

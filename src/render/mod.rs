@@ -4,6 +4,7 @@ pub mod camera;
 pub mod color;
 pub mod picture;
 pub mod relief;
+pub mod square;
 pub mod target;
 pub mod terrain;
 
@@ -11,5 +12,6 @@ pub use camera::Camera;
 pub use color::ColorTexture;
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
+pub use square::SquarePicture;
 pub use target::Target;
 pub use terrain::{FieldsId, Materials, Style, TerrainRenderer, TerrainScene};

@@ -130,8 +130,11 @@ impl HeightMap {
     }
 }
 
-/// Opens an image, having looked at its size first.
-fn open(path: &Path) -> Result<image::DynamicImage, Error> {
+/// Reads an image file, having looked at its size first: no edge may be longer than [`MAP_EDGE`].
+///
+/// # Errors
+/// [`Error::File`] when it cannot be read.
+pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
     let failed = |error: image::ImageError| Error::file(path, error);
     let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
     let mut reader = reader.map_err(|error| Error::file(path, error))?;

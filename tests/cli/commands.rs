@@ -73,7 +73,16 @@ fn shaders_are_flat_and_described() {
         assert!(points.iter().all(|point| source.contains(point["name"].as_str().expect("a name"))));
         assert!(!entry["bindings"].as_array().expect("bindings").is_empty());
         let compute = points.iter().filter(|point| point["stage"] == "compute");
-        compute.for_each(|point| assert_eq!(point["workgroup_size"], serde_json::json!([64, 1, 1])));
+        compute.for_each(|point| {
+            let size = point["workgroup_size"].as_array().expect("three");
+            assert_eq!(size.iter().filter_map(serde_json::Value::as_u64).product::<u64>(), 64);
+        });
+    }
+    for module in relievo::gpu::shaders::MODULES {
+        let file = folder.path().join(format!("wgsl/module_{}.wgsl", module.name));
+        let source = std::fs::read_to_string(file).expect("written");
+        assert!(source.contains("fn surface_trace(") && source.contains("fn surface_soft_shadow("));
+        assert!(!source.contains("@binding") && !source.contains("@compute"), "{}", module.name);
     }
 }
 

@@ -1,3 +1,5 @@
 //! Surface mapping on the CPU.
 
+mod crossings;
+mod errors;
 mod tangents;

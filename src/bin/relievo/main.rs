@@ -8,9 +8,9 @@ mod demo;
 mod info;
 mod memory;
 mod output;
-#[allow(dead_code, reason = "the first command that draws charts comes with the relief methods")]
 mod plot;
 mod progress;
+mod relief;
 #[cfg(feature = "gpu")]
 mod shaders;
 mod terrain;
@@ -45,6 +45,7 @@ enum Command {
     #[cfg(feature = "gpu")]
     Info,
     Terrain(Box<terrain::Terrain>),
+    Relief(Box<relief::Relief>),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -90,6 +91,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "gpu")]
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
+        Command::Relief(command) => command.run(&context),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]

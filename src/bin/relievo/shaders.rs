@@ -5,12 +5,13 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
-use relievo::gpu::shaders::{ALL, Shader};
+use relievo::gpu::shaders::{ALL, MODULES, Shader};
 use relievo::terrain::export::write_bytes;
 
 use crate::output::{Staged, json, say};
 
-/// Writes the flat WGSL of every pass, and `manifest.json` with entry points, bindings and workgroup sizes.
+/// Writes the flat WGSL of every pass, `manifest.json` with entry points, bindings and workgroup sizes, and
+/// `module_<name>.wgsl`: functions to put before your own shaders, such as every ray-height method.
 #[derive(Args)]
 pub struct Shaders {
     /// The folder.
@@ -34,9 +35,13 @@ impl Shaders {
             write_bytes(&staged.path(file.clone()), shader.source.as_bytes())?;
             entries.push(Entry { file, shader });
         }
+        for module in MODULES {
+            write_bytes(&staged.path(format!("module_{}.wgsl", module.name)), module.source.as_bytes())?;
+        }
         write_bytes(&staged.path("manifest.json"), &json(&entries)?)?;
         staged.publish()?;
-        say(format_args!("{} shaders and manifest.json in {}", ALL.len(), self.out.display()))?;
+        let (passes, modules) = (ALL.len(), MODULES.len());
+        say(format_args!("{passes} shaders, {modules} modules and manifest.json in {}", self.out.display()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -108,7 +108,7 @@ enum Weights {
 
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
 #[serde(rename_all = "lowercase")]
-enum Backend {
+pub enum Backend {
     #[cfg_attr(feature = "gpu", default)]
     Gpu,
     #[cfg_attr(not(feature = "gpu"), default)]
@@ -538,7 +538,7 @@ fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config, patch: [i
     write_bytes(path, &text)
 }
 
-fn pair<T: std::str::FromStr>(
+pub fn pair<T: std::str::FromStr>(
     field: &str,
     text: &str,
     separator: char,

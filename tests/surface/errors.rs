@@ -1,0 +1,89 @@
+//! Measured error and cost on the built-in maps: what each method promises. Relief depth 0.1, wrap addressing.
+
+use relievo::reference::surface::relief::Surface;
+use relievo::surface::{Address, BuiltInMap, HeightMap, March, Measured, Method, Ray, SquareView};
+
+fn rays(angle: f64) -> Vec<Ray> {
+    let view = SquareView { angle, azimuth: 25.0, tiles: 1.0, size: [120, 120] };
+    view.rays(0.1, 1.0).into_iter().flatten().collect()
+}
+
+fn measured(surface: &Surface<'_>, method: Method, angle: f64, steps: u32) -> Measured {
+    let rays = rays(angle);
+    let march = March { steps: [steps, steps], ..March::default() };
+    Measured::of(surface.map, Address::Wrap, &rays, &surface.trace_all(method, &rays, &march))
+}
+
+fn each_map(check: impl Fn(BuiltInMap, &HeightMap)) {
+    for kind in BuiltInMap::ALL {
+        check(kind, &kind.height_map(256).expect("a map"));
+    }
+}
+
+#[test]
+fn quadtree_is_exact_at_every_angle() {
+    each_map(|kind, map| {
+        let surface = Surface::new(map, Method::Quadtree, Address::Wrap);
+        for angle in [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0] {
+            let measured = measured(&surface, Method::Quadtree, angle, 1);
+            assert!(measured.rays > 1000 && measured.misses == 0, "{kind:?} {angle}: {measured:?}");
+            assert!(measured.p99_error_texels <= 0.05, "{kind:?} {angle}: {measured:?}");
+        }
+    });
+}
+
+/// At most half of the loads that relief needs for a mean error of a quarter texel.
+#[test]
+fn cone_costs_half_of_relief_for_the_same_error() {
+    each_map(|kind, map| {
+        let surface = Surface::new(map, Method::Cone, Address::Wrap);
+        let cone = measured(&surface, Method::Cone, 60.0, 1);
+        assert!(cone.mean_error_texels <= 0.25 && cone.misses == 0, "{kind:?}: {cone:?}");
+        let relief = (0..=10)
+            .map(|power| measured(&surface, Method::Relief, 60.0, 1 << power))
+            .filter(|relief| relief.mean_error_texels <= 0.25)
+            .min_by(|a, b| a.mean_samples.total_cmp(&b.mean_samples));
+        let needed = relief.expect("enough steps are exact").mean_samples;
+        assert!(2.0 * cone.mean_samples <= needed, "{kind:?}: {} against {needed} loads", cone.mean_samples);
+    });
+}
+
+#[test]
+fn errors_of_linear_search_fall_as_steps_rise() {
+    each_map(|kind, map| {
+        for method in [Method::Relief, Method::Occlusion] {
+            let surface = Surface::new(map, method, Address::Wrap);
+            for angle in [30.0, 60.0, 80.0] {
+                let errors = [4, 8, 16, 32, 64, 128, 256]
+                    .map(|steps| measured(&surface, method, angle, steps).mean_error_texels);
+                // More steps see more, whatever phase they start in.
+                let falls = errors.windows(2).all(|pair| pair[1] <= pair[0] * 1.02 + 1e-6);
+                assert!(falls && errors[6] * 4.0 <= errors[0], "{kind:?} {method:?} {angle}: {errors:?}");
+            }
+        }
+    });
+}
+
+/// B figure 3.6: steps walk past thin posts; cones and the tree do not.
+#[test]
+fn posts_are_lost_by_steps_alone() {
+    let map = BuiltInMap::Posts.height_map(256).expect("a map");
+    let surface = Surface::new(&map, Method::Cone, Address::Wrap);
+    let relief = measured(&surface, Method::Relief, 60.0, 10);
+    assert!(relief.p99_error_texels > 10.0, "B's ten steps: {relief:?}");
+    let surface = Surface { pyramid: surface.pyramid.clone(), ..surface };
+    for method in [Method::Cone, Method::Quadtree] {
+        let safe = measured(&surface, method, 60.0, 10);
+        assert!(safe.p99_error_texels < 0.05, "{method:?}: {safe:?}");
+    }
+}
+
+#[test]
+fn straight_down_nothing_is_displaced() {
+    each_map(|kind, map| {
+        for method in Method::ALL {
+            let measured = measured(&Surface::new(map, method, Address::Wrap), method, 0.0, 16);
+            assert!(measured.max_error_texels < 1e-3, "{kind:?} {method:?}: {measured:?}");
+        }
+    });
+}
