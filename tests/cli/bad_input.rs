@@ -97,6 +97,7 @@ fn unknown_words_are_refused_by_name() {
     for (arguments, words) in [
         (&["frobnicate"][..], &["'frobnicate'"][..]),
         (&["terrain", "--frobnicate"], &["'--frobnicate'"]),
+        (&["terrain", "--patchs", "1x1"], &["'--patchs' found; a similar argument exists: '--patches'"]),
         (&["terrain"], &["--config <FILE>", "--out <DIR>"]),
         (&["verify", "--only"], &["--only <STEM>"]),
         (&["terrain", "--thermal", "many"], &["'many'", "--thermal"]),

@@ -124,6 +124,7 @@ fn refused(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let what = text.split("\n\nUsage:").next().unwrap_or_default().split("\n\nFor more").next();
     let what = what.unwrap_or_default().trim_start_matches("error: ").trim_end();
+    let what = what.replace("\n\n  tip: ", "; ");
     complain(&format!("{what}; see --help"));
     ExitCode::from(2)
 }
