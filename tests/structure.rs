@@ -62,7 +62,8 @@ fn unmeasured(stem: &bench::Stem) -> Vec<String> {
     let has = |case: &str, backends: &[Backend]| {
         rows.iter().any(|row| row.case == case && row.items > 0 && backends.contains(&row.backend))
     };
-    let needed = [&[Backend::Gpu][..], &[Backend::Twin], &[Backend::Copy, Backend::Limit]];
+    let twins = &[Backend::Twin, Backend::TwinParallel][..];
+    let needed = [&[Backend::Gpu][..], twins, &[Backend::Copy, Backend::Limit]];
     (cases.iter().flat_map(|case| needed.map(|backends| (case, backends))))
         .filter(|(case, backends)| !has(case, backends))
         .map(|(case, backends)| format!("one of {backends:?} in {case}"))

@@ -5,12 +5,13 @@
 mod harness;
 
 mod cracks;
+mod curved;
 mod faults;
 mod scene;
 
 use harness::{Tolerance, check_golden, relievo};
 
-/// The pictures of B's figures, of seamless grids, and of both weight modes.
+/// The pictures of B's figures, of seamless grids, of both weight modes, and of every kind of relief.
 const VIEWS: &[&str] = &[
     "textured",
     "grid",
@@ -25,6 +26,16 @@ const VIEWS: &[&str] = &[
     "additive",
     "thermal",
     "blend",
+    "relief_bricks",
+    "relief_close_plain",
+    "relief_close_parallax",
+    "relief_close_relief",
+    "relief_text",
+    "relief_posts_lost",
+    "relief_posts_cone",
+    "relief_cobbles",
+    "relief_grazing",
+    "relief_clamp",
 ];
 
 /// Maps are one pixel a sample: those that fit a golden.

@@ -30,7 +30,7 @@ fn maps() -> impl Strategy<Value = HeightMap> {
 }
 
 fn rays() -> impl Strategy<Value = Vec<Ray>> {
-    let turn = prop_oneof![4 => 0.0..std::f32::consts::TAU, 1 => (0..8).prop_map(|i| i as f32 * 0.785_398_2)];
+    let turn = prop_oneof![4 => 0.0..std::f32::consts::TAU, 1 => (0..8).prop_map(|i| i as f32 * std::f32::consts::FRAC_PI_4)];
     let ray = (-1.0..2.0_f32, -1.0..2.0_f32, turn, 0.03..=1.0_f32, 0.0..0.3_f32);
     let ray = ray.prop_map(|(u, v, turn, cosine, scale)| {
         let sine = (1.0 - cosine * cosine).sqrt();

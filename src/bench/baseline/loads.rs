@@ -1,6 +1,7 @@
 //! How fast texels are loaded.
 
 use crate::Error;
+use crate::baseline::copy::CopyPass;
 use crate::baseline::loads::LoadsPass;
 use crate::bench::{Backend, Bench, Contender};
 use crate::gpu::Buffer;
@@ -20,8 +21,13 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let textures = SurfaceTextures::new(gpu, &map, Method::Plain, Address::Wrap)?;
     let sums = Buffer::new(gpu, "sums", 1 << 20)?;
     let job = LoadsPass::new(gpu)?.prepare(gpu, &textures.heights, [1024, 1024], 16, &sums)?;
+    let (source, destination) =
+        (Buffer::new(gpu, "source", 8 << 20)?, Buffer::new(gpu, "destination", 8 << 20)?);
+    // Half of the bytes read, half written.
+    let copied = CopyPass::new(gpu)?.prepare(gpu, 8 << 20, &source, &destination)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Twin, || {
             drop(std::hint::black_box(loads(&map, [1024, 1024], 16)));
         }),

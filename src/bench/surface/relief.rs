@@ -17,7 +17,10 @@ use crate::surface::mips::Mips;
 use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
 use crate::surface::texture::SurfaceTextures;
 
-/// Texels of the map, and pixels of the target, along an edge.
+/// Texels along an edge of the map.
+const TEXELS: u32 = 512;
+
+/// Pixels along an edge of the target.
 const EDGE: u32 = 1024;
 
 /// Degrees from the normal.
@@ -25,7 +28,7 @@ const ANGLE: f32 = 60.0;
 
 /// Cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
 /// (the case names them), and nothing else. Then 1024² pixels by the fragment pass: `limit` is `plain` drawn the
-/// same.
+/// same, the twin marches and does not shade.
 ///
 /// All kernels come before all pictures: lavapipe's timestamps around compute work are too short once a picture
 /// has been drawn.
@@ -33,23 +36,28 @@ const ANGLE: f32 = 60.0;
 /// # Errors
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
-    let map = BuiltInMap::Cobbles.height_map(EDGE)?;
+    let map = BuiltInMap::Cobbles.height_map(TEXELS)?;
     for method in Method::ALL {
         listed(bench, &map, method)?;
     }
     let gpu = bench.gpu;
-    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(EDGE)?);
+    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
     let target = Target::new(gpu, [EDGE, EDGE])?;
     let plain = scene(gpu, &map, &albedo, Method::Plain)?;
+    let (rays, march) = (rays(EDGE), March::default());
     for method in Method::ALL {
         let scene = scene(gpu, &map, &albedo, method)?;
+        let surface = Surface::new(&map, method, Address::Wrap);
         let draw = |scene: &ReliefScene, encoder: &mut wgpu::CommandEncoder| {
             target.record(encoder, [0.0; 3], |pass| scene.draw(pass));
         };
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| draw(&scene, encoder)),
             Contender::recorded(Backend::Limit, |encoder| draw(&plain, encoder)),
+            Contender::host(Backend::TwinParallel, || {
+                drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
+            }),
         ];
         let pixels = (EDGE * EDGE) as usize;
         bench.case(

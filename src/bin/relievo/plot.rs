@@ -51,6 +51,7 @@ impl Chart {
     ///
     /// # Errors
     /// [`InputError`] for a size that nothing can be read at.
+    #[cfg(test)]
     pub fn draw(&self, size: (u32, u32)) -> Result<RgbImage, InputError> {
         grid("", std::slice::from_ref(self), 1, size)
     }

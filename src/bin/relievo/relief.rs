@@ -184,7 +184,7 @@ impl Relief {
             let drawn = plan.draw(context)?;
             plan.write(&drawn, staged)?;
             let Measured { mean_error_texels, p99_error_texels, mean_samples, .. } = drawn.measured;
-            crate::output::say(&format!(
+            crate::output::say(format_args!(
                 "{}: mean error {mean_error_texels:.4} texels, 99 of 100 below {p99_error_texels:.4}, \
                  {mean_samples:.1} texel loads a pixel; {}",
                 plan.method.name(),

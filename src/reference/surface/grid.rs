@@ -56,8 +56,7 @@ impl Grid {
     }
 
     pub fn node(&self, cell: [i32; 2], level: u32) -> Node {
-        let mut node = Node { index: [0; 2], low: [0; 2], high: [0; 2] };
-        for axis in 0..2 {
+        let axis = |axis: usize| {
             let absolute = self.base[axis] + cell[axis];
             let (inside, tile) = match self.address {
                 Address::Wrap => {
@@ -66,21 +65,16 @@ impl Grid {
                 }
                 Address::Clamp => ((absolute + 1).clamp(0, self.size[axis]), -1 - self.base[axis]),
             };
-            node.index[axis] = inside >> level;
-            let first = node.index[axis] << level;
+            let index = inside >> level;
+            let first = index << level;
             let last = (first + (1 << level)).min(self.cells[axis]);
-            node.low[axis] = tile + first;
-            node.high[axis] = tile + last;
-            if self.address == Address::Clamp {
-                if first == 0 {
-                    node.low[axis] = -FAR;
-                }
-                if last == self.cells[axis] {
-                    node.high[axis] = FAR;
-                }
-            }
-        }
-        node
+            let reaches = |rim: bool| self.address == Address::Clamp && rim;
+            let low = if reaches(first == 0) { -FAR } else { tile + first };
+            let high = if reaches(last == self.cells[axis]) { FAR } else { tile + last };
+            (index, low, high)
+        };
+        let (x, y) = (axis(0), axis(1));
+        Node { index: [x.0, y.0], low: [x.1, y.1], high: [x.2, y.2] }
     }
 
     pub fn exits(&self, node: &Node) -> [f32; 2] {

@@ -1,0 +1,151 @@
+//! Pictures of surface mapping.
+
+use clap::{Args, FromArgMatches};
+use relievo::Error;
+use relievo::surface::Measured;
+
+use super::Page;
+use crate::relief::Relief;
+use crate::terrain::save;
+
+/// One picture and the rest of its command.
+struct Entry {
+    name: &'static str,
+    title: &'static str,
+    arguments: &'static [&'static str],
+}
+
+const ENTRIES: &[Entry] = &[
+    Entry {
+        name: "relief_bricks",
+        title: "A flat square: every brick is found by the ray of each pixel, exactly, and shades its neighbours",
+        arguments: &["--builtin", "bricks", "--method", "quadtree", "--shadow", "hard"],
+    },
+    Entry {
+        name: "relief_close_plain",
+        title: "Close up, textured only (B figure 5.11)",
+        arguments: &["--builtin", "bricks", "--method", "plain", "--tile", "0.3", "--angle", "60"],
+    },
+    Entry {
+        name: "relief_close_parallax",
+        title: "Close up, parallax with the square in the middle of the relief (B figure 5.11)",
+        arguments: &[
+            "--builtin",
+            "bricks",
+            "--method",
+            "parallax",
+            "--bias",
+            "-0.05",
+            "--tile",
+            "0.3",
+            "--angle",
+            "60",
+        ],
+    },
+    Entry {
+        name: "relief_close_relief",
+        title: "Close up, relief: linear, then binary search (B figure 5.11)",
+        arguments: &["--builtin", "bricks", "--method", "relief", "--tile", "0.3", "--angle", "60"],
+    },
+    Entry {
+        name: "relief_text",
+        title: "Text as a height map, over relaxed cones, with soft shadows",
+        arguments: &[
+            "--builtin",
+            "text",
+            "--method",
+            "cone",
+            "--scale",
+            "0.08",
+            "--shadow",
+            "soft",
+            "--azimuth",
+            "-20",
+        ],
+    },
+    Entry {
+        name: "relief_posts_lost",
+        title: "Thin posts, and ten linear steps that walk past them (B figure 3.6)",
+        arguments: &[
+            "--builtin",
+            "posts",
+            "--texels",
+            "256",
+            "--method",
+            "relief",
+            "--steps",
+            "10",
+            "--tile",
+            "0.5",
+        ],
+    },
+    Entry {
+        name: "relief_posts_cone",
+        title: "The same posts over cones that lose no crossing",
+        arguments: &["--builtin", "posts", "--texels", "256", "--method", "cone", "--tile", "0.5"],
+    },
+    Entry {
+        name: "relief_cobbles",
+        title: "Cobbles, four tiles, cut along their own outline",
+        arguments: &[
+            "--builtin",
+            "cobbles",
+            "--tile",
+            "2",
+            "--silhouette",
+            "--shadow",
+            "soft",
+            "--angle",
+            "65",
+            "--azimuth",
+            "35",
+        ],
+    },
+    Entry {
+        name: "relief_grazing",
+        title: "80 degrees from the normal: where linear search is farthest off",
+        arguments: &["--builtin", "cobbles", "--angle", "80", "--shadow", "hard", "--light", "250,35"],
+    },
+    Entry {
+        name: "relief_clamp",
+        title: "Clamped addressing: beyond the edge its last heights go on",
+        arguments: &["--builtin", "cobbles", "--address", "clamp", "--angle", "70", "--azimuth", "200"],
+    },
+];
+
+/// How many entries there are.
+pub const COUNT: usize = ENTRIES.len();
+
+/// Draws every entry onto the page.
+pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
+    for entry in ENTRIES {
+        page.progress.set_message(entry.name);
+        let (picture, measured, seconds) = command(entry, size)?.picture(page.context)?;
+        save(&page.staged.path(format!("{}.png", entry.name)), &picture)?;
+        page.figures += &figure(entry, &measured, seconds);
+        page.count += 1;
+        page.progress.inc(1);
+    }
+    Ok(())
+}
+
+fn command(entry: &Entry, size: &str) -> Result<Relief, Error> {
+    let words = ["relief", "--size", size, "--out", "."].into_iter().chain(entry.arguments.iter().copied());
+    let refused = |error: clap::Error| Error::file(entry.name, error);
+    let matches = Relief::augment_args(clap::Command::new("relief")).try_get_matches_from(words);
+    Relief::from_arg_matches(&matches.map_err(refused)?).map_err(refused)
+}
+
+fn figure(entry: &Entry, measured: &Measured, seconds: f64) -> String {
+    format!(
+        "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
+         <figcaption>{title}.<br><code>relievo relief {arguments} --out {name}</code><br>\
+         mean error {error:.4} texels, {loads:.1} texel loads a pixel; {seconds:.3} s with maps and measuring</figcaption>\n\
+         </figure>\n",
+        name = entry.name,
+        title = entry.title,
+        arguments = entry.arguments.join(" "),
+        error = measured.mean_error_texels,
+        loads = measured.mean_samples,
+    )
+}
