@@ -1,6 +1,7 @@
 //! Colour textures with mip levels.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::reference::terrain::blend::linear;
 use crate::surface::mips::Mips;
 
 /// A filtered texture.
@@ -13,51 +14,85 @@ pub struct ColorTexture {
 }
 
 impl ColorTexture {
-    /// Uploads mip levels: sRGB for colours, linear for normals, as they were made.
+    /// Uploads mip levels as 8-bit texels: sRGB for colours, linear for normals, as they were made.
     ///
     /// # Errors
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, mips: &Mips, wraps: bool) -> Result<Self, GpuError> {
-        let size = |level: &image::RgbaImage| wgpu::Extent3d {
-            width: level.width(),
-            height: level.height(),
-            depth_or_array_layers: 1,
-        };
         let format = match mips.is_srgb {
             true => wgpu::TextureFormat::Rgba8UnormSrgb,
             false => wgpu::TextureFormat::Rgba8Unorm,
         };
-        let address = if wraps { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
-        gpu.scoped(|| {
-            let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-                label: Some("colour"),
-                size: size(&mips.levels[0]),
-                mip_level_count: mips.levels.len() as u32,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            for (mip_level, level) in (0..).zip(&mips.levels) {
-                let to = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
-                let layout = wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(4 * level.width()),
-                    rows_per_image: None,
-                };
-                gpu.queue().write_texture(to, level.as_raw(), layout, size(level));
-            }
-            let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("colour"),
-                address_mode_u: address,
-                address_mode_v: address,
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                ..Default::default()
-            });
-            Self { texture, sampler }
-        })
+        upload(gpu, mips, wraps, format, 4, |level| level.as_raw().clone())
     }
+
+    /// Uploads mip levels as linear half floats: twice the memory, and no driver decodes sRGB its own way. For
+    /// pictures that are compared across drivers.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn linear(gpu: &Gpu, mips: &Mips, wraps: bool) -> Result<Self, GpuError> {
+        let value = |channel: usize, byte: u8| match mips.is_srgb && channel < 3 {
+            true => linear(byte),
+            false => f32::from(byte) / 255.0,
+        };
+        let halves = |level: &image::RgbaImage| {
+            let texels = level.pixels().flat_map(|texel| {
+                let [r, g, b, a] = texel.0;
+                [value(0, r), value(1, g), value(2, b), value(3, a)]
+            });
+            texels.flat_map(|light| half::f16::from_f32(light).to_le_bytes()).collect()
+        };
+        upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, 8, halves)
+    }
+}
+
+fn upload(
+    gpu: &Gpu,
+    mips: &Mips,
+    wraps: bool,
+    format: wgpu::TextureFormat,
+    texel: u32,
+    bytes: impl Fn(&image::RgbaImage) -> Vec<u8>,
+) -> Result<ColorTexture, GpuError> {
+    let size = |level: &image::RgbaImage| wgpu::Extent3d {
+        width: level.width(),
+        height: level.height(),
+        depth_or_array_layers: 1,
+    };
+    gpu.scoped(|| {
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("colour"),
+            size: size(&mips.levels[0]),
+            mip_level_count: mips.levels.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        for (mip_level, level) in (0..).zip(&mips.levels) {
+            let to = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texel * level.width()),
+                rows_per_image: None,
+            };
+            gpu.queue().write_texture(to, &bytes(level), layout, size(level));
+        }
+        ColorTexture { texture, sampler: sampler(gpu, wraps) }
+    })
+}
+
+fn sampler(gpu: &Gpu, wraps: bool) -> wgpu::Sampler {
+    let address = if wraps { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
+    gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("colour"),
+        address_mode_u: address,
+        address_mode_v: address,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
 }

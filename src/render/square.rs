@@ -6,7 +6,8 @@ use crate::Error;
 use crate::gpu::Gpu;
 use crate::render::color::ColorTexture;
 use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer};
-use crate::render::target::{COLOR_FORMAT, Target};
+use crate::render::target::{LINEAR_FORMAT, Target};
+use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
 use crate::surface::material::Material;
 use crate::surface::mesh::SurfaceMesh;
@@ -37,7 +38,7 @@ impl SquarePicture<'_> {
     ///
     /// # Errors
     /// [`crate::InputError`] for what cannot be drawn; [`crate::gpu::GpuError`].
-    pub fn draw(&self, gpu: &Gpu, background: [f64; 3]) -> Result<image::RgbaImage, Error> {
+    pub fn draw(&self, gpu: &Gpu, background: [f32; 3]) -> Result<LinearImage, Error> {
         self.view.validate()?;
         let options = ReliefOptions {
             method: self.textures.method,
@@ -48,20 +49,20 @@ impl SquarePicture<'_> {
             mip: false,
         };
         let wraps = self.march.address == Address::Wrap;
-        let albedo = ColorTexture::new(gpu, self.albedo, wraps)?;
-        let normals = self.normals.map(|normals| ColorTexture::new(gpu, normals, wraps)).transpose()?;
+        let albedo = ColorTexture::linear(gpu, self.albedo, wraps)?;
+        let normals = self.normals.map(|normals| ColorTexture::linear(gpu, normals, wraps)).transpose()?;
         let maps = ReliefMaps { textures: self.textures, albedo: &albedo, normals: normals.as_ref() };
         // The mesh's v runs along −Y.
         let [x, y, z] = self.material.light;
         let material = Material { light: [x, -y, z], ..self.material };
         let tiles = self.view.tiles as f32;
-        let renderer = ReliefRenderer::new(gpu, COLOR_FORMAT, options)?;
+        let renderer = ReliefRenderer::new(gpu, LINEAR_FORMAT, options)?;
         let mesh = SurfaceMesh::square(tiles);
         let mut scene = renderer.scene(gpu, &mesh, maps, &material, &self.march, 1.0 / tiles)?;
         scene.set_camera(gpu, camera(&self.view))?;
-        let target = Target::new(gpu, self.view.size)?;
-        target.draw(gpu, background, |pass| scene.draw(pass))?;
-        Ok(target.read(gpu)?)
+        let target = Target::linear(gpu, self.view.size)?;
+        target.draw(gpu, background.map(f64::from), |pass| scene.draw(pass))?;
+        Ok(LinearImage { size: self.view.size, pixels: target.read_linear(gpu)? })
     }
 }
 

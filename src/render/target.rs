@@ -5,6 +5,9 @@ use crate::gpu::{Gpu, GpuError};
 /// The colour format of [`Target`].
 pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
+/// The colour format of [`Target::linear`].
+pub const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
 /// The depth format that every pass here expects.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -21,6 +24,18 @@ impl Target {
     /// # Errors
     /// [`GpuError::Limit`] when it is larger than a texture may be, [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Self::of(gpu, size, COLOR_FORMAT)
+    }
+
+    /// A target of linear light in f32, which no driver rounds or encodes its own way.
+    ///
+    /// # Errors
+    /// As [`Target::new`].
+    pub fn linear(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Self::of(gpu, size, LINEAR_FORMAT)
+    }
+
+    fn of(gpu: &Gpu, size: [u32; 2], color: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let available = gpu.device().limits().max_texture_dimension_2d;
         if size.iter().any(|edge| *edge == 0 || *edge > available) {
             return Err(GpuError::Limit {
@@ -44,10 +59,7 @@ impl Target {
             })
         };
         gpu.scoped(|| Self {
-            color: texture(
-                COLOR_FORMAT,
-                wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            ),
+            color: texture(color, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC),
             depth: texture(DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
         })
     }
@@ -102,13 +114,29 @@ impl Target {
         draw(&mut pass);
     }
 
-    /// The image: RGBA, sRGB, row by row.
+    /// The image of a target of [`Target::new`]: RGBA, sRGB, row by row.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
+        let pixels = self.read_bytes(gpu, 4)?;
+        image::RgbaImage::from_raw(self.color.width(), self.color.height(), pixels).ok_or_else(|| {
+            GpuError::Internal { reason: "the image that was read back has the wrong size".to_owned() }
+        })
+    }
+
+    /// The linear red, green and blue of a target of [`Target::linear`], row by row.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn read_linear(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, GpuError> {
+        let pixels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read_bytes(gpu, 16)?);
+        Ok(pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+    }
+
+    fn read_bytes(&self, gpu: &Gpu, texel: u32) -> Result<Vec<u8>, GpuError> {
         let (width, height) = (self.color.width(), self.color.height());
-        let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let pitch = (texel * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = crate::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize)?;
         gpu.run("readback", |encoder| {
             encoder.copy_texture_to_buffer(
@@ -125,10 +153,7 @@ impl Target {
             );
         })?;
         let rows = buffer.read_blocking(gpu)?;
-        let pixels =
-            rows.chunks_exact(pitch as usize).flat_map(|row| &row[..4 * width as usize]).copied().collect();
-        image::RgbaImage::from_raw(width, height, pixels).ok_or_else(|| GpuError::Internal {
-            reason: "the image that was read back has the wrong size".to_owned(),
-        })
+        let row = (texel * width) as usize;
+        Ok(rows.chunks_exact(pitch as usize).flat_map(|padded| &padded[..row]).copied().collect())
     }
 }

@@ -4,6 +4,7 @@
 pub mod builtin;
 pub mod cone_map;
 pub mod height_pyramid;
+pub mod linear_image;
 pub mod map;
 pub mod material;
 pub mod measure;
@@ -16,6 +17,7 @@ pub mod texture;
 pub mod view;
 
 pub use builtin::BuiltInMap;
+pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
 pub use material::{Material, Shadow};
 pub use measure::Measured;

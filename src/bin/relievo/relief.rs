@@ -9,7 +9,6 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use image::RgbaImage;
-use image::imageops::{FilterType, resize};
 use relievo::surface::view::towards_light;
 use relievo::surface::{
     Address, BuiltInMap, HeightMap, Hit, March, Material, Measured, Method, Mips, Outcome, Ray, Shadow,
@@ -26,7 +25,7 @@ use crate::terrain::{Backend, pair, save};
 use tracer::Tracer;
 
 /// Linear light behind the square.
-const BACKGROUND: [f64; 3] = [0.045, 0.055, 0.07];
+const BACKGROUND: [f32; 3] = [0.045, 0.055, 0.07];
 
 /// Samples a pixel along each axis of a picture: one crawls with jagged edges.
 const FINER: u32 = 2;
@@ -357,9 +356,4 @@ impl Plan {
 
 fn bytes(values: impl Iterator<Item = f32>) -> Vec<u8> {
     values.flat_map(f32::to_le_bytes).collect()
-}
-
-/// The mean of each `factor` × `factor` pixels.
-fn reduced(image: &RgbaImage, factor: u32) -> RgbaImage {
-    resize(image, image.width() / factor, image.height() / factor, FilterType::Triangle)
 }

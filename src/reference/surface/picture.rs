@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use super::height::height;
 use super::relief::Surface;
 use super::shadow::{light_ray, shaded, soft_shadow};
-use crate::reference::terrain::blend::{linear, srgb_byte};
+use crate::reference::terrain::blend::linear;
+use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
 use crate::surface::material::{Material, Shadow};
 use crate::surface::mips::Mips;
@@ -32,18 +33,15 @@ pub struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// The picture, RGBA, sRGB, over a linear `background`.
-    pub fn draw(&self, background: [f64; 3]) -> image::RgbaImage {
+    /// The picture over a linear `background`.
+    pub fn draw(&self, background: [f32; 3]) -> LinearImage {
         let [width, height] = self.view.size;
-        let empty = background.map(|channel| channel as f32);
-        let pixels = (0..width * height).into_par_iter().flat_map_iter(|index| {
+        let pixels = (0..width * height).into_par_iter().map(|index| {
             let (x, y) = (f64::from(index % width) + 0.5, f64::from(index / width) + 0.5);
             let ray = self.view.ray(x, y, self.material.scale, self.material.plane);
-            let [r, g, b] = ray.and_then(|ray| self.shade(&ray)).unwrap_or(empty).map(srgb_byte);
-            [r, g, b, 255]
+            ray.and_then(|ray| self.shade(&ray)).unwrap_or(background)
         });
-        let pixels: Vec<u8> = pixels.collect();
-        image::RgbaImage::from_raw(width, height, pixels).unwrap_or_default()
+        LinearImage { size: self.view.size, pixels: pixels.collect() }
     }
 
     /// The linear colour that a ray sees; none beyond the silhouette.

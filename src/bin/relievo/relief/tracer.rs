@@ -6,7 +6,7 @@ use relievo::reference::surface::picture::Scene;
 use relievo::reference::surface::relief::Surface;
 use relievo::surface::{Address, HeightMap, Hit, March, Method, Ray};
 
-use super::{Plan, reduced};
+use super::Plan;
 use crate::Context;
 use crate::terrain::Backend;
 
@@ -50,7 +50,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The picture, drawn with `finer` × `finer` samples a pixel.
-    pub fn picture(&self, plan: &Plan, background: [f64; 3], finer: u32) -> Result<RgbaImage, Error> {
+    pub fn picture(&self, plan: &Plan, background: [f32; 3], finer: u32) -> Result<RgbaImage, Error> {
         match self {
             Self::Cpu(method, surface) => {
                 let scene = Scene {
@@ -62,7 +62,7 @@ impl<'a> Tracer<'a> {
                     material: &plan.material,
                     view: plan.view.scaled(finer),
                 };
-                Ok(reduced(&scene.draw(background), finer))
+                Ok(scene.draw(background).reduced(finer).encoded())
             }
             #[cfg(feature = "gpu")]
             Self::Gpu(device) => device.picture(plan, background, finer),
@@ -115,7 +115,7 @@ mod device {
             Ok(all)
         }
 
-        pub fn picture(&self, plan: &Plan, background: [f64; 3], finer: u32) -> Result<RgbaImage, Error> {
+        pub fn picture(&self, plan: &Plan, background: [f32; 3], finer: u32) -> Result<RgbaImage, Error> {
             let available = self.gpu.device().limits().max_texture_dimension_2d;
             let bytes = 4
                 * u64::from(finer * finer)
@@ -132,7 +132,7 @@ mod device {
                 view: plan.view.scaled(finer),
             };
             let image = picture.draw(&self.gpu, background)?;
-            Ok(if finer == 1 { image } else { reduced(&image, finer) })
+            Ok(image.reduced(finer).encoded())
         }
 
         pub fn adapter(&self) -> [String; 2] {
