@@ -54,23 +54,47 @@ fn height(row: u32, cell: u32) -> f32 {
     return heights[index >> 2u][index & 3u];
 }
 
-// The highest corners of four cells in a row share five texels above and five below.
-fn texel_row(map: u32, at: vec2<u32>) -> vec4<f32> {
-    let row = (map * params.size.y + texel(at.y, params.size.y)) * params.size.x;
-    let last = height(row, at.x + 4u);
+// A row of texels before four cells and the one behind them.
+fn texel_row(map: u32, y: u32) -> u32 {
+    return (map * params.size.y + texel(y, params.size.y)) * params.size.x;
+}
+
+// The highest of neighbours in a row of texels: `last` is the fifth.
+fn highest_pairs(row: u32, x: u32, last: f32) -> vec4<f32> {
+    var four: vec4<f32>;
     if IS_ALIGNED {
-        let four = heights[(row + at.x) >> 2u];
-        return max(four, vec4<f32>(four.yzw, last));
+        four = heights[(row + x) >> 2u];
+    } else {
+        four = vec4<f32>(height(row, x), height(row, x + 1u), height(row, x + 2u), height(row, x + 3u));
     }
-    let four = vec4<f32>(
-        height(row, at.x), height(row, at.x + 1u), height(row, at.x + 2u), height(row, at.x + 3u));
     return max(four, vec4<f32>(four.yzw, last));
+}
+
+// Four rows of four leaves.
+fn leaves(map: u32, at: vec2<u32>) -> mat4x4<f32> {
+    let rows = vec4<u32>(
+        texel_row(map, at.y), texel_row(map, at.y + 1u), texel_row(map, at.y + 2u), texel_row(map, at.y + 3u));
+    let below = texel_row(map, at.y + 4u);
+    // The first loads of every row come together, so that a processor waits for memory once.
+    let x = at.x + 4u;
+    let lasts = vec4<f32>(height(rows.x, x), height(rows.y, x), height(rows.z, x), height(rows.w, x));
+    let fifth = highest_pairs(below, at.x, height(below, x));
+    let first = highest_pairs(rows.x, at.x, lasts.x);
+    let second = highest_pairs(rows.y, at.x, lasts.y);
+    let third = highest_pairs(rows.z, at.x, lasts.z);
+    let fourth = highest_pairs(rows.w, at.x, lasts.w);
+    return mat4x4<f32>(max(first, second), max(second, third), max(third, fourth), max(fourth, fifth));
 }
 
 // Four nodes as they count: those outside their level do not.
 fn inside(four: vec4<f32>, at: vec2<u32>, count: vec2<u32>) -> vec4<f32> {
     let columns = vec4<u32>(at.x) + vec4<u32>(0u, 1u, 2u, 3u) < vec4<u32>(count.x);
     return select(vec4<f32>(NOTHING), four, columns & vec4<bool>(at.y < count.y));
+}
+
+fn parents(above: vec4<f32>, below: vec4<f32>) -> vec2<f32> {
+    let pair = max(above, below);
+    return vec2<f32>(max(pair.x, pair.y), max(pair.z, pair.w));
 }
 
 // Two nodes of a row of a higher level, the first of even index.
@@ -86,43 +110,57 @@ fn store_pair(map: u32, level: u32, at: vec2<u32>, pair: vec2<f32>) {
     }
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+// A map's threads, row after row: a row has as many as the next power of two. Neighbours read neighbours, and
+// workgroups walk along rows, since processors fetch ahead what is read in order.
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
     let level = select(params.level, 0u, FROM_HEIGHTS);
-    if any(id.xy >= nodes(level + 2u)) {
+    let highest_count = nodes(level + 2u);
+    let row_bits = 32u - countLeadingZeros(highest_count.x - 1u);
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    let map = group.z;
+    let id = vec2<u32>(index & ((1u << row_bits) - 1u), index >> row_bits);
+    if any(id >= highest_count) {
         return;
     }
-    let at = 4u * id.xy;
+    let at = 4u * id;
     let count = nodes(level);
-    var row = place(id.z, level, at) >> 2u;
-    var above = vec4<f32>(NOTHING);
+    let row = place(map, level, at) >> 2u;
+    let pitch = params.pitch >> 2u;
+    var four: mat4x4<f32>;
     if FROM_HEIGHTS {
-        above = texel_row(id.z, at);
+        four = leaves(map, at);
+    } else {
+        four = mat4x4<f32>(
+            pyramids[row], pyramids[row + pitch], pyramids[row + 2u * pitch], pyramids[row + 3u * pitch]);
     }
-    var highest = vec2<f32>(NOTHING);
-    for (var half = 0u; half < 2u; half++) {
-        var pair = vec4<f32>(NOTHING);
-        for (var y = at.y + 2u * half; y < at.y + 2u * half + 2u; y++) {
-            var four: vec4<f32>;
-            if FROM_HEIGHTS {
-                let below = texel_row(id.z, vec2<u32>(at.x, y + 1u));
-                four = inside(max(above, below), vec2<u32>(at.x, y), count);
-                above = below;
-                if y < count.y {
-                    pyramids[row] = four;
-                }
-            } else {
-                four = inside(pyramids[row], vec2<u32>(at.x, y), count);
-            }
-            row += params.pitch >> 2u;
-            pair = max(pair, four);
+    let first = inside(four[0], at, count);
+    let second = inside(four[1], at + vec2<u32>(0u, 1u), count);
+    let third = inside(four[2], at + vec2<u32>(0u, 2u), count);
+    let fourth = inside(four[3], at + vec2<u32>(0u, 3u), count);
+    if FROM_HEIGHTS {
+        pyramids[row] = first;
+        if at.y + 1u < count.y {
+            pyramids[row + pitch] = second;
         }
-        let parents = vec2<f32>(max(pair.x, pair.y), max(pair.z, pair.w));
-        store_pair(id.z, level + 1u, vec2<u32>(2u * id.x, 2u * id.y + half), parents);
-        highest = max(highest, parents);
+        if at.y + 2u < count.y {
+            pyramids[row + 2u * pitch] = third;
+        }
+        if at.y + 3u < count.y {
+            pyramids[row + 3u * pitch] = fourth;
+        }
     }
+    let upper = parents(first, second);
+    let lower = parents(third, fourth);
+    store_pair(map, level + 1u, 2u * id, upper);
+    store_pair(map, level + 1u, 2u * id + vec2<u32>(0u, 1u), lower);
     if level + 2u < params.levels {
-        let index = place(id.z, level + 2u, id.xy);
-        pyramids[index >> 2u][index & 3u] = max(highest.x, highest.y);
+        let highest = max(upper, lower);
+        let node = place(map, level + 2u, id);
+        pyramids[node >> 2u][node & 3u] = max(highest.x, highest.y);
     }
 }

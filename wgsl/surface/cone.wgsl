@@ -20,34 +20,49 @@ fn surface_cone(
     // Where the ray was last known to be above the surface.
     var above = 0.0;
     var samples = 0u;
-    for (var step = 0u; step < bound; step++) {
-        let node = surface_node(grid, cell, 0u);
-        let exits = surface_exits(grid, node);
-        let leave = clamp(min(exits.x, exits.y), parameter, 1.0);
-        // The cell's highest corner, and the cone's radius at height 1 above it, in cells.
-        let cone = textureLoad(cones, node.index, 0).rg;
-        samples += 1u;
-        let room = 1.0 - parameter - cone.r;
-        if 1.0 - leave > cone.r {
+    var step = 0u;
+    while step < bound {
+        // Steps through the air, in a loop of their own: rays of a workgroup wait for each other's steps, not for
+        // each other's patches.
+        var node: SurfaceNode;
+        var exits: vec2<f32>;
+        var leave: f32;
+        var is_near = false;
+        while step < bound {
+            step += 1u;
+            node = surface_node(grid, cell, 0u);
+            exits = surface_exits(grid, node);
+            leave = clamp(min(exits.x, exits.y), parameter, 1.0);
+            // The cell's highest corner, and the cone's radius at height 1 above it, in cells.
+            let cone = textureLoad(cones, node.index, 0).rg;
+            samples += 1u;
+            if 1.0 - leave <= cone.r {
+                is_near = true;
+                break;
+            }
             above = parameter;
-            let reach = parameter + cone.g * room / (distance + cone.g);
+            let reach = parameter + cone.g * (1.0 - parameter - cone.r) / (distance + cone.g);
             if reach > leave {
                 parameter = min(reach, 1.0);
                 cell = vec2<i32>(floor(grid.start + parameter * grid.travel));
-                continue;
+            } else {
+                cell = surface_beyond(grid, node, exits, leave);
+                parameter = leave;
             }
-        } else {
-            let corners = surface_corners(heights, grid, node.index);
-            samples += 4u;
-            let found = surface_patch(grid, corners, surface_corner(node), parameter, leave);
-            if found > parameter || (found == parameter && above == parameter) {
-                return surface_point(ray, found, samples, SURFACE_HIT);
-            }
-            if found >= 0.0 {
-                return surface_narrowed(heights, ray, march, above, parameter, samples);
-            }
-            above = parameter;
         }
+        if !is_near {
+            break;
+        }
+        let corners = surface_corners(heights, grid, node.index);
+        samples += 4u;
+        let found = surface_patch(grid, corners, surface_corner(node), parameter, leave);
+        if found > parameter || (found == parameter && above == parameter) {
+            return surface_point(ray, found, samples, SURFACE_HIT);
+        }
+        if found >= 0.0 {
+            return surface_narrowed(heights, ray, march, above, parameter, samples);
+        }
+        above = parameter;
         cell = surface_beyond(grid, node, exits, leave);
         parameter = leave;
     }

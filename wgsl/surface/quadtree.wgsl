@@ -19,31 +19,47 @@ fn surface_quadtree(
     var cell = vec2<i32>(0);
     var parameter = 0.0;
     var samples = 0u;
-    for (var step = 0u; step < bound; step++) {
-        let node = surface_node(grid, cell, level);
-        let exits = surface_exits(grid, node);
-        let leave = clamp(min(exits.x, exits.y), parameter, 1.0);
-        let highest = textureLoad(pyramid, surface_atlas_at(vec2<u32>(grid.cells), level, node.index), 0).r;
-        samples += 1u;
-        if 1.0 - leave <= highest {
-            parameter = max(parameter, 1.0 - highest);
-            if level > 0u {
-                level -= 1u;
-                cell = surface_cell(grid, node, parameter);
+    var step = 0u;
+    while step < bound {
+        // Nodes in a loop of their own: rays of a workgroup wait for each other's nodes, not for each other's patches.
+        var node: SurfaceNode;
+        var exits: vec2<f32>;
+        var leave: f32;
+        var is_leaf = false;
+        while step < bound {
+            step += 1u;
+            node = surface_node(grid, cell, level);
+            exits = surface_exits(grid, node);
+            leave = clamp(min(exits.x, exits.y), parameter, 1.0);
+            let at = surface_atlas_at(vec2<u32>(grid.cells), level, node.index);
+            let highest = textureLoad(pyramid, at, 0).r;
+            samples += 1u;
+            if 1.0 - leave > highest {
+                cell = surface_beyond(grid, node, exits, leave);
+                parameter = leave;
+                level = min(level + select(0u, 1u, surface_leaves_parent(grid, node, exits, level)), top);
                 continue;
             }
-            let corners = surface_corners(heights, grid, node.index);
-            samples += 4u;
-            let found = surface_patch(grid, corners, surface_corner(node), parameter, leave);
-            if found >= 0.0 {
-                return surface_point(ray, found, samples, SURFACE_HIT);
+            parameter = max(parameter, 1.0 - highest);
+            if level == 0u {
+                is_leaf = true;
+                break;
             }
+            level -= 1u;
+            cell = surface_cell(grid, node, parameter);
+        }
+        if !is_leaf {
+            break;
+        }
+        let corners = surface_corners(heights, grid, node.index);
+        samples += 4u;
+        let found = surface_patch(grid, corners, surface_corner(node), parameter, leave);
+        if found >= 0.0 {
+            return surface_point(ray, found, samples, SURFACE_HIT);
         }
         cell = surface_beyond(grid, node, exits, leave);
         parameter = leave;
-        if surface_leaves_parent(grid, node, exits, level) {
-            level = min(level + 1u, top);
-        }
+        level = min(select(0u, 1u, surface_leaves_parent(grid, node, exits, 0u)), top);
     }
     return surface_point(ray, parameter, samples, SURFACE_EXHAUSTED);
 }

@@ -105,6 +105,7 @@ impl HeightPyramidPass {
         level: u32,
     ) -> Result<Step, GpuError> {
         let layout = pyramids.layout;
+        let [columns, rows] = layout.nodes(level + 2);
         let params = PyramidParams {
             size: UVec2::from(layout.size),
             cells: UVec2::from(layout.cells),
@@ -120,7 +121,7 @@ impl HeightPyramidPass {
             maps.heights.raw().as_entire_binding(),
             pyramids.nodes.raw().as_entire_binding(),
         ];
-        let [x, y] = layout.nodes(level + 2).map(|nodes| nodes.div_ceil(8));
+        let [x, y, _] = kernel.spread(gpu, rows * columns.next_power_of_two());
         Ok(Step {
             kernel: kernel.clone(),
             groups: vec![kernel.bind(gpu, 0, &resources)?],
