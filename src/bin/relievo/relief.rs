@@ -201,6 +201,12 @@ impl Relief {
         Ok((drawn.picture, drawn.measured, start.elapsed().as_secs_f64()))
     }
 
+    /// The plot of `--compare` alone, for the demonstration.
+    #[cfg(feature = "gpu")]
+    pub fn comparison(&self, context: &Context) -> Result<RgbaImage, Error> {
+        compare::picture(&self.plan()?, context)
+    }
+
     fn plan(&self) -> Result<Plan, Error> {
         let method = self.method.parse()?;
         let address = match self.address {

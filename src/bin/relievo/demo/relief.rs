@@ -113,8 +113,14 @@ const ENTRIES: &[Entry] = &[
     },
 ];
 
+const COMPARISON: Entry = Entry {
+    name: "relief_compare",
+    title: "What each method costs, and how far it is off: lower and further left is better",
+    arguments: &["--builtin", "bricks", "--texels", "256", "--compare"],
+};
+
 /// How many entries there are.
-pub const COUNT: usize = ENTRIES.len();
+pub const COUNT: usize = ENTRIES.len() + 1;
 
 /// Draws every entry onto the page.
 pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
@@ -122,10 +128,21 @@ pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
         page.progress.set_message(entry.name);
         let (picture, measured, seconds) = command(entry, size)?.picture(page.context)?;
         save(&page.staged.path(format!("{}.png", entry.name)), &picture)?;
-        page.figures += &figure(entry, &measured, seconds);
+        let Measured { mean_error_texels, mean_samples, .. } = measured;
+        let note = format!(
+            "mean error {mean_error_texels:.4} texels, {mean_samples:.1} texel loads a pixel; {seconds:.3} s with maps and \
+             measuring"
+        );
+        page.figures += &figure(entry, &note);
         page.count += 1;
         page.progress.inc(1);
     }
+    page.progress.set_message(COMPARISON.name);
+    let plot = command(&COMPARISON, "240x150")?.comparison(page.context)?;
+    save(&page.staged.path(format!("{}.png", COMPARISON.name)), &plot)?;
+    page.figures += &figure(&COMPARISON, "errors against the exact intersection; labels are linear steps");
+    page.count += 1;
+    page.progress.inc(1);
     Ok(())
 }
 
@@ -136,16 +153,11 @@ fn command(entry: &Entry, size: &str) -> Result<Relief, Error> {
     Relief::from_arg_matches(&matches.map_err(refused)?).map_err(refused)
 }
 
-fn figure(entry: &Entry, measured: &Measured, seconds: f64) -> String {
+fn figure(entry: &Entry, note: &str) -> String {
+    let Entry { name, title, arguments } = entry;
+    let arguments = arguments.join(" ");
     format!(
         "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-         <figcaption>{title}.<br><code>relievo relief {arguments} --out {name}</code><br>\
-         mean error {error:.4} texels, {loads:.1} texel loads a pixel; {seconds:.3} s with maps and measuring</figcaption>\n\
-         </figure>\n",
-        name = entry.name,
-        title = entry.title,
-        arguments = entry.arguments.join(" "),
-        error = measured.mean_error_texels,
-        loads = measured.mean_samples,
+         <figcaption>{title}.<br><code>relievo relief {arguments} --out {name}</code><br>{note}</figcaption>\n</figure>\n"
     )
 }

@@ -47,6 +47,35 @@ struct Comparison<'a> {
 }
 
 pub fn run(plan: &Plan, context: &Context, mut staged: Staged) -> Result<(), Error> {
+    let (entries, adapter) = compared(plan, context)?;
+    let [name, driver] = [0, 1].map(|i| adapter.as_ref().map(|names| names[i].as_str()));
+    let comparison = Comparison {
+        adapter: name,
+        driver,
+        backend: plan.backend,
+        map: [plan.map.width(), plan.map.height()],
+        scale: plan.material.scale,
+        address: plan.march.address.name(),
+        azimuth: plan.view.azimuth,
+        binary_steps: plan.march.binary_steps,
+        entries: &entries,
+    };
+    let table = table(&comparison);
+    write_bytes(&staged.path("compare.json"), &json(&comparison)?)?;
+    write_bytes(&staged.path("compare.md"), table.as_bytes())?;
+    save(&staged.path("compare.png"), &plot(&entries)?)?;
+    staged.publish()?;
+    say(table.trim_end())
+}
+
+/// The plot alone, for the demonstration.
+#[cfg(feature = "gpu")]
+pub fn picture(plan: &Plan, context: &Context) -> Result<image::RgbaImage, Error> {
+    Ok(plot(&compared(plan, context)?.0)?)
+}
+
+/// Every method at every angle, and the adapter.
+fn compared(plan: &Plan, context: &Context) -> Result<(Vec<Entry>, Option<[String; 2]>), Error> {
     let lists = ANGLES.map(|angle| {
         let view = SquareView { angle, ..plan.view };
         view.rays(plan.material.scale, plan.material.plane).into_iter().flatten().collect::<Vec<Ray>>()
@@ -71,24 +100,7 @@ pub fn run(plan: &Plan, context: &Context, mut staged: Staged) -> Result<(), Err
         }
     }
     progress.finish_and_clear();
-    let [name, driver] = [0, 1].map(|i| adapter.as_ref().map(|names| names[i].as_str()));
-    let comparison = Comparison {
-        adapter: name,
-        driver,
-        backend: plan.backend,
-        map: [plan.map.width(), plan.map.height()],
-        scale: plan.material.scale,
-        address: plan.march.address.name(),
-        azimuth: plan.view.azimuth,
-        binary_steps: plan.march.binary_steps,
-        entries: &entries,
-    };
-    let table = table(&comparison);
-    write_bytes(&staged.path("compare.json"), &json(&comparison)?)?;
-    write_bytes(&staged.path("compare.md"), table.as_bytes())?;
-    save(&staged.path("compare.png"), &image::DynamicImage::ImageRgb8(plot(&entries)?).into_rgba8())?;
-    staged.publish()?;
-    say(table.trim_end())
+    Ok((entries, adapter))
 }
 
 /// Markdown: one row a method and step count, then the cheapest method for an error.
@@ -110,9 +122,12 @@ fn table(comparison: &Comparison<'_>) -> String {
             entry.measured;
         writeln!(
             text,
-            "| {}° | {} | {steps} | {mean_error_texels:.4} | {p99_error_texels:.4} | {max_error_texels:.3} | {misses} | {mean_samples:.1} |",
+            "| {}° | {} | {steps} | {} | {} | {} | {misses} | {mean_samples:.1} |",
             entry.angle,
-            entry.method.name()
+            entry.method.name(),
+            texels(mean_error_texels),
+            texels(p99_error_texels),
+            texels(max_error_texels),
         )
         .expect("a string");
     }
@@ -132,6 +147,15 @@ fn table(comparison: &Comparison<'_>) -> String {
     text
 }
 
+/// An error, small ones by their order.
+fn texels(error: f64) -> String {
+    match error {
+        0.0 => "0".to_owned(),
+        error if error < 1e-4 => format!("{error:.0e}"),
+        error => format!("{error:.4}"),
+    }
+}
+
 fn cheapest(entries: &[Entry], angle: f64, bound: f64) -> String {
     let fitting = entries
         .iter()
@@ -144,7 +168,7 @@ fn cheapest(entries: &[Entry], angle: f64, bound: f64) -> String {
 }
 
 /// One panel an angle.
-fn plot(entries: &[Entry]) -> Result<image::RgbImage, relievo::InputError> {
+fn plot(entries: &[Entry]) -> Result<image::RgbaImage, relievo::InputError> {
     let chart = |angle: f64| {
         let series = Method::ALL.into_iter().map(|method| {
             let here = || entries.iter().filter(move |entry| entry.angle == angle && entry.method == method);
@@ -166,5 +190,5 @@ fn plot(entries: &[Entry]) -> Result<image::RgbImage, relievo::InputError> {
         }
     };
     let title = "Error against cost, by angle from the normal (labels: linear steps)";
-    grid(title, &ANGLES.map(chart), 2, (1200, 900))
+    Ok(image::DynamicImage::ImageRgb8(grid(title, &ANGLES.map(chart), 2, (1200, 900))?).into_rgba8())
 }
