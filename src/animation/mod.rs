@@ -2,6 +2,7 @@
 //! to 14).
 
 pub mod clip;
+pub mod creature;
 pub mod gltf;
 pub mod model;
 pub mod sample;
@@ -9,6 +10,7 @@ pub mod skeleton;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use creature::creature;
 pub use model::Model;
 pub use sample::{RotationPath, Wrap};
 pub use skeleton::{Bone, Skeleton, Skin};

@@ -6,4 +6,8 @@ mod harness;
 
 mod bad_input;
 mod commands;
+mod pose;
+#[allow(dead_code, reason = "only the tests of the import write GLBs")]
+#[path = "../animation/scene.rs"]
+mod scene;
 mod terrain;

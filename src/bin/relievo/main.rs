@@ -10,6 +10,7 @@ mod memory;
 mod output;
 #[allow(dead_code, reason = "the first command that draws charts comes with the relief methods")]
 mod plot;
+mod pose;
 mod progress;
 #[cfg(feature = "gpu")]
 mod shaders;
@@ -45,6 +46,7 @@ enum Command {
     #[cfg(feature = "gpu")]
     Info,
     Terrain(Box<terrain::Terrain>),
+    Pose(pose::Pose),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -90,6 +92,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "gpu")]
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
+        Command::Pose(command) => command.run(),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]
