@@ -7,6 +7,7 @@ mod harness;
 mod bad_input;
 mod commands;
 mod pose;
+mod priorities;
 #[allow(dead_code, reason = "only the tests of the import write GLBs")]
 #[path = "../animation/scene.rs"]
 mod scene;

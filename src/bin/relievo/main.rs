@@ -11,6 +11,7 @@ mod output;
 #[allow(dead_code, reason = "the first command that draws charts comes with the relief methods")]
 mod plot;
 mod pose;
+mod priorities;
 mod progress;
 #[cfg(feature = "gpu")]
 mod shaders;
@@ -47,6 +48,7 @@ enum Command {
     Info,
     Terrain(Box<terrain::Terrain>),
     Pose(pose::Pose),
+    Priorities(priorities::Priorities),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -93,6 +95,7 @@ fn main() -> ExitCode {
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Pose(command) => command.run(),
+        Command::Priorities(command) => command.run(),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]

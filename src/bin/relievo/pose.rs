@@ -41,7 +41,7 @@ pub struct Pose {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum WrapName {
+pub enum WrapName {
     Loop,
     Clamp,
 }
