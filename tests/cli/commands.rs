@@ -90,6 +90,7 @@ fn shaders_are_flat_and_described() {
 fn help_teaches() {
     for (arguments, words) in [
         (&["--help"][..], &["demo", "verify", "bench", "terrain", "shaders", "RELIEVO_ADAPTER"][..]),
+        (&["pose", "--help"], &["builtin", "walk", "column by column", "--wrap"]),
         (&["terrain", "--help"], &["patchSize", "precomputedHeights", "--thermal", "map.png", "report.json"]),
     ] {
         let run = relievo(arguments);

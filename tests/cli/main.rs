@@ -6,5 +6,10 @@ mod harness;
 
 mod bad_input;
 mod commands;
+mod pose;
+mod priorities;
 mod relief;
+#[allow(dead_code, reason = "only the tests of the import write GLBs")]
+#[path = "../animation/scene.rs"]
+mod scene;
 mod terrain;

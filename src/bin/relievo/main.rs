@@ -9,6 +9,8 @@ mod info;
 mod memory;
 mod output;
 mod plot;
+mod pose;
+mod priorities;
 mod progress;
 mod relief;
 #[cfg(feature = "gpu")]
@@ -46,6 +48,8 @@ enum Command {
     Info,
     Terrain(Box<terrain::Terrain>),
     Relief(Box<relief::Relief>),
+    Pose(pose::Pose),
+    Priorities(priorities::Priorities),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -92,6 +96,8 @@ fn main() -> ExitCode {
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Relief(command) => command.run(&context),
+        Command::Pose(command) => command.run(),
+        Command::Priorities(command) => command.run(),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]

@@ -102,7 +102,6 @@ impl Staged {
 }
 
 /// Writes one file whole or not at all. What is no file, such as `/dev/stdout`, is written to, not replaced.
-#[cfg(feature = "gpu")]
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return relievo::terrain::export::write_bytes(path, bytes);

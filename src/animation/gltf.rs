@@ -1,0 +1,47 @@
+//! Import of glTF 2.0, as JSON or GLB: skins, the nodes they need, and animations.
+//!
+//! - Bones are the joints of every skin, each once, and all nodes above them: a joint's place in the scene is the
+//!   product of every node from the root, whether or not a skin uses it, and animations may move any of them.
+//! - Matrix nodes are taken apart into translation, rotation and scale.
+//! - Accessors may be sparse, interleaved, and of normalized integers. Buffers lie in the GLB, in `data:` URIs, or in
+//!   files beside the document.
+//! - Channels that move no node, or one that is no bone, are left out, but count for the clip's duration.
+//!
+//! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic.
+
+mod accessor;
+mod clips;
+mod container;
+mod document;
+mod nodes;
+
+use std::path::Path;
+
+use super::model::Model;
+use crate::{Error, InputError};
+use document::Document;
+
+impl Model {
+    /// Reads a `.gltf` or `.glb` file, and the buffers beside it.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] with the path inside the file for
+    /// everything that glTF forbids or that the crate does not read.
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::from_gltf(&bytes, Some(folder))
+            .map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    }
+
+    /// Reads glTF from memory. External buffers lie in `folder`; without one they are refused.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path inside the file.
+    pub fn from_gltf(bytes: &[u8], folder: Option<&Path>) -> Result<Self, InputError> {
+        let document = Document::new(bytes, folder)?;
+        let nodes = nodes::Nodes::new(&document)?;
+        let clips = clips::clips(&document, &nodes)?;
+        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips })
+    }
+}

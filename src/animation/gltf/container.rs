@@ -1,0 +1,58 @@
+//! GLB: a header and chunks around JSON and one buffer (glTF 2.0, chapter 4). The crate `gltf` has a reader, but a
+//! header that states a length below 12 makes it panic.
+
+use crate::InputError;
+
+/// The JSON and, in GLBs, the binary chunk.
+pub struct Container<'a> {
+    pub json: &'a [u8],
+    pub binary: Option<&'a [u8]>,
+}
+
+const JSON: u32 = 0x4e4f_534a;
+const BINARY: u32 = 0x004e_4942;
+
+impl<'a> Container<'a> {
+    /// Takes a GLB apart; anything that does not begin like one is JSON.
+    pub fn new(bytes: &'a [u8]) -> Result<Self, InputError> {
+        if !bytes.starts_with(b"glTF") {
+            return Ok(Self { json: bytes, binary: None });
+        }
+        let word = |at: usize| -> Option<u32> {
+            Some(u32::from_le_bytes(bytes.get(at..at.checked_add(4)?)?.try_into().ok()?))
+        };
+        let cut_off = || InputError::new("GLB", format!("[{} bytes]", bytes.len()), "is cut off");
+        let (version, length) = (word(4).ok_or_else(cut_off)?, word(8).ok_or_else(cut_off)? as usize);
+        if version != 2 {
+            return Err(InputError::new("GLB.version", version, "must be 2"));
+        }
+        if !(12..=bytes.len()).contains(&length) {
+            return Err(InputError::new("GLB.length", length, format!("must be in 12..={}", bytes.len())));
+        }
+        let mut found = Self { json: &[], binary: None };
+        let mut at = 12;
+        for chunk in 0.. {
+            if at == length {
+                break;
+            }
+            let size = word(at).ok_or_else(cut_off)? as usize;
+            let kind = word(at + 4).ok_or_else(cut_off)?;
+            let data = bytes.get(at + 8..).and_then(|rest| rest.get(..size)).ok_or_else(|| {
+                let bound = format!("must be at most {}", length.saturating_sub(at + 8));
+                InputError::new(format!("GLB.chunks[{chunk}].length"), size, bound)
+            })?;
+            match (chunk, kind) {
+                (0, JSON) => found.json = data,
+                (0, other) => {
+                    let bound = "must be JSON";
+                    return Err(InputError::new("GLB.chunks[0].type", format!("{other:#010x}"), bound));
+                }
+                (1, BINARY) => found.binary = Some(data),
+                // glTF lets readers skip what they do not know.
+                _ => {}
+            }
+            at += 8 + size;
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,177 @@
+//! The document: JSON that has glTF's shape, and its buffers.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::path::{Component, Path};
+
+use base64::Engine as _;
+use gltf_json::validation::{Error as Fault, Validate};
+use gltf_json::{Index, Root, buffer};
+use serde_json::Value;
+
+use super::container::Container;
+use crate::InputError;
+
+/// A document whose indices lie in their bounds.
+pub struct Document<'a> {
+    pub root: Root,
+    binary: Option<&'a [u8]>,
+    folder: Option<&'a Path>,
+    buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
+}
+
+/// Extensions without which nothing of the document's buffers can be read.
+const UNREADABLE: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+impl<'a> Document<'a> {
+    /// Parses and validates.
+    pub fn new(bytes: &'a [u8], folder: Option<&'a Path>) -> Result<Self, InputError> {
+        let Container { json, binary } = Container::new(bytes)?;
+        let mut value: Value = serde_json::from_slice(json).map_err(|error| {
+            let place = format!("line {} column {}", error.line(), error.column());
+            InputError::new("JSON", place, error.to_string())
+        })?;
+        let required = value.pointer("/extensionsRequired").and_then(Value::as_array);
+        if let Some(name) =
+            required.into_iter().flatten().filter_map(Value::as_str).find(|name| UNREADABLE.contains(name))
+        {
+            return Err(InputError::new(
+                "extensionsRequired",
+                name,
+                "is not read: decompress the file first",
+            ));
+        }
+        leave_out_channels_without_node(&mut value);
+        let root: Root = serde_path_to_error::deserialize(value).map_err(|error| {
+            let path = error.path().to_string();
+            let field = if path == "." { "glTF".to_owned() } else { path };
+            InputError::new(field, "unreadable", error.inner().to_string())
+        })?;
+        validate(&root)?;
+        let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();
+        Ok(Self { root, binary, folder, buffers })
+    }
+
+    /// The bytes of a buffer view.
+    pub fn view(&self, index: Index<buffer::View>) -> Result<(&[u8], Option<usize>), InputError> {
+        let path = format!("bufferViews[{}]", index.value());
+        let view = self.root.buffer_views.get(index.value());
+        let view = view.ok_or_else(|| InputError::new(&path, index.value(), "must exist"))?;
+        let bytes = self.buffer(view.buffer)?;
+        let offset = view.byte_offset.map_or(0, |offset| offset.0);
+        let range = usize::try_from(offset).ok().zip(usize::try_from(view.byte_length.0).ok());
+        let slice = range.and_then(|(offset, length)| bytes.get(offset..)?.get(..length));
+        let slice = slice.ok_or_else(|| {
+            let value = format!("{} at {offset}", view.byte_length.0);
+            let bound =
+                format!("must lie in buffers[{}], which has {} bytes", view.buffer.value(), bytes.len());
+            InputError::new(format!("{path}.byteLength"), value, bound)
+        })?;
+        Ok((slice, view.byte_stride.map(|stride| stride.0)))
+    }
+
+    fn buffer(&self, index: Index<gltf_json::Buffer>) -> Result<&[u8], InputError> {
+        let at = index.value();
+        let path = format!("buffers[{at}]");
+        let (Some(cell), Some(buffer)) = (self.buffers.get(at), self.root.buffers.get(at)) else {
+            return Err(InputError::new(path, at, "must exist"));
+        };
+        if let Some(known) = cell.get() {
+            return Ok(known);
+        }
+        let bytes = match &buffer.uri {
+            Some(uri) => Cow::Owned(self.resource(&format!("{path}.uri"), uri)?),
+            None => match self.binary.filter(|_| at == 0) {
+                Some(binary) => Cow::Borrowed(binary),
+                None => {
+                    return Err(InputError::new(
+                        format!("{path}.uri"),
+                        "missing",
+                        "must be given outside GLBs",
+                    ));
+                }
+            },
+        };
+        let length = buffer.byte_length.0;
+        if (bytes.len() as u64) < length {
+            let bound = format!("must be at most {}, the bytes there are", bytes.len());
+            return Err(InputError::new(format!("{path}.byteLength"), length, bound));
+        }
+        // GLBs pad their chunk.
+        let bytes = match bytes {
+            Cow::Borrowed(slice) => Cow::Borrowed(&slice[..length as usize]),
+            Cow::Owned(mut owned) => {
+                owned.truncate(length as usize);
+                Cow::Owned(owned)
+            }
+        };
+        Ok(cell.get_or_init(|| bytes))
+    }
+
+    fn resource(&self, path: &str, uri: &str) -> Result<Vec<u8>, InputError> {
+        let shown: String = uri.chars().take(60).collect();
+        let refused = |bound: String| InputError::new(path, &shown, bound);
+        if let Some(data) = uri.strip_prefix("data:") {
+            let (kind, text) = data.split_once(',').ok_or_else(|| refused("must have a comma".to_owned()))?;
+            if !kind.ends_with(";base64") {
+                return Err(refused("must be base64".to_owned()));
+            }
+            return BASE64.decode(text.trim()).map_err(|error| refused(format!("must be base64: {error}")));
+        }
+        let name = percent_encoding::percent_decode_str(uri).decode_utf8();
+        let name = name.map_err(|error| refused(format!("must be UTF-8: {error}")))?;
+        let relative = Path::new(&*name);
+        let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+        // A scheme or a drive; and nothing outside the document's folder.
+        if name.contains(':') || !relative.components().all(is_plain) {
+            return Err(refused(
+                "must be a data: URI or a file in the document's folder or below".to_owned(),
+            ));
+        }
+        let Some(folder) = self.folder else {
+            return Err(refused("lies in a file, and the document has no folder".to_owned()));
+        };
+        std::fs::read(folder.join(relative)).map_err(|error| refused(error.to_string()))
+    }
+}
+
+/// Exporters leave padding out.
+const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    base64::engine::GeneralPurposeConfig::new()
+        .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
+);
+
+/// glTF lets extensions animate what is no node; readers that do not know them skip such channels.
+fn leave_out_channels_without_node(value: &mut Value) {
+    let animations = value.get_mut("animations").and_then(Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            let has_node = |channel: &Value| {
+                channel
+                    .get("target")
+                    .and_then(Value::as_object)
+                    .is_none_or(|target| target.contains_key("node"))
+            };
+            channels.retain(has_node);
+        }
+    }
+}
+
+/// The first thing that gltf-json finds wrong. Extensions that materials or meshes need do not matter here.
+fn validate(root: &Root) -> Result<(), InputError> {
+    let mut first = None;
+    root.validate(root, gltf_json::Path::new, &mut |path, fault| {
+        if fault != Fault::Unsupported && first.is_none() {
+            first = Some((path().to_string(), fault));
+        }
+    });
+    let Some((path, fault)) = first else { return Ok(()) };
+    let (value, bound) = match fault {
+        Fault::IndexOutOfBounds => ("an index", "must lie in the list it points into"),
+        Fault::Missing => ("missing", "must be given"),
+        Fault::Oversize => ("too large", "must fit the machine's memory"),
+        Fault::Invalid | Fault::Unsupported => ("invalid", "must be one of the values that glTF allows"),
+    };
+    Err(InputError::new(path, value, bound))
+}

@@ -1,0 +1,19 @@
+//! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
+//! to 14).
+
+pub mod clip;
+pub mod creature;
+pub mod gltf;
+pub mod model;
+pub mod priority;
+pub mod sample;
+pub mod skeleton;
+pub mod transform;
+
+pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use creature::creature;
+pub use model::Model;
+pub use priority::{Priorities, Weights};
+pub use sample::{RotationPath, Wrap};
+pub use skeleton::{Bone, Skeleton, Skin};
+pub use transform::{Affine, Transform};

@@ -1,0 +1,393 @@
+//! Priorities of bones, key by key: how much a key contributes to the shape of the character (A section 12). Computed
+//! once a clip, at load.
+//!
+//! The keys of a bone are the distinct times of its translation, rotation and scale keys together. Each has six
+//! terms from 0 to 1:
+//!
+//! | term | value | divided by |
+//! |---|---|---|
+//! | translation | metres from this key to the next, in the parent's space | the clip's largest |
+//! | rotation | radians from this key to the next | the clip's largest |
+//! | scale | length of the difference of both scales | the clip's largest |
+//! | children | direct and indirect children | the skeleton's largest |
+//! | depth | D − d + 1 for a bone d steps from the root, D the deepest's | D + 1 |
+//! | user | given for each bone, ½ unless told | 1 |
+//!
+//! A priority is the weighted mean of the terms.
+//!
+//! **Decided**, where A contradicts itself: its rotation term is a dot product of quaternions, which is *largest* when
+//! nothing turns and blind to q ≡ −q; the angle is what its prose means. Its depth term grows away from the root
+//! (12.7), its prose wants the root to matter most (10.5, 11.5): the prose wins. A largest value below [`NOISE`], of
+//! the model's size for translations, makes its term 0, so that noise never becomes importance. The last key's
+//! successor is the bone's first where the clip loops; otherwise nothing follows it, and the first three terms are 0.
+
+mod analyze;
+
+use super::clip::{Clip, Part};
+use super::sample::RotationPath;
+use super::skeleton::Skeleton;
+use super::transform::Transform;
+use crate::InputError;
+use crate::reference::animation::concat::concat;
+use crate::reference::animation::sample::sample_bone;
+
+/// Largest values below this count as none: radians, factors, and shares of the model's size.
+pub const NOISE: f64 = 1e-6;
+
+/// The user's term of a bone about which nothing is said.
+pub const USER_DEFAULT: f32 = 0.5;
+
+/// The terms' names, in order.
+pub const TERMS: [&str; 6] = ["translation", "rotation", "scale", "children", "depth", "user"];
+
+/// How much each term counts. They sum to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Weights(pub [f64; 6]);
+
+impl Default for Weights {
+    /// All the same, as A has it.
+    fn default() -> Self {
+        Self([1.0 / 6.0; 6])
+    }
+}
+
+impl Weights {
+    /// Checks each and the sum.
+    ///
+    /// # Errors
+    /// [`InputError`] for weights outside 0..=1, and for a sum that is more than 1e-4 from 1.
+    pub fn validate(&self) -> Result<(), InputError> {
+        for (weight, term) in self.0.iter().zip(TERMS) {
+            if !(0.0..=1.0).contains(weight) {
+                return Err(InputError::new(format!("weights.{term}"), weight, "must be in 0..=1"));
+            }
+        }
+        let sum: f64 = self.0.iter().sum();
+        if (sum - 1.0).abs() > 1e-4 {
+            return Err(InputError::new("weights", sum, "must sum to 1"));
+        }
+        Ok(())
+    }
+}
+
+/// One key of one bone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeyPriority {
+    /// The bone.
+    pub bone: u32,
+    /// Counted from 0, among the bone's keys.
+    pub key: u32,
+    /// Seconds.
+    pub time: f32,
+    /// As in [`TERMS`], each 0 to 1.
+    pub terms: [f32; 6],
+    /// Their weighted mean.
+    pub priority: f32,
+}
+
+/// Every key's priority: bone by bone, key by key.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Priorities {
+    /// All keys.
+    pub keys: Vec<KeyPriority>,
+    /// Where each bone's keys begin; one more than there are bones.
+    pub offsets: Vec<u32>,
+}
+
+impl Priorities {
+    /// The priorities of a clip's keys. `user` has one value from 0 to 1 a bone.
+    ///
+    /// # Errors
+    /// [`InputError`] for weights that are none ([`Weights::validate`]), a clip of another skeleton, and other than
+    /// one user value a bone or one outside 0..=1.
+    pub fn new(
+        skeleton: &Skeleton,
+        clip: &Clip,
+        loops: bool,
+        weights: &Weights,
+        user: &[f32],
+    ) -> Result<Self, InputError> {
+        weights.validate()?;
+        check_user(skeleton, user)?;
+        let differences = Differences::new(skeleton, clip, loops)?;
+        let weigh = |(key, first): (&Difference, [f64; 5])| {
+            let terms = [first[0], first[1], first[2], first[3], first[4], user[key.bone as usize].into()];
+            let sum: f64 = terms.iter().zip(weights.0).map(|(term, weight)| term * weight).sum();
+            KeyPriority {
+                bone: key.bone,
+                key: key.key,
+                time: key.time,
+                terms: terms.map(|term| term as f32),
+                priority: sum as f32,
+            }
+        };
+        let keys = differences.keys.iter().zip(differences.terms(skeleton)).map(weigh).collect();
+        Ok(Self { keys, offsets: differences.offsets })
+    }
+
+    /// A bone's keys.
+    pub fn of(&self, bone: usize) -> &[KeyPriority] {
+        &self.keys[self.offsets[bone] as usize..self.offsets[bone + 1] as usize]
+    }
+}
+
+fn check_user(skeleton: &Skeleton, user: &[f32]) -> Result<(), InputError> {
+    if user.len() != skeleton.len() {
+        let bound = format!("must be {}, one a bone", skeleton.len());
+        return Err(InputError::new("user.len", user.len(), bound));
+    }
+    match user.iter().position(|value| !(0.0..=1.0).contains(value)) {
+        None => Ok(()),
+        Some(at) => Err(InputError::new(format!("user[{at}]"), user[at], "must be in 0..=1")),
+    }
+}
+
+/// What changes between a key and the next.
+struct Difference {
+    bone: u32,
+    key: u32,
+    time: f32,
+    /// The time of the next key; its own, where none follows.
+    until: f32,
+    /// Metres, radians, factors.
+    change: [f64; 3],
+}
+
+struct Differences {
+    keys: Vec<Difference>,
+    offsets: Vec<u32>,
+    size: f64,
+}
+
+impl Differences {
+    fn new(skeleton: &Skeleton, clip: &Clip, loops: bool) -> Result<Self, InputError> {
+        if clip.bones() != skeleton.len() {
+            let bound = format!("must be {}, as the skeleton's", skeleton.len());
+            return Err(InputError::new("clip.bones", clip.bones(), bound));
+        }
+        let mut all = Self { keys: Vec::new(), offsets: vec![0], size: size(skeleton) };
+        for bone in 0..skeleton.len() {
+            let times = key_times(clip, bone);
+            let at = |time: f32| sample_bone(clip, bone, time, RotationPath::Slerp);
+            for (key, time) in times.iter().enumerate() {
+                let next = times.get(key + 1).or_else(|| times.first().filter(|_| loops));
+                let change = next.map_or([0.0; 3], |next| change(&at(*time), &at(*next)));
+                let until = times.get(key + 1).copied().unwrap_or(*time);
+                let (bone, key) = (bone as u32, key as u32);
+                all.keys.push(Difference { bone, key, time: *time, until, change });
+            }
+            all.offsets.push(all.keys.len() as u32);
+        }
+        Ok(all)
+    }
+
+    /// The first five terms of each key.
+    fn terms(&self, skeleton: &Skeleton) -> Vec<[f64; 5]> {
+        let largest = |part: usize| self.keys.iter().map(|key| key.change[part]).fold(0.0, f64::max);
+        let least = [NOISE * self.size, NOISE, NOISE];
+        let share = |value: f64, largest: f64, least: f64| {
+            if largest < least || largest <= 0.0 { 0.0 } else { value / largest }
+        };
+        let largest = [0, 1, 2].map(largest);
+        let most_children = skeleton.descendants().iter().copied().max().unwrap_or(0).into();
+        let deepest = f64::from(skeleton.depths().iter().copied().max().unwrap_or(0));
+        let of_key = |key: &Difference| {
+            let bone = key.bone as usize;
+            let [translation, rotation, scale] =
+                [0, 1, 2].map(|part| share(key.change[part], largest[part], least[part]));
+            let children = share(skeleton.descendants()[bone].into(), most_children, NOISE);
+            let depth = (deepest - f64::from(skeleton.depths()[bone]) + 1.0) / (deepest + 1.0);
+            [translation, rotation, scale, children, depth]
+        };
+        self.keys.iter().map(of_key).collect()
+    }
+}
+
+/// The distinct times of a bone's keys.
+pub fn key_times(clip: &Clip, bone: usize) -> Vec<f32> {
+    let tracks = Part::ALL.map(|part| clip.times_of(clip.track(bone, part)));
+    let mut times = tracks.concat();
+    times.sort_by(f32::total_cmp);
+    times.dedup();
+    times
+}
+
+fn change(from: &Transform, to: &Transform) -> [f64; 3] {
+    [
+        distance(from.translation, to.translation),
+        angle(from.rotation, to.rotation),
+        distance(from.scale, to.scale),
+    ]
+}
+
+fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
+    let [a, b] = [a, b].map(|v| glam::DVec3::from(v.map(f64::from)));
+    a.distance(b)
+}
+
+/// `2·acos(min(1, |a·b|))`, from the chord: exact for small angles, where the cosine's rounding would be 0.001 rad.
+fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
+    let [a, b] = [a, b].map(|q| glam::DVec4::from(q.map(f64::from)).normalize());
+    let b = if a.dot(b) < 0.0 { -b } else { b };
+    4.0 * libm::asin((a.distance(b) / 2.0).min(1.0))
+}
+
+/// The diagonal of the box around all bones at rest, in metres.
+pub fn size(skeleton: &Skeleton) -> f64 {
+    let models = concat(skeleton, &skeleton.rest());
+    let places = models.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));
+    let (low, high) = places
+        .fold((glam::DVec3::MAX, glam::DVec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    low.distance(high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::clip::{BoneKeys, Interpolation, Keys};
+    use crate::animation::skeleton::Bone;
+
+    /// root ─ arm ─ hand, and a leg below the root: 3, 1, 0, 0 descendants, 0, 1, 2, 1 steps from the root.
+    fn skeleton() -> Skeleton {
+        let rest = Transform::from_translation([0.0, 1.0, 0.0]);
+        let bone = |parent| Bone { name: String::new(), parent, rest };
+        Skeleton::of_joints([None, Some(0), Some(1), Some(0)].map(bone).to_vec()).expect("valid")
+    }
+
+    fn keys(times: &[f32], values: &[[f32; 4]]) -> Option<Keys> {
+        let (times, values) = (times.to_vec(), values.to_vec());
+        Some(Keys { times, values, interpolation: Interpolation::Linear })
+    }
+
+    /// The root moves 2 m then 1 m, the arm turns by ¼ then ⅛ of a turn, the hand grows by 0.6 in one key of its own.
+    fn clip() -> Clip {
+        let turn = |turns: f32| {
+            let half = turns * std::f32::consts::PI;
+            [0.0, half.sin(), 0.0, half.cos()]
+        };
+        let root = keys(&[0.0, 1.0, 2.0], &[[0.0; 4], [2.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]);
+        let arm = keys(&[0.0, 0.5, 2.0], &[turn(0.0), turn(0.25).map(|x| -x), turn(0.375)]);
+        let hand = keys(&[0.0, 2.0], &[[1.0, 1.0, 1.0, 0.0], [1.6, 1.0, 1.0, 0.0]]);
+        let bones = [
+            BoneKeys { translation: root, ..BoneKeys::default() },
+            BoneKeys { rotation: arm, ..BoneKeys::default() },
+            BoneKeys { scale: hand, translation: keys(&[1.0], &[[0.0; 4]]), ..BoneKeys::default() },
+            BoneKeys::default(),
+        ];
+        Clip::new("test", &skeleton(), &bones, 0.0).expect("valid")
+    }
+
+    fn of(loops: bool, weights: Weights) -> Priorities {
+        Priorities::new(&skeleton(), &clip(), loops, &weights, &[USER_DEFAULT; 4]).expect("valid")
+    }
+
+    fn close(found: &[KeyPriority], expected: &[(f32, [f32; 6])]) {
+        assert_eq!(found.len(), expected.len());
+        for (found, (time, terms)) in found.iter().zip(expected) {
+            assert_eq!(found.time, *time);
+            let error = found.terms.iter().zip(terms).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(error < 1e-6, "{found:?} instead of {terms:?}");
+            assert!((found.priority - terms.iter().sum::<f32>() / 6.0).abs() < 1e-6, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn terms_are_those_computed_by_hand() {
+        let found = of(false, Weights::default());
+        assert_eq!(found.offsets, [0, 3, 6, 9, 9]);
+        // Largest: 2 m, ¼ turn, 0.6; 3 children, depth 2.
+        close(
+            found.of(0),
+            &[
+                (0.0, [1.0, 0.0, 0.0, 1.0, 1.0, 0.5]),
+                (1.0, [0.5, 0.0, 0.0, 1.0, 1.0, 0.5]),
+                (2.0, [0.0, 0.0, 0.0, 1.0, 1.0, 0.5]),
+            ],
+        );
+        let (third, two_thirds) = (1.0 / 3.0, 2.0 / 3.0);
+        close(
+            found.of(1),
+            &[
+                (0.0, [0.0, 1.0, 0.0, third, two_thirds, 0.5]),
+                (0.5, [0.0, 0.5, 0.0, third, two_thirds, 0.5]),
+                (2.0, [0.0, 0.0, 0.0, third, two_thirds, 0.5]),
+            ],
+        );
+        // Keys at 0, 1 and 2 together: the scale is halfway at 1.
+        close(
+            found.of(2),
+            &[
+                (0.0, [0.0, 0.0, 1.0, 0.0, third, 0.5]),
+                (1.0, [0.0, 0.0, 1.0, 0.0, third, 0.5]),
+                (2.0, [0.0, 0.0, 0.0, 0.0, third, 0.5]),
+            ],
+        );
+        assert!(found.of(3).is_empty());
+    }
+
+    #[test]
+    fn loops_lead_back_to_the_first_key() {
+        let found = of(true, Weights::default());
+        // From (2, 1) to 0: √5 m is the largest translation now, and ⅜ of a turn the largest rotation.
+        let far = 5.0_f32.sqrt();
+        assert!(
+            (found.of(0)[0].terms[0] - 2.0 / far).abs() < 1e-6
+                && (found.of(0)[2].terms[0] - 1.0).abs() < 1e-6
+        );
+        assert!(
+            (found.of(1)[0].terms[1] - 2.0 / 3.0).abs() < 1e-6
+                && (found.of(1)[2].terms[1] - 1.0).abs() < 1e-6
+        );
+        // 0.3 + 0.3 there, 0.6 back.
+        assert!((found.of(2)[0].terms[2] - 0.5).abs() < 1e-6 && (found.of(2)[2].terms[2] - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn weights_choose_terms() {
+        let only = |term: usize| Weights(std::array::from_fn(|at| if at == term { 1.0 } else { 0.0 }));
+        for term in 0..6 {
+            for key in of(true, only(term)).keys {
+                assert_eq!(key.priority, key.terms[term]);
+            }
+        }
+        let user = [0.0, 1.0, 0.25, 0.5];
+        let found = Priorities::new(&skeleton(), &clip(), true, &only(5), &user).expect("valid");
+        assert!(found.keys.iter().all(|key| key.priority == user[key.bone as usize]));
+    }
+
+    #[test]
+    fn noise_is_no_importance() {
+        let tiny = keys(&[0.0, 1.0], &[[0.0; 4], [1e-6, 0.0, 0.0, 0.0]]);
+        let bones = [BoneKeys { translation: tiny, ..BoneKeys::default() }];
+        let bones: Vec<_> = bones.into_iter().chain(vec![BoneKeys::default(); 3]).collect();
+        let clip = Clip::new("test", &skeleton(), &bones, 0.0).expect("valid");
+        // The skeleton is 2 m tall: 1e-6 m is less than 1e-6 of it.
+        let found = Priorities::new(&skeleton(), &clip, true, &Weights::default(), &[0.5; 4]).expect("valid");
+        assert!((size(&skeleton()) - 2.0).abs() < 1e-6);
+        assert!(found.keys.iter().all(|key| key.terms[..3] == [0.0; 3]));
+    }
+
+    #[test]
+    fn one_bone_has_no_children_and_depth_one() {
+        let bone = Bone { name: String::new(), parent: None, rest: Transform::IDENTITY };
+        let skeleton = Skeleton::of_joints(vec![bone]).expect("valid");
+        let moves = keys(&[0.0, 1.0], &[[0.0; 4], [1.0, 0.0, 0.0, 0.0]]);
+        let bones = [BoneKeys { translation: moves, ..BoneKeys::default() }];
+        let clip = Clip::new("test", &skeleton, &bones, 0.0).expect("valid");
+        let found = Priorities::new(&skeleton, &clip, true, &Weights::default(), &[0.5]).expect("valid");
+        assert_eq!(found.keys[0].terms, [1.0, 0.0, 0.0, 0.0, 1.0, 0.5]);
+    }
+
+    #[test]
+    fn bad_weights_and_user_values_are_refused() {
+        let refused = |weights: [f64; 6], user: &[f32]| {
+            Priorities::new(&skeleton(), &clip(), true, &Weights(weights), user).expect_err("refused").field
+        };
+        let good = Weights::default().0;
+        assert_eq!(refused([0.5; 6], &[0.5; 4]), "weights");
+        assert_eq!(refused([-1.0, 2.0, 0.0, 0.0, 0.0, 0.0], &[0.5; 4]), "weights.translation");
+        assert_eq!(refused([f64::NAN, 1.0, 0.0, 0.0, 0.0, 0.0], &[0.5; 4]), "weights.translation");
+        assert_eq!(refused(good, &[0.5; 3]), "user.len");
+        assert_eq!(refused(good, &[0.5, 0.5, 1.5, 0.5]), "user[2]");
+    }
+}

@@ -1,0 +1,296 @@
+//! Weights from the clip itself (A section 14, future work): which terms tell how much error it causes to freeze a
+//! bone over a key.
+
+use super::{Differences, Weights};
+use crate::InputError;
+use crate::animation::clip::Clip;
+use crate::animation::sample::RotationPath;
+use crate::animation::skeleton::Skeleton;
+use crate::animation::transform::{Affine, Transform};
+use crate::reference::animation::concat::{affine, concat, product};
+use crate::reference::animation::sample::{sample, sample_bone};
+
+/// Moments at which a frozen bone is looked at, as shares of the way to the next key.
+const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
+
+impl Weights {
+    /// Derives the weights of the first five terms from a clip: the non-negative least squares fit of the terms to
+    /// the error in the model's space that freezing each bone from each of its keys to the next causes. The user's
+    /// term keeps its default weight, and the fit shares the rest. A clip in which nothing moves, or in which no term
+    /// tells anything, gives the default weights.
+    ///
+    /// The error is the root of the mean square, over four moments and all bones, of how far points a bone's length
+    /// along its axes lie from where they should.
+    ///
+    /// # Errors
+    /// [`InputError`] for a clip of another skeleton.
+    pub fn analyze(skeleton: &Skeleton, clip: &Clip, loops: bool) -> Result<Self, InputError> {
+        let differences = Differences::new(skeleton, clip, loops)?;
+        let errors = freezing_errors(skeleton, clip, &differences);
+        let largest = errors.iter().copied().fold(0.0, f64::max);
+        // Nothing can be frozen after the last key.
+        let last = differences.keys.iter().map(|key| key.until <= key.time);
+        let rows = differences.terms(skeleton).into_iter().zip(&errors).zip(last).filter(|(_, last)| !last);
+        let (terms, targets): (Vec<_>, Vec<_>) =
+            rows.map(|((terms, error), _)| (terms, error / largest)).unzip();
+        let fitted = if largest > 0.0 { non_negative_least_squares(&terms, &targets) } else { [0.0; 5] };
+        let sum: f64 = fitted.iter().sum();
+        if sum.is_nan() || sum <= 0.0 {
+            return Ok(Self::default());
+        }
+        let of_user = Self::default().0[5];
+        let share = |weight: f64| weight / sum * (1.0 - of_user);
+        let [translation, rotation, scale, children, depth] = fitted.map(share);
+        Ok(Self([translation, rotation, scale, children, depth, of_user]))
+    }
+}
+
+/// A bone that is frozen, at a moment.
+struct Probe {
+    time: f32,
+    key: usize,
+    bone: u32,
+    frozen: Transform,
+}
+
+/// For each key, the error of freezing its bone until the next.
+fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) -> Vec<f64> {
+    let mut probes = Vec::new();
+    for (index, key) in differences.keys.iter().enumerate().filter(|(_, key)| key.until > key.time) {
+        let frozen = sample_bone(clip, key.bone as usize, key.time, RotationPath::Slerp);
+        let at = |share: f32| key.time + (key.until - key.time) * share;
+        probes.extend(MOMENTS.map(|share| Probe { time: at(share), key: index, bone: key.bone, frozen }));
+    }
+    // All probes of a moment share its pose.
+    probes.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.key.cmp(&b.key)));
+    let lengths = lengths(skeleton);
+    let mut squares = vec![0.0; differences.keys.len()];
+    for moment in probes.chunk_by(|a, b| a.time == b.time) {
+        let locals = sample(clip, moment[0].time, RotationPath::Slerp);
+        let models = concat(skeleton, &locals);
+        for probe in moment {
+            squares[probe.key] += square_error(skeleton, &locals, &models, &lengths, probe);
+        }
+    }
+    let values = (MOMENTS.len() * skeleton.len()) as f64;
+    squares.into_iter().map(|square| (square / values).sqrt()).collect()
+}
+
+/// The sum over all bones of the squared error that one frozen bone causes.
+fn square_error(
+    skeleton: &Skeleton,
+    locals: &[Transform],
+    models: &[Affine],
+    lengths: &[f64],
+    probe: &Probe,
+) -> f64 {
+    let first = probe.bone as usize;
+    let mut moved: Vec<Option<Affine>> = vec![None; skeleton.len() - first];
+    let mut sum = 0.0;
+    for (bone, node) in skeleton.bones().iter().enumerate().skip(first) {
+        let stale = if bone == first {
+            let local = affine(&probe.frozen);
+            Some(node.parent.map_or(local, |parent| product(&models[parent as usize], &local)))
+        } else {
+            let above = node.parent.and_then(|parent| (parent as usize).checked_sub(first));
+            above.and_then(|at| moved[at]).map(|parent| product(&parent, &affine(&locals[bone])))
+        };
+        if let Some(stale) = &stale {
+            sum += farthest(stale, &models[bone], lengths[bone]).powi(2);
+        }
+        moved[bone - first] = stale;
+    }
+    sum
+}
+
+/// How far the worst of three points, `length` along the bone's axes, lies from its place.
+pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
+    let off = |axis: usize| {
+        let squares = stale.iter().zip(fresh).map(|(stale, fresh)| {
+            let turned = f64::from(stale[axis]) - f64::from(fresh[axis]);
+            (f64::from(stale[3]) - f64::from(fresh[3]) + length * turned).powi(2)
+        });
+        squares.sum::<f64>().sqrt()
+    };
+    off(0).max(off(1)).max(off(2))
+}
+
+/// How long each bone is: as far as its farthest child, or as its parent where it has none.
+fn lengths(skeleton: &Skeleton) -> Vec<f64> {
+    let reach = |transform: &Transform| glam::DVec3::from(transform.translation.map(f64::from)).length();
+    let mut lengths = vec![0.0_f64; skeleton.len()];
+    for bone in skeleton.bones() {
+        if let Some(parent) = bone.parent {
+            let length = &mut lengths[parent as usize];
+            *length = length.max(reach(&bone.rest));
+        }
+    }
+    for (length, bone) in lengths.iter_mut().zip(skeleton.bones()) {
+        if *length == 0.0 {
+            *length = reach(&bone.rest);
+        }
+    }
+    lengths
+}
+
+/// The `x ≥ 0` that makes `|rows · x − targets|` least. With five unknowns, the solution is the best of those that
+/// have no constraint on some of them and 0 for the others.
+pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> [f64; 5] {
+    let mut normal = [[0.0; 5]; 5];
+    let mut right = [0.0; 5];
+    for (row, target) in rows.iter().zip(targets) {
+        for i in 0..5 {
+            right[i] += row[i] * target;
+            (0..5).for_each(|j| normal[i][j] += row[i] * row[j]);
+        }
+    }
+    // |rows · x − targets|² less a constant.
+    let cost = |x: &[f64; 5]| -> f64 {
+        let product = |i: usize| (0..5).map(|j| normal[i][j] * x[j]).sum::<f64>();
+        (0..5).map(|i| x[i] * (product(i) - 2.0 * right[i])).sum()
+    };
+    let mut best = [0.0; 5];
+    for subset in 1_u32..32 {
+        if let Some(x) = solve(&normal, &right, subset)
+            && x.iter().all(|value| *value >= 0.0)
+            && cost(&x) < cost(&best)
+        {
+            best = x;
+        }
+    }
+    best
+}
+
+/// Solves the equations of a subset of the unknowns, if they have one solution.
+fn solve(normal: &[[f64; 5]; 5], right: &[f64; 5], subset: u32) -> Option<[f64; 5]> {
+    let chosen: Vec<usize> = (0..5).filter(|i| subset & (1 << i) != 0).collect();
+    let mut rows: Vec<Vec<f64>> =
+        (chosen.iter()).map(|i| chosen.iter().map(|j| normal[*i][*j]).chain([right[*i]]).collect()).collect();
+    let size = rows.len();
+    for at in 0..size {
+        let pivot = (at..size).max_by(|a, b| rows[*a][at].abs().total_cmp(&rows[*b][at].abs()))?;
+        rows.swap(at, pivot);
+        if rows[at][at].abs() <= 1e-12 * normal[chosen[at]][chosen[at]] {
+            return None;
+        }
+        let lead = rows[at].clone();
+        for row in rows.iter_mut().skip(at + 1) {
+            let factor = row[at] / lead[at];
+            row.iter_mut().zip(&lead).for_each(|(value, lead)| *value -= factor * lead);
+        }
+    }
+    let mut x = [0.0; 5];
+    for at in (0..size).rev() {
+        let known: f64 = (at + 1..size).map(|j| rows[at][j] * x[chosen[j]]).sum();
+        x[chosen[at]] = (rows[at][size] - known) / rows[at][at];
+    }
+    Some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::clip::{BoneKeys, Interpolation, Keys};
+    use crate::animation::creature;
+    use crate::animation::skeleton::Bone;
+
+    #[test]
+    fn least_squares_finds_what_made_the_targets() {
+        let noise = |index: usize| ((index * 7919 + 13) % 101) as f64 / 101.0;
+        let rows: Vec<[f64; 5]> = (0..60).map(|r| std::array::from_fn(|c| noise(5 * r + c * c))).collect();
+        let truth = [0.5, 0.0, 2.0, 0.25, 1.0];
+        let of = |x: &[f64; 5]| -> Vec<f64> {
+            rows.iter().map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
+        };
+        let found = non_negative_least_squares(&rows, &of(&truth));
+        assert!(found.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
+        // A negative truth is cut off at 0, and no other x ≥ 0 nearby is better.
+        let targets = of(&[1.0, -0.5, 0.0, 0.3, 0.0]);
+        let found = non_negative_least_squares(&rows, &targets);
+        let cost = |x: &[f64; 5]| of(x).iter().zip(&targets).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        assert!(found.iter().all(|value| *value >= 0.0) && found.contains(&0.0), "{found:?}");
+        for (at, step) in (0..5).flat_map(|at| [1e-4, -1e-4].map(|step| (at, step))) {
+            let mut other = found;
+            other[at] = f64::max(0.0, other[at] + step);
+            assert!(cost(&other) >= cost(&found), "{at} {step}");
+        }
+    }
+
+    #[test]
+    fn equal_columns_do_not_confuse_it() {
+        let rows = [[1.0, 1.0, 0.0, 0.0, 0.0], [2.0, 2.0, 0.0, 0.0, 0.0]];
+        let found = non_negative_least_squares(&rows, &[3.0, 6.0]);
+        assert!((found[0] + found[1] - 3.0).abs() < 1e-9 && found[2..] == [0.0; 3], "{found:?}");
+        assert_eq!(non_negative_least_squares(&rows, &[-1.0, -1.0]), [0.0; 5]);
+    }
+
+    fn chain(parts: [Option<Keys>; 3]) -> (Skeleton, Clip) {
+        let bone = |parent| Bone {
+            name: String::new(),
+            parent,
+            rest: Transform::from_translation([0.0, f32::from(parent.is_some()), 0.0]),
+        };
+        let skeleton = Skeleton::of_joints(vec![bone(None), bone(Some(0)), bone(Some(1))]).expect("valid");
+        let [translation, rotation, scale] = parts;
+        let bones = [BoneKeys::default(), BoneKeys { translation, rotation, scale }, BoneKeys::default()];
+        let clip = Clip::new("test", &skeleton, &bones, 0.0).expect("valid");
+        (skeleton, clip)
+    }
+
+    fn keys(times: &[f32], values: &[[f32; 4]]) -> Option<Keys> {
+        let (times, values) = (times.to_vec(), values.to_vec());
+        Some(Keys { times, values, interpolation: Interpolation::Linear })
+    }
+
+    /// By hand: the middle bone moves 4 m in a second, so it is 1, 2, 3 and 4 m off, and so is its child.
+    #[test]
+    fn the_error_of_freezing_is_the_one_computed_by_hand() {
+        let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [4.0, 0.0, 0.0, 0.0]]), None, None]);
+        let differences = Differences::new(&skeleton, &clip, true).expect("fits");
+        let errors = freezing_errors(&skeleton, &clip, &differences);
+        let expected = (2.0 * (1.0 + 4.0 + 9.0 + 16.0) / 12.0_f64).sqrt();
+        assert!((errors[0] - expected).abs() < 1e-6 && errors[1] == 0.0, "{errors:?} {expected}");
+    }
+
+    /// Where only one part moves, and its change is in proportion to the error, only its weight is left.
+    #[test]
+    fn the_part_that_moves_gets_the_weight() {
+        let distances = [0.0, 1.0, 1.5, 4.0, 0.0].map(|x| [x, 0.0, 0.0, 0.0]);
+        let (skeleton, clip) = chain([keys(&[0.0, 1.0, 2.0, 3.0, 4.0], &distances), None, None]);
+        let weights = Weights::analyze(&skeleton, &clip, true).expect("fits");
+        assert!(weights.validate().is_ok());
+        assert!(
+            (weights.0[0] - 5.0 / 6.0).abs() < 1e-3 && (weights.0[5] - 1.0 / 6.0).abs() < 1e-12,
+            "{weights:?}"
+        );
+    }
+
+    #[test]
+    fn nothing_moving_gives_the_default() {
+        let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [0.0; 4]]), None, None]);
+        assert_eq!(Weights::analyze(&skeleton, &clip, true), Ok(Weights::default()));
+    }
+
+    /// The fit explains the errors better than equal weights do.
+    #[test]
+    fn the_creatures_weights_fit_better_than_equal_ones() {
+        let model = creature().expect("valid");
+        for clip in &model.clips {
+            let weights = Weights::analyze(&model.skeleton, clip, true).expect("fits");
+            assert!(weights.validate().is_ok());
+            let differences = Differences::new(&model.skeleton, clip, true).expect("fits");
+            let terms = differences.terms(&model.skeleton);
+            let errors = freezing_errors(&model.skeleton, clip, &differences);
+            // With the best scale for each.
+            let misfit = |weights: &[f64]| {
+                let sums: Vec<f64> =
+                    terms.iter().map(|row| row.iter().zip(weights).map(|(a, b)| a * b).sum()).collect();
+                let scale = sums.iter().zip(&errors).map(|(a, b)| a * b).sum::<f64>()
+                    / sums.iter().map(|a| a * a).sum::<f64>();
+                sums.iter().zip(&errors).map(|(a, b)| (scale * a - b).powi(2)).sum::<f64>()
+            };
+            let (fitted, equal) = (misfit(&weights.0[..5]), misfit(&[1.0; 5]));
+            assert!(fitted < 0.9 * equal, "{}: {fitted} {equal}", clip.name());
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! Skeletons: bones in topological order, their rest pose, and the skins that are bound to them.
+
+use super::transform::{Transform, finite};
+use crate::InputError;
+
+/// The most bones of a skeleton.
+pub const MOST_BONES: usize = 1 << 20;
+
+/// A node of the skeleton.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bone {
+    /// As the file has it; names need not differ.
+    pub name: String,
+    /// The parent's index, below the bone's own.
+    pub parent: Option<u32>,
+    /// Where it is, in its parent's space, when no clip moves it.
+    pub rest: Transform,
+}
+
+/// Bones, each after its parent. Nodes that no skin uses belong to it where joints hang below them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skeleton {
+    bones: Vec<Bone>,
+    joints: Vec<u32>,
+    depths: Vec<u32>,
+    descendants: Vec<u32>,
+}
+
+impl Skeleton {
+    /// A skeleton of `bones`; `joints` are those that skins use, in the order in which tools know them.
+    ///
+    /// # Errors
+    /// [`InputError`] for no or too many bones, a parent that does not come before its child, a rest pose that is
+    /// not finite or has no rotation, and joints that are no bones or named twice.
+    pub fn new(mut bones: Vec<Bone>, joints: Vec<u32>) -> Result<Self, InputError> {
+        if !(1..=MOST_BONES).contains(&bones.len()) {
+            return Err(InputError::new("bones.len", bones.len(), format!("must be in 1..={MOST_BONES}")));
+        }
+        for (index, bone) in bones.iter_mut().enumerate() {
+            if let Some(parent) = bone.parent.filter(|parent| *parent as usize >= index) {
+                let bound = format!("must be below {index}: parents come before their children");
+                return Err(InputError::new(format!("bones[{index}].parent"), parent, bound));
+            }
+            bone.rest = bone.rest.checked(&format!("bones[{index}].rest"))?;
+        }
+        let mut seen = vec![false; bones.len()];
+        for (at, joint) in joints.iter().enumerate() {
+            match seen.get_mut(*joint as usize) {
+                Some(seen) if !*seen => *seen = true,
+                _ => {
+                    let bound = format!("must be a bone below {}, named once", bones.len());
+                    return Err(InputError::new(format!("joints[{at}]"), joint, bound));
+                }
+            }
+        }
+        let depths = depths(&bones);
+        let descendants = descendants(&bones);
+        Ok(Self { bones, joints, depths, descendants })
+    }
+
+    /// A skeleton whose bones are all joints.
+    ///
+    /// # Errors
+    /// As [`Skeleton::new`].
+    pub fn of_joints(bones: Vec<Bone>) -> Result<Self, InputError> {
+        let joints = (0..bones.len() as u32).collect();
+        Self::new(bones, joints)
+    }
+
+    /// The bones, parents first.
+    pub fn bones(&self) -> &[Bone] {
+        &self.bones
+    }
+
+    /// How many bones.
+    pub fn len(&self) -> usize {
+        self.bones.len()
+    }
+
+    /// False: a skeleton has bones.
+    pub fn is_empty(&self) -> bool {
+        self.bones.is_empty()
+    }
+
+    /// The bones that skins use, in the order of the file: every skin's joints, each once.
+    pub fn joints(&self) -> &[u32] {
+        &self.joints
+    }
+
+    /// Steps from the root, for each bone.
+    pub fn depths(&self) -> &[u32] {
+        &self.depths
+    }
+
+    /// Direct and indirect children, for each bone.
+    pub fn descendants(&self) -> &[u32] {
+        &self.descendants
+    }
+
+    /// Every bone at rest, in its parent's space.
+    pub fn rest(&self) -> Vec<Transform> {
+        self.bones.iter().map(|bone| bone.rest).collect()
+    }
+
+    /// For each of [`Skeleton::joints`], the place in that list of the nearest joint above it.
+    pub fn joint_parents(&self) -> Vec<Option<u32>> {
+        let mut place = vec![None; self.bones.len()];
+        for (joint, at) in self.joints.iter().zip(0..) {
+            place[*joint as usize] = Some(at);
+        }
+        let above = |joint: &u32| {
+            let parent = |bone: u32| self.bones[bone as usize].parent;
+            std::iter::successors(parent(*joint), |bone| parent(*bone)).find_map(|bone| place[bone as usize])
+        };
+        self.joints.iter().map(above).collect()
+    }
+}
+
+fn depths(bones: &[Bone]) -> Vec<u32> {
+    let mut depths: Vec<u32> = Vec::with_capacity(bones.len());
+    for bone in bones {
+        depths.push(bone.parent.map_or(0, |parent| depths[parent as usize] + 1));
+    }
+    depths
+}
+
+fn descendants(bones: &[Bone]) -> Vec<u32> {
+    let mut descendants = vec![0; bones.len()];
+    for (index, bone) in bones.iter().enumerate().rev() {
+        if let Some(parent) = bone.parent {
+            descendants[parent as usize] += descendants[index] + 1;
+        }
+    }
+    descendants
+}
+
+/// Bones that vertices follow, and where those bones were when the vertices were bound.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skin {
+    /// As the file has it.
+    pub name: String,
+    /// Bones; what a vertex's joint numbers count.
+    pub bones: Vec<u32>,
+    /// One a bone, column-major: from the mesh's space into the bone's, at the time of binding.
+    pub inverse_binds: Vec<[f32; 16]>,
+}
+
+impl Skin {
+    /// Checks that it fits a skeleton.
+    ///
+    /// # Errors
+    /// [`InputError`] for bones that the skeleton lacks, other than one matrix a bone, and values that are not
+    /// finite or no affine matrix.
+    pub fn validate(&self, skeleton: &Skeleton) -> Result<(), InputError> {
+        if let Some(at) = self.bones.iter().position(|bone| *bone as usize >= skeleton.len()) {
+            let bound = format!("must be below {}", skeleton.len());
+            return Err(InputError::new(format!("skin.bones[{at}]"), self.bones[at], bound));
+        }
+        if self.inverse_binds.len() != self.bones.len() {
+            let bound = format!("must be {}, one a bone", self.bones.len());
+            return Err(InputError::new("skin.inverse_binds.len", self.inverse_binds.len(), bound));
+        }
+        for (at, matrix) in self.inverse_binds.iter().enumerate() {
+            inverse_bind(&format!("skin.inverse_binds[{at}]"), matrix)?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses what is not a finite affine matrix.
+pub(crate) fn inverse_bind(path: &str, matrix: &[f32; 16]) -> Result<(), InputError> {
+    finite(path, matrix)?;
+    // Exporters write such rows with rounding errors.
+    let row = [3, 7, 11, 15].map(|index| matrix[index]);
+    let error = row.iter().zip([0.0, 0.0, 0.0, 1.0]).map(|(value, wanted)| (value - wanted).abs());
+    if error.fold(0.0, f32::max) > 1e-4 {
+        return Err(InputError::new(path, format!("{row:?}"), "must have 0 0 0 1 as its last row"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bone(parent: Option<u32>) -> Bone {
+        Bone { name: String::new(), parent, rest: Transform::IDENTITY }
+    }
+
+    #[test]
+    fn depths_descendants_and_parents_are_counted() {
+        // 0 ─ 1 ─ 2 ─ 4, 1 ─ 3, and 5 by itself.
+        let parents = [None, Some(0), Some(1), Some(1), Some(2), None];
+        let bones = parents.map(bone).to_vec();
+        let skeleton = Skeleton::new(bones, vec![4, 1, 5]).expect("valid");
+        assert_eq!(skeleton.depths(), [0, 1, 2, 2, 3, 0]);
+        assert_eq!(skeleton.descendants(), [4, 3, 1, 0, 0, 0]);
+        assert_eq!(skeleton.joint_parents(), [Some(1), None, None]);
+    }
+
+    #[test]
+    fn what_is_no_skeleton_is_refused() {
+        let refused = |bones: Vec<Bone>, joints: Vec<u32>| {
+            let error = Skeleton::new(bones, joints).expect_err("refused");
+            (error.field, error.value)
+        };
+        let text = |field: &str, value: &str| (field.to_owned(), value.to_owned());
+        assert_eq!(refused(vec![], vec![]), text("bones.len", "0"));
+        assert_eq!(refused(vec![bone(Some(0))], vec![]), text("bones[0].parent", "0"));
+        assert_eq!(
+            refused(vec![bone(None), bone(Some(2)), bone(None)], vec![]),
+            text("bones[1].parent", "2")
+        );
+        assert_eq!(refused(vec![bone(None)], vec![1]), text("joints[0]", "1"));
+        assert_eq!(refused(vec![bone(None)], vec![0, 0]), text("joints[1]", "0"));
+        let mut wrong = bone(None);
+        wrong.rest.scale[1] = f32::INFINITY;
+        assert_eq!(refused(vec![wrong], vec![]), text("bones[0].rest.scale[1]", "inf"));
+    }
+
+    #[test]
+    fn skins_are_checked_field_by_field() {
+        let skeleton = Skeleton::of_joints(vec![bone(None)]).expect("valid");
+        let identity = glam::Mat4::IDENTITY.to_cols_array();
+        let skin = Skin { name: String::new(), bones: vec![0], inverse_binds: vec![identity] };
+        assert_eq!(skin.validate(&skeleton), Ok(()));
+        let refused = |skin: Skin| skin.validate(&skeleton).expect_err("refused").field;
+        assert_eq!(refused(Skin { bones: vec![1], ..skin.clone() }), "skin.bones[0]");
+        assert_eq!(refused(Skin { inverse_binds: vec![], ..skin.clone() }), "skin.inverse_binds.len");
+        let mut matrix = identity;
+        matrix[5] = f32::NAN;
+        assert_eq!(refused(Skin { inverse_binds: vec![matrix], ..skin.clone() }), "skin.inverse_binds[0][5]");
+        matrix = identity;
+        matrix[7] = 1.0;
+        assert_eq!(refused(Skin { inverse_binds: vec![matrix], ..skin }), "skin.inverse_binds[0]");
+    }
+}

@@ -1,0 +1,123 @@
+//! `relievo pose`
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+use relievo::animation::sample::{RotationPath, Wrap};
+use relievo::animation::transform::column_major;
+use relievo::animation::{Affine, Clip, Model, Transform, creature};
+use relievo::reference::animation::concat::concat;
+use relievo::reference::animation::sample::sample;
+use relievo::{Error, InputError};
+use serde::Serialize;
+
+use crate::output::{json, write_file};
+
+/// Writes where every bone of a model is at a moment of a clip, as JSON.
+///
+/// {"clip", "time", "bones": [{"name", "parent", "local": {"translation": [3], "rotation": [4], "scale": [3]},
+/// "model": [16]}]}: the joints of every skin, each once, in the file's order. "parent" is the place in that list of
+/// the nearest joint above, -1 at a root. "local" is the joint's node in its parent node's space (rotation x, y, z,
+/// w). "model" is its global transform in the scene, all nodes above it included, column by column. "time" is the
+/// time inside the clip.
+#[derive(Args)]
+pub struct Pose {
+    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    #[arg(long, value_name = "FILE|builtin")]
+    model: PathBuf,
+    /// The clip: its name, or its number, counted from 0.
+    #[arg(long, value_name = "NAME|INDEX")]
+    clip: String,
+    /// Seconds since the clip's start.
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    time: f64,
+    /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
+    #[arg(long, value_name = "MODE", default_value = "loop")]
+    wrap: WrapName,
+    /// The file.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum WrapName {
+    Loop,
+    Clamp,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    clip: &'a str,
+    time: f32,
+    bones: Vec<BoneReport<'a>>,
+}
+
+#[derive(Serialize)]
+struct BoneReport<'a> {
+    name: &'a str,
+    parent: i64,
+    local: Transform,
+    model: [f32; 16],
+}
+
+impl Pose {
+    pub fn run(&self) -> Result<ExitCode, Error> {
+        let model = open(&self.model)?;
+        let clip = find(&model, &self.model, &self.clip)?;
+        let wrap = match self.wrap {
+            WrapName::Loop => Wrap::Loop,
+            WrapName::Clamp => Wrap::Clamp,
+        };
+        let time = wrap.inside(clip.duration(), self.time)?;
+        let locals = sample(clip, time, RotationPath::Slerp);
+        let models = concat(&model.skeleton, &locals);
+        check_range(&models)?;
+        write_file(&self.out, &json(&report(&model, clip, time, &locals, &models))?)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Refuses transforms that chains of large scales have driven out of range: JSON has no infinity.
+fn check_range(models: &[Affine]) -> Result<(), InputError> {
+    let is_finite = |model: &Affine| model.iter().flatten().all(|value| value.is_finite());
+    match models.iter().position(|model| !is_finite(model)) {
+        None => Ok(()),
+        Some(bone) => {
+            let bound = "must fit f32: translations or scales are too large";
+            Err(InputError::new(format!("bones[{bone}].model"), format!("{:?}", models[bone]), bound))
+        }
+    }
+}
+
+fn report<'a>(
+    model: &'a Model,
+    clip: &'a Clip,
+    time: f32,
+    locals: &[Transform],
+    models: &[Affine],
+) -> Report<'a> {
+    let skeleton = &model.skeleton;
+    let bone = |(joint, parent): (&u32, Option<u32>)| {
+        let at = *joint as usize;
+        BoneReport {
+            name: &skeleton.bones()[at].name,
+            parent: parent.map_or(-1, i64::from),
+            local: locals[at],
+            model: column_major(&models[at]),
+        }
+    };
+    let bones = skeleton.joints().iter().zip(skeleton.joint_parents()).map(bone).collect();
+    Report { clip: clip.name(), time, bones }
+}
+
+/// A file's model, or the built-in one.
+pub fn open(path: &Path) -> Result<Model, Error> {
+    if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file(path) }
+}
+
+/// A model's clip; says which file lacks it.
+pub fn find<'a>(model: &'a Model, path: &Path, clip: &str) -> Result<&'a Clip, Error> {
+    let in_file = |source: InputError| Error::InputFile { path: path.to_owned(), source };
+    model.clip(clip).map_err(in_file)
+}

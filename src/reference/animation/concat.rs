@@ -1,0 +1,40 @@
+//! Concatenation into the model's space: twin of `kernels/animation/concat.wgsl`.
+
+use crate::animation::skeleton::Skeleton;
+use crate::animation::transform::{Affine, Transform};
+
+/// Each bone's transform in the model's space, from those in the parents' spaces.
+///
+/// # Panics
+/// With fewer locals than bones.
+pub fn concat(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> {
+    let mut models: Vec<Affine> = Vec::with_capacity(skeleton.len());
+    for (bone, local) in skeleton.bones().iter().zip(locals) {
+        let local = affine(local);
+        models.push(bone.parent.map_or(local, |parent| product(&models[parent as usize], &local)));
+    }
+    models
+}
+
+/// Translation · rotation · scale.
+pub fn affine(transform: &Transform) -> Affine {
+    let [x, y, z, w] = transform.rotation;
+    let [sx, sy, sz] = transform.scale;
+    let [tx, ty, tz] = transform.translation;
+    let (x2, y2, z2) = (x + x, y + y, z + z);
+    [
+        [(1.0 - (y * y2 + z * z2)) * sx, (x * y2 - w * z2) * sy, (x * z2 + w * y2) * sz, tx],
+        [(x * y2 + w * z2) * sx, (1.0 - (x * x2 + z * z2)) * sy, (y * z2 - w * x2) * sz, ty],
+        [(x * z2 - w * y2) * sx, (y * z2 + w * x2) * sy, (1.0 - (x * x2 + y * y2)) * sz, tz],
+    ]
+}
+
+/// `a · b`: b first.
+pub fn product(a: &Affine, b: &Affine) -> Affine {
+    a.map(|row| {
+        std::array::from_fn(|i| {
+            let linear = row[0] * b[0][i] + row[1] * b[1][i] + row[2] * b[2][i];
+            if i == 3 { linear + row[3] } else { linear }
+        })
+    })
+}

@@ -1,0 +1,4 @@
+//! Twins of `kernels/animation/`.
+
+pub mod concat;
+pub mod sample;

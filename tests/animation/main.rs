@@ -1,0 +1,8 @@
+//! Skeletons, clips, their import and their sampling, against code of its own in double precision.
+
+mod concatenation;
+mod import;
+mod malformed;
+mod player;
+mod sampling;
+mod scene;
