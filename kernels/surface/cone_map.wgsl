@@ -10,7 +10,7 @@ import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
 
 // Distance over size from which a node counts whole.
-override OPENING: f32 = 4.0;
+override OPENING: f32 = 2.0;
 
 struct ConeParams {
     // Texels and cells of a map.
@@ -83,6 +83,8 @@ fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
 fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     let cells = vec2<i32>(params.cells);
     let top = surface_levels(params.cells) - 1u;
+    // The rim of a clamped map reaches to infinity, and ways from there have any direction.
+    let is_rim = params.address != SURFACE_WRAP && (any(cell <= vec2<i32>(0)) || any(cell >= cells - 1));
     var narrowest = radius;
     var level = top;
     var node = vec2<i32>(0);
@@ -102,7 +104,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
                         texel(map, node), texel(map, node + vec2<i32>(1, 0)),
                         texel(map, node + vec2<i32>(0, 1)), texel(map, node + vec2<i32>(1, 1)));
                     let offset = node - cell;
-                    if !rises(corners, offset) {
+                    if is_rim || !rises(corners, offset) {
                         narrowest = min(narrowest, leaf_radius(corners, offset, own));
                     }
                 } else if distance >= OPENING * f32(1u << level) {

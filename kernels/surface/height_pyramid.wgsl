@@ -24,8 +24,8 @@ struct PyramidParams {
 @group(0) @binding(0) var<uniform> params: PyramidParams;
 // Four heights of a row where IS_ALIGNED; else just four in a row.
 @group(0) @binding(1) var<storage, read> heights: array<vec4<f32>>;
-// Four nodes of a row: rows of the plane, and level 1, start at multiples of four.
-@group(0) @binding(2) var<storage, read_write> pyramids: array<vec4<f32>>;
+// Not in vectors: neighbouring threads store nodes side by side, and storing a component may store all of its vector.
+@group(0) @binding(2) var<storage, read_write> pyramids: array<f32>;
 
 // Lower than any height: what lies outside a level.
 const NOTHING: f32 = -1.0;
@@ -92,6 +92,18 @@ fn inside(four: vec4<f32>, at: vec2<u32>, count: vec2<u32>) -> vec4<f32> {
     return select(vec4<f32>(NOTHING), four, columns & vec4<bool>(at.y < count.y));
 }
 
+fn load_row(index: u32) -> vec4<f32> {
+    return vec4<f32>(pyramids[index], pyramids[index + 1u], pyramids[index + 2u], pyramids[index + 3u]);
+}
+
+// Rows are padded to a multiple of four.
+fn store_row(index: u32, four: vec4<f32>) {
+    pyramids[index] = four.x;
+    pyramids[index + 1u] = four.y;
+    pyramids[index + 2u] = four.z;
+    pyramids[index + 3u] = four.w;
+}
+
 fn parents(above: vec4<f32>, below: vec4<f32>) -> vec2<f32> {
     let pair = max(above, below);
     return vec2<f32>(max(pair.x, pair.y), max(pair.z, pair.w));
@@ -104,9 +116,9 @@ fn store_pair(map: u32, level: u32, at: vec2<u32>, pair: vec2<f32>) {
         return;
     }
     let index = place(map, level, at);
-    pyramids[index >> 2u][index & 3u] = pair.x;
+    pyramids[index] = pair.x;
     if at.x + 1u < count.x {
-        pyramids[index >> 2u][(index & 3u) + 1u] = pair.y;
+        pyramids[index + 1u] = pair.y;
     }
 }
 
@@ -129,29 +141,29 @@ fn main(
     }
     let at = 4u * id;
     let count = nodes(level);
-    let row = place(map, level, at) >> 2u;
-    let pitch = params.pitch >> 2u;
+    let row = place(map, level, at);
+    let pitch = params.pitch;
     var four: mat4x4<f32>;
     if FROM_HEIGHTS {
         four = leaves(map, at);
     } else {
         four = mat4x4<f32>(
-            pyramids[row], pyramids[row + pitch], pyramids[row + 2u * pitch], pyramids[row + 3u * pitch]);
+            load_row(row), load_row(row + pitch), load_row(row + 2u * pitch), load_row(row + 3u * pitch));
     }
     let first = inside(four[0], at, count);
     let second = inside(four[1], at + vec2<u32>(0u, 1u), count);
     let third = inside(four[2], at + vec2<u32>(0u, 2u), count);
     let fourth = inside(four[3], at + vec2<u32>(0u, 3u), count);
     if FROM_HEIGHTS {
-        pyramids[row] = first;
+        store_row(row, first);
         if at.y + 1u < count.y {
-            pyramids[row + pitch] = second;
+            store_row(row + pitch, second);
         }
         if at.y + 2u < count.y {
-            pyramids[row + 2u * pitch] = third;
+            store_row(row + 2u * pitch, third);
         }
         if at.y + 3u < count.y {
-            pyramids[row + 3u * pitch] = fourth;
+            store_row(row + 3u * pitch, fourth);
         }
     }
     let upper = parents(first, second);
@@ -161,6 +173,6 @@ fn main(
     if level + 2u < params.levels {
         let highest = max(upper, lower);
         let node = place(map, level + 2u, id);
-        pyramids[node >> 2u][node & 3u] = max(highest.x, highest.y);
+        pyramids[node] = max(highest.x, highest.y);
     }
 }

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec4};
 use crate::gpu::{Gpu, GpuError, Group, Uniform, bind, layouts, module, pipeline_layout, shaders};
 use crate::render::color::ColorTexture;
 use crate::render::target::DEPTH_FORMAT;
-use crate::surface::material::{Material, Shadow};
+use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::relief::{March, Method, SurfaceMarch};
 use crate::surface::texture::SurfaceTextures;
@@ -35,6 +35,8 @@ pub struct ReliefOptions {
     pub shadow: Shadow,
     /// Normals from a normal map rather than from the heights.
     pub normal_map: bool,
+    /// Where green of the normal map points.
+    pub green: Green,
     /// Discards what leaves the mesh's range of uv.
     pub silhouette: bool,
     /// Writes the relief's own depth rather than the polygon's. Costs early depth tests.
@@ -89,6 +91,7 @@ impl ReliefRenderer {
             ("METHOD", f64::from(options.method.code())),
             ("SHADOW", f64::from(options.shadow as u32)),
             ("NORMAL_MAP", flag(options.normal_map)),
+            ("GREEN_UP", flag(options.green == Green::Up)),
             ("SILHOUETTE", flag(options.silhouette)),
             ("CHOOSE_MIP", flag(options.mip && !accelerated)),
         ];
@@ -147,10 +150,14 @@ impl ReliefRenderer {
         material.validate()?;
         march.validate()?;
         maps.textures.check(self.options.method, march)?;
-        if self.options.shadow != material.shadow || self.options.silhouette != material.silhouette {
-            let value = format!("{} and {}", material.shadow.name(), material.silhouette);
+        let options = self.options;
+        let is_other = options.shadow != material.shadow
+            || options.silhouette != material.silhouette
+            || options.green != material.green;
+        if is_other {
+            let value = format!("{}, {}, {:?}", material.shadow.name(), material.silhouette, material.green);
             return Err(InputError::new(
-                "material.shadow, silhouette",
+                "material.shadow, silhouette, green",
                 value,
                 "must be what the pipeline was compiled for",
             )

@@ -45,6 +45,7 @@ impl SquarePicture<'_> {
             shadow: self.material.shadow,
             normal_map: self.normals.is_some(),
             silhouette: self.material.silhouette,
+            green: self.material.green,
             depth: false,
             mip: false,
         };

@@ -3,6 +3,8 @@
 //!
 //! Relaxed cones (Policarpo and Oliveira 2007) made safe under bilinear filtering, in the spirit of Bán and
 //! Valasek (2024): bounds hold for every point of both cells, not for texel centres alone.
+//!
+//! A radius is at most the shorter edge of the map in cells: on maps of a few rows `quadtree` is far cheaper.
 
 #[cfg(feature = "gpu")]
 mod pass;

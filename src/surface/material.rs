@@ -27,6 +27,17 @@ impl Shadow {
     }
 }
 
+/// Where green of a normal map points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Green {
+    /// Up the image, against v: glTF and OpenGL.
+    #[default]
+    Up,
+    /// Down the image, along v: Direct3D.
+    Down,
+}
+
 /// What a relief is drawn with, beside its maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
@@ -46,6 +57,8 @@ pub struct Material {
     pub softness: f32,
     /// Discards what leaves the mesh's range of uv, so that silhouettes follow the relief.
     pub silhouette: bool,
+    /// Where green of the normal map points, where there is one.
+    pub green: Green,
 }
 
 impl Default for Material {
@@ -59,6 +72,7 @@ impl Default for Material {
             shadow_steps: 32,
             softness: 0.15,
             silhouette: false,
+            green: Green::Up,
         }
     }
 }

@@ -11,7 +11,8 @@ pub struct SurfaceVertex {
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Unit tangent along u, and the handedness of the bitangent along v: ±1 · normal × tangent.
+    /// Unit tangent along u, and ±1: the bitangent along v is that times normal × tangent. In glTF the bitangent
+    /// points against v, up the image: glTF's fourth component has the other sign.
     pub tangent: [f32; 4],
     /// Texture coordinates; a tile of relief covers 1.
     pub uv: [f32; 2],

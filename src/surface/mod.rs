@@ -19,7 +19,7 @@ pub mod view;
 pub use builtin::BuiltInMap;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
-pub use material::{Material, Shadow};
+pub use material::{Green, Material, Shadow};
 pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;

@@ -170,7 +170,8 @@ pub enum Outcome {
     Miss,
     /// It did.
     Hit,
-    /// The method ran out of steps; the result is where it stood.
+    /// The method ran out of steps; the result is where it stood. `cone` and `quadtree` look at 32,774 nodes at the
+    /// most: enough for rays that cross 16,384 cells.
     Exhausted,
 }
 

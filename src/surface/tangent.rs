@@ -3,7 +3,8 @@
 //!
 //! Each triangle's tangent ∂P/∂u is solved from positions and uv, and the unit tangents of the triangles around a
 //! vertex are summed; Gram–Schmidt makes the sum orthogonal to the vertex's normal. The bitangent is
-//! `w · cross(normal, tangent)`, as in glTF, and points along ∂P/∂v.
+//! `w · cross(normal, tangent)` and points along ∂P/∂v, which is down the image where v starts at its top. (glTF's
+//! bitangent points up the image: its `w` has the other sign.)
 //!
 //! **Decided:** B sums the solved tangents as they are, so that the triangle with the least texture decides, a
 //! sliver above all. Here each counts by the chord of its angle at the vertex, 2·sin(θ/2): nearly Thürmer and

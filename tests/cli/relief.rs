@@ -168,6 +168,44 @@ fn alpha_is_the_height_where_no_other_is_given() {
     assert_ne!(bench.image("alpha/relief.png"), bench.image("height/relief.png"));
 }
 
+/// A normal map baked from the heights shades as the heights do, whichever way its green points.
+#[test]
+fn normal_maps_say_what_heights_say() {
+    let bench = Bench::new();
+    let map = relievo::surface::BuiltInMap::Cobbles.height_map(128).expect("a map");
+    let grey = image::GrayImage::from_fn(128, 128, |x, y| {
+        image::Luma([(map.texel(x as i32, y as i32, Address::Wrap) * 255.0).round() as u8])
+    });
+    grey.save(bench.path("cobbles.png")).expect("writable");
+    for (name, green) in [("up", -1.0), ("down", 1.0)] {
+        let normals = image::RgbImage::from_fn(128, 128, |x, y| {
+            let at = |dx: i32, dy: i32| map.texel(x as i32 + dx, y as i32 + dy, Address::Wrap);
+            // Depth 0.1 of 128 texels, over two texels.
+            let [x, y] = [at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1)].map(|rise| -0.5 * 12.8 * rise);
+            let length = (x * x + y * y + 1.0).sqrt();
+            let byte = |part: f32| ((part / length * 0.5 + 0.5) * 255.0).round() as u8;
+            image::Rgb([byte(x), byte(green * y), byte(1.0)])
+        });
+        normals.save(bench.path(&format!("{name}.png"))).expect("writable");
+    }
+    for light in ["0,30", "90,30", "225,40"] {
+        let common = ["--height", "@cobbles.png", "--angle", "30", "--size", "120x90", "--light", light];
+        bench.made("heights", &common);
+        let from_heights = bench.image("heights/relief.png");
+        for green in ["up", "down"] {
+            let file = format!("@{green}.png");
+            let more = ["--normal", &file, "--normal-green", green];
+            bench.made("normals", &[&common[..], &more].concat());
+            let difference = Difference::of(&bench.image("normals/relief.png"), &from_heights, 24);
+            assert!(difference.outliers < 0.04, "{light} {green}: {difference:?}");
+        }
+        // The wrong way is far off where light comes along v.
+        bench.made("wrong", &[&common[..], &["--normal", "@up.png", "--normal-green", "down"]].concat());
+        let difference = Difference::of(&bench.image("wrong/relief.png"), &from_heights, 24);
+        assert!(light == "90,30" || difference.outliers > 0.2, "{light}: {difference:?}");
+    }
+}
+
 #[test]
 fn the_comparison_names_every_method_at_every_angle() {
     let bench = Bench::new();
@@ -199,7 +237,11 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--height", "@height.png", "--albedo", "@text.png"], &["text.png"]),
         (&["--height", "@height.png", "--normal", "@nowhere.png"], &["nowhere.png"]),
         (&["--builtin", "sponge"], &["builtin", "sponge", "bricks"]),
-        (&["--builtin", "bricks", "--texels", "0"], &["size", "0"]),
+        (&["--builtin", "bricks", "--texels", "0"], &["texels", "0"]),
+        (&["--height", "@height.png", "--texels", "64"], &["--texels"]),
+        (&["--builtin", "bricks", "--normal-green", "left"], &["normal-green", "left"]),
+        (&["--builtin", "bricks", "--angle", "89.9999"], &["angle", "89.9999", "no pixel"]),
+        (&["--builtin", "bricks", "--compare", "--size", "2x2"], &["size", "2x2", "no pixel"]),
         (&["--builtin", "bricks", "--height", "@height.png"], &["--height"]),
         (&["--builtin", "bricks", "--method", "bump"], &["method", "bump", "quadtree"]),
         (&["--builtin", "bricks", "--angle", "90"], &["angle", "90", "below 90"]),

@@ -54,7 +54,15 @@ fn scene(gpu: &Gpu, mesh: &SurfaceMesh, method: Method, depth: bool, silhouette:
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(128).expect("colours"));
     let albedo = ColorTexture::new(gpu, &albedo, true).expect("uploaded");
     let shadow = Shadow::Hard;
-    let options = ReliefOptions { method, shadow, normal_map: false, silhouette, depth, mip: true };
+    let options = ReliefOptions {
+        method,
+        shadow,
+        normal_map: false,
+        green: Default::default(),
+        silhouette,
+        depth,
+        mip: true,
+    };
     let renderer = ReliefRenderer::new(gpu, COLOR_FORMAT, options).expect("compiled");
     let material = Material { shadow, silhouette, ..Material::default() };
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };

@@ -11,7 +11,7 @@ const BOUND: f64 = 1e-4;
 
 fn settings() -> ProptestConfig {
     ProptestConfig {
-        cases: 400,
+        cases: 600,
         rng_seed: RngSeed::Fixed(2008),
         failure_persistence: None,
         ..ProptestConfig::default()
@@ -29,14 +29,30 @@ fn maps() -> impl Strategy<Value = HeightMap> {
     })
 }
 
-fn rays() -> impl Strategy<Value = Vec<Ray>> {
+fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
+    // Any place, and places exactly above texel centres and edges, where cells meet.
+    let place = |edge: u32| {
+        prop_oneof![
+            2 => (-1.0..2.0_f32).boxed(),
+            1 => (0..4 * edge).prop_map(move |half| (half as f32 * 0.5 - edge as f32) / edge as f32).boxed(),
+        ]
+    };
     let turn = prop_oneof![4 => 0.0..std::f32::consts::TAU, 1 => (0..8).prop_map(|i| i as f32 * std::f32::consts::FRAC_PI_4)];
-    let ray = (-1.0..2.0_f32, -1.0..2.0_f32, turn, 0.03..=1.0_f32, 0.0..0.3_f32);
+    let steepness = prop_oneof![6 => 0.03..=1.0_f32, 1 => Just(1.0_f32)];
+    let scale = prop_oneof![6 => 0.0..0.3_f32, 1 => Just(0.0_f32)];
+    let ray = (place(map.width()), place(map.height()), turn, steepness, scale);
     let ray = ray.prop_map(|(u, v, turn, cosine, scale)| {
         let sine = (1.0 - cosine * cosine).sqrt();
-        Ray::new([u, v], [sine * libm::cosf(turn), sine * libm::sinf(turn), cosine], scale, 1.0)
+        // Multiples of a quarter turn are exactly along an axis.
+        let exact = |part: f32| if part.abs() < 1e-6 { 0.0 } else { part };
+        let view = [sine * exact(libm::cosf(turn)), sine * exact(libm::sinf(turn)), cosine];
+        Ray::new([u, v], view, scale, 1.0)
     });
     proptest::collection::vec(ray, 40)
+}
+
+fn scenes() -> impl Strategy<Value = (HeightMap, Vec<Ray>)> {
+    maps().prop_flat_map(|map| (Just(map.clone()), rays(&map)))
 }
 
 /// The height of the surface at a parameter, in f64.
@@ -83,7 +99,7 @@ proptest! {
     #![proptest_config(settings())]
 
     #[test]
-    fn quadtree_and_cone_find_the_first_crossing(map in maps(), rays in rays(), address in address()) {
+    fn quadtree_and_cone_find_the_first_crossing((map, rays) in scenes(), address in address()) {
         for method in [Method::Quadtree, Method::Cone] {
             let surface = Surface::new(&map, method, address);
             for ray in &rays {
@@ -96,7 +112,7 @@ proptest! {
 
     /// Linear search loses what is thinner than a step, but what it returns lies on the surface.
     #[test]
-    fn relief_ends_on_the_surface(map in maps(), rays in rays(), address in address()) {
+    fn relief_ends_on_the_surface((map, rays) in scenes(), address in address()) {
         let surface = Surface::new(&map, Method::Relief, address);
         for ray in &rays {
             let hit = surface.trace(Method::Relief, ray, &march(address));
@@ -132,6 +148,42 @@ fn rays_from_behind_miss() {
             let ray = Ray::new([0.3, 0.4], [0.1, 0.1, cosine], 0.1, 1.0);
             let hit = surface.trace(method, &ray, &March::default());
             assert_eq!((hit.outcome(), hit.samples, hit.uv), (Outcome::Miss, 0, ray.origin), "{method:?}");
+        }
+    }
+}
+
+/// Rays that do not move along an axis, exactly above a line of texel centres: they never leave their cell by it.
+#[test]
+fn rays_along_an_axis_do_not_stall() {
+    for (width, column) in [(11_u32, 6_u32), (97, 3), (23, 3), (81, 5), (13, 3)] {
+        let height = |at: u32| ((at * 7919 + 13) % 97) as f32 / 96.0;
+        let map = HeightMap::new(width, 8, (0..width * 8).map(height).collect()).expect("a map");
+        let u = (column as f32 + 0.5) / width as f32;
+        for address in [Address::Wrap, Address::Clamp] {
+            for method in [Method::Quadtree, Method::Cone] {
+                let surface = Surface::new(&map, method, address);
+                for (number, slope) in
+                    [[0.0, 0.0], [-1.5e-17, -0.24], [0.0, 0.17]].into_iter().cycle().take(600).enumerate()
+                {
+                    let ray = Ray { origin: [u, number as f32 * 0.0043], slope, cosine: 1.0, polygon: 0.0 };
+                    let first = is_first(&map, &ray, &surface.trace(method, &ray, &march(address)), address);
+                    assert!(first.is_ok(), "{method:?} {address:?} {width} {ray:?}: {first:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_of_nonsense_end() {
+    let map = HeightMap::new(5, 3, vec![0.5; 15]).expect("a map");
+    for method in Method::ALL {
+        let surface = Surface::new(&map, method, Address::Wrap);
+        for odd in [f32::NAN, f32::INFINITY, -1e30] {
+            for (origin, slope) in [([odd, 0.5], [0.1, 0.1]), ([0.5, 0.5], [odd, 0.1])] {
+                let ray = Ray { origin, slope, cosine: 1.0, polygon: 0.0 };
+                surface.trace(method, &ray, &March::default());
+            }
         }
     }
 }

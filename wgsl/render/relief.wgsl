@@ -12,6 +12,8 @@ override METHOD: u32 = 3u;
 override SHADOW: u32 = 0u;
 // Normals from the normal map rather than from the heights.
 override NORMAL_MAP: bool = false;
+// Whether green of the normal map points up its image, against v, as in glTF and OpenGL, or down it, as in Direct3D.
+override GREEN_UP: bool = true;
 // Discards what leaves the range of uv that the mesh covers.
 override SILHOUETTE: bool = false;
 // Chooses the mip level of the heights from the size of a pixel, once a fragment.
@@ -55,7 +57,7 @@ struct Vertex {
 fn vertex(
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    // w: handedness, as in glTF.
+    // w: the bitangent along v is w · normal × tangent. glTF's points against v: its w has the other sign.
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec2<f32>,
 ) -> Vertex {
@@ -87,7 +89,8 @@ fn shaded(in: Vertex) -> Shaded {
     var facing = surface_normal(heights, hit.uv, view.scale, settings);
     if NORMAL_MAP {
         let texel = textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy).xy * 2.0 - 1.0;
-        facing = vec3<f32>(texel, sqrt(max(1.0 - dot(texel, texel), 0.0)));
+        let along_v = select(texel.y, -texel.y, GREEN_UP);
+        facing = vec3<f32>(texel.x, along_v, sqrt(max(1.0 - dot(texel, texel), 0.0)));
     }
     let light = vec3<f32>(dot(tangent, view.light.xyz), dot(bitangent, view.light.xyz), dot(normal, view.light.xyz));
     let direct = max(dot(facing, light), 0.0) * sunlit(hit, light, settings);
@@ -108,8 +111,7 @@ fn sunlit(hit: SurfaceHit, light: vec3<f32>, settings: SurfaceMarch) -> f32 {
     }
     let ray = surface_light_ray(hit, light, view.scale);
     let first = surface_trace(METHOD, heights, acceleration, ray, settings);
-    // A two-hundredth of the relief's depth: the point itself must not shade itself.
-    return select(1.0, 0.0, surface_shaded(first, hit, 0.005));
+    return select(1.0, 0.0, surface_shaded(first, hit));
 }
 
 @fragment

@@ -63,10 +63,16 @@ fn surface_cone(
             return surface_narrowed(heights, ray, march, above, parameter, samples);
         }
         above = parameter;
+        if leave >= 1.0 {
+            parameter = 1.0;
+            break;
+        }
         cell = surface_beyond(grid, node, exits, leave);
         parameter = leave;
     }
-    return surface_point(ray, parameter, samples, SURFACE_EXHAUSTED);
+    // The bottom of the volume is under every surface.
+    let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
+    return surface_point(ray, parameter, samples, outcome);
 }
 
 // The one crossing between a point above the surface and one at or under it.

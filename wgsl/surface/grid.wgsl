@@ -6,8 +6,11 @@ import package::wgsl::surface::ray::{SURFACE_WRAP, SurfaceRay};
 // Farther than any ray travels, in cells.
 const SURFACE_FAR: i32 = 1073741824;
 
-// An axis along which a ray travels less than this many cells counts as this slow.
+// An axis along which a ray travels less than this many cells is one that it never leaves a cell by.
 const SURFACE_LEAST_TRAVEL: f32 = 1e-6;
+
+// A parameter that no ray reaches.
+const SURFACE_NEVER: f32 = 2.0;
 
 struct SurfaceGrid {
     // Texels, and cells, of a tile.
@@ -19,7 +22,7 @@ struct SurfaceGrid {
     start: vec2<f32>,
     // One over the texels of a tile.
     tiles: vec2<f32>,
-    // Cells that the ray travels in all, and one over that.
+    // Cells that the ray travels in all, and one over that, or 0 where it hardly travels.
     travel: vec2<f32>,
     inverse: vec2<f32>,
     address: u32,
@@ -37,9 +40,8 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
     let texel = ray.origin * scale - 0.5;
     let base = floor(texel);
     let travel = ray.slope * scale;
-    let slow = select(
-        vec2<f32>(SURFACE_LEAST_TRAVEL), vec2<f32>(-SURFACE_LEAST_TRAVEL), travel < vec2<f32>(0.0));
-    let divisor = select(travel, slow, abs(travel) < vec2<f32>(SURFACE_LEAST_TRAVEL));
+    let is_slow = abs(travel) < vec2<f32>(SURFACE_LEAST_TRAVEL);
+    let inverse = select(1.0 / select(travel, vec2<f32>(1.0), is_slow), vec2<f32>(0.0), is_slow);
     let texels = vec2<i32>(size);
     var first = vec2<i32>(base);
     var cells = texels + 1;
@@ -48,7 +50,7 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
         first = select(first, first + texels, first < vec2<i32>(0));
         cells = texels;
     }
-    return SurfaceGrid(texels, cells, first, texel - base, 1.0 / scale, travel, 1.0 / divisor, address);
+    return SurfaceGrid(texels, cells, first, texel - base, 1.0 / scale, travel, inverse, address);
 }
 
 // Steps that suffice for any ray: every node that it can touch, once.
@@ -87,7 +89,8 @@ fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
 // The parameters at which the ray leaves a node through its x and its y edge.
 fn surface_exits(grid: SurfaceGrid, node: SurfaceNode) -> vec2<f32> {
     let edge = select(node.low, node.high, grid.travel >= vec2<f32>(0.0));
-    return (vec2<f32>(edge) - grid.start) * grid.inverse;
+    let exits = (vec2<f32>(edge) - grid.start) * grid.inverse;
+    return select(exits, vec2<f32>(SURFACE_NEVER), grid.inverse == vec2<f32>(0.0));
 }
 
 // The cell of a node that holds the ray's point at a parameter.
@@ -141,10 +144,14 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     let b = -0.5 * (length + slope.x * ahead.x + slope.y * ahead.y + twist * (at.x * ahead.y + at.y * ahead.x));
     let a = -twist * ahead.x * ahead.y;
     let discriminant = b * b - a * c;
-    // The smaller positive root is c / divisor: within 0..=1 only where the divisor is at least c > 0.
-    let divisor = sqrt(max(discriminant, 0.0)) - b;
-    if discriminant >= 0.0 && divisor >= c {
-        return enter + length * (c / divisor);
+    let root = sqrt(max(discriminant, 0.0));
+    // The smaller positive root, without a difference of nearly equal numbers; within 0..=1 only where what it is
+    // divided by is as large as what is divided. A ray that moves away (b > 0) comes back only on a surface that
+    // rises after it (a < 0).
+    let over = select(c, b + root, b > 0.0);
+    let under = select(root - b, -a, b > 0.0);
+    if discriminant >= 0.0 && under >= over {
+        return enter + length * (over / under);
     }
     return select(-1.0, leave, a + 2.0 * b + c <= 0.0);
 }

@@ -57,11 +57,17 @@ fn surface_quadtree(
         if found >= 0.0 {
             return surface_point(ray, found, samples, SURFACE_HIT);
         }
+        if leave >= 1.0 {
+            parameter = 1.0;
+            break;
+        }
         cell = surface_beyond(grid, node, exits, leave);
         parameter = leave;
         level = min(select(0u, 1u, surface_leaves_parent(grid, node, exits, 0u)), top);
     }
-    return surface_point(ray, parameter, samples, SURFACE_EXHAUSTED);
+    // The bottom of the volume is under every surface.
+    let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
+    return surface_point(ray, parameter, samples, outcome);
 }
 
 // Whether the ray leaves a node's parent together with the node.

@@ -5,6 +5,9 @@ import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMa
 import package::wgsl::surface::height::surface_height;
 import package::wgsl::surface::linear::SURFACE_MOST_STEPS;
 
+// What heights may differ by before a point shades itself, of the relief's depth.
+const SURFACE_SHADOW_BIAS: f32 = 0.005;
+
 // The light's ray that ends in a point of the surface: it falls from the top of the volume to the hit. `light` is
 // the unit vector towards the light in tangent space.
 fn surface_light_ray(hit: SurfaceHit, light: vec3<f32>, scale: f32) -> SurfaceRay {
@@ -12,9 +15,9 @@ fn surface_light_ray(hit: SurfaceHit, light: vec3<f32>, scale: f32) -> SurfaceRa
     return SurfaceRay(hit.uv - (1.0 - hit.height) * slope, slope, light.z, 0.0);
 }
 
-// Whether the light's ray ended above the point that it was sent to. `bias` is what heights may differ by.
-fn surface_shaded(first: SurfaceHit, hit: SurfaceHit, bias: f32) -> bool {
-    return first.parameter < 1.0 - hit.height - bias;
+// Whether the light's ray ended above the point that it was sent to.
+fn surface_shaded(first: SurfaceHit, hit: SurfaceHit) -> bool {
+    return first.parameter < 1.0 - hit.height - SURFACE_SHADOW_BIAS;
 }
 
 // 0 in full shadow to 1 in full light, from `steps` heights on the way to the light; `softness` is the penumbra's
@@ -26,8 +29,12 @@ fn surface_soft_shadow(
     if !(light.z > 0.0) {
         return 0.0;
     }
-    let ray = surface_light_ray(hit, light, scale);
-    let rise = 1.0 - hit.height;
+    // From the surface, where the method ended a little under it.
+    let own = surface_height(heights, hit.uv, march.mip, march.address);
+    var start = hit;
+    start.height = max(hit.height, own);
+    let ray = surface_light_ray(start, light, scale);
+    let rise = 1.0 - start.height;
     let count = clamp(steps, 1u, SURFACE_MOST_STEPS);
     var shade = 0.0;
     for (var step = 1u; step <= count; step++) {
@@ -36,7 +43,7 @@ fn surface_soft_shadow(
         let travelled = share * share;
         let parameter = rise * (1.0 - travelled);
         let height = surface_height(heights, ray.origin + parameter * ray.slope, march.mip, march.address);
-        let excess = height - (1.0 - parameter);
+        let excess = height - (1.0 - parameter) - SURFACE_SHADOW_BIAS;
         shade = max(shade, excess / (softness * (travelled * rise + 1e-3)));
     }
     return 1.0 - min(shade, 1.0);

@@ -108,6 +108,7 @@ fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> R
         shadow: Shadow::None,
         normal_map: false,
         silhouette: false,
+        green: Default::default(),
         depth: false,
         mip: false,
     };

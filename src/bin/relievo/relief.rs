@@ -11,8 +11,8 @@ use clap::{Args, ValueEnum};
 use image::RgbaImage;
 use relievo::surface::view::towards_light;
 use relievo::surface::{
-    Address, BuiltInMap, HeightMap, Hit, March, Material, Measured, Method, Mips, Outcome, Ray, Shadow,
-    SquareView,
+    Address, BuiltInMap, Green, HeightMap, Hit, March, Material, Measured, Method, Mips, Outcome, Ray,
+    Shadow, SquareView,
 };
 use relievo::terrain::export::write_bytes;
 use relievo::{Error, InputError};
@@ -42,21 +42,24 @@ const FINER: u32 = 2;
 /// Start with `relievo relief --builtin bricks --method quadtree --shadow hard --out relief`.
 #[derive(Args)]
 pub struct Relief {
-    /// Heights: an image's brightness, 0 to 1.
+    /// Heights: the brightness of a PNG or JPEG, 0 to 1.
     #[arg(long, value_name = "PNG")]
     height: Option<PathBuf>,
     /// Heights and colours of our own making, instead of files: bricks, cobbles, text, posts.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["height", "albedo"])]
     builtin: Option<String>,
     /// Texels along an edge of a built-in map.
-    #[arg(long, value_name = "N", default_value_t = 512)]
+    #[arg(long, value_name = "N", default_value_t = 512, conflicts_with_all = ["height", "albedo"])]
     texels: u32,
     /// Colours. Its alpha channel is the height where --height is absent.
     #[arg(long, value_name = "PNG")]
     albedo: Option<PathBuf>,
-    /// Normals in tangent space, red along u and green along v of the image. Default: those of the heights.
+    /// Normals in tangent space, red to the right. Default: those of the heights.
     #[arg(long, value_name = "PNG")]
     normal: Option<PathBuf>,
+    /// Where green of --normal points: up the image (glTF, OpenGL) or down it (Direct3D).
+    #[arg(long, value_name = "DIRECTION", default_value = "up")]
+    normal_green: GreenKind,
     /// How the surface is found: plain, parallax, parallax-limited, relief, occlusion, cone, quadtree.
     #[arg(long, value_name = "METHOD", default_value = "quadtree")]
     method: String,
@@ -72,7 +75,7 @@ pub struct Relief {
     /// Binary steps behind them, and behind cones.
     #[arg(long, value_name = "N", default_value_t = 8)]
     binary_steps: u32,
-    /// Degrees between the eye and the square's normal, 0 to below 90.
+    /// Degrees between the eye and the square's normal, 0 to below 90. Rays flatter than 89.55 are marched at that.
     #[arg(long, value_name = "DEG", default_value_t = 50.0, allow_hyphen_values = true)]
     angle: f64,
     /// Degrees of the eye around the normal: 0 below the texture's bottom edge, 90 at its right.
@@ -99,7 +102,7 @@ pub struct Relief {
     /// Pixels of relief.png.
     #[arg(long, value_name = "WxH", default_value = "960x600")]
     size: String,
-    /// Every method over the angles 0, 30, 60 and 80, instead of a picture.
+    /// Every method over the angles 0, 30, 60 and 80, instead of a picture: --method, --angle and --steps do not count.
     #[arg(long)]
     compare: bool,
     /// The folder.
@@ -112,6 +115,12 @@ enum ShadowKind {
     None,
     Hard,
     Soft,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum GreenKind {
+    Up,
+    Down,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -176,12 +185,14 @@ struct Report<'a> {
 impl Relief {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let plan = self.plan()?;
-        let staged = Staged::new(&self.out)?;
+        // What cannot be written shows before the work; the stage itself comes after it, so that an interrupted run
+        // leaves nothing behind.
+        drop(Staged::new(&self.out)?);
         if self.compare {
-            compare::run(&plan, context, staged)?;
+            compare::run(&plan, context, &self.out)?;
         } else {
             let drawn = plan.draw(context)?;
-            plan.write(&drawn, staged)?;
+            plan.write(&drawn, Staged::new(&self.out)?)?;
             let Measured { mean_error_texels, p99_error_texels, mean_samples, .. } = drawn.measured;
             crate::output::say(format_args!(
                 "{}: mean error {mean_error_texels:.4} texels, 99 of 100 below {p99_error_texels:.4}, \
@@ -248,6 +259,10 @@ impl Relief {
                 ShadowKind::Soft => Shadow::Soft,
             },
             silhouette: self.silhouette,
+            green: match self.normal_green {
+                GreenKind::Up => Green::Up,
+                GreenKind::Down => Green::Down,
+            },
             ..Material::default()
         };
         material.validate()?;
@@ -258,7 +273,9 @@ impl Relief {
         if let Some(name) = &self.builtin {
             let kind: BuiltInMap =
                 name.parse().map_err(|error| InputError { field: "builtin".into(), ..error })?;
-            return Ok((kind.height_map(self.texels)?, kind.albedo(self.texels)?));
+            let refused = |error: InputError| InputError { field: "texels".into(), ..error };
+            let map = kind.height_map(self.texels).map_err(refused)?;
+            return Ok((map, kind.albedo(self.texels).map_err(refused)?));
         }
         match (&self.height, &self.albedo) {
             (Some(height), Some(albedo)) => Ok((HeightMap::from_file(height)?, open(albedo)?)),
@@ -306,6 +323,10 @@ impl Plan {
         let start = Instant::now();
         let rays = self.view.rays(self.material.scale, self.material.plane);
         let seen: Vec<Ray> = rays.iter().flatten().copied().collect();
+        if seen.is_empty() {
+            let bound = "must be smaller, or --size larger: no pixel sees the square";
+            return Err(InputError::new("angle", self.view.angle, bound).into());
+        }
         let found = tracer.trace(&seen, &self.march)?;
         let traced = step("drawing", start);
         let start = Instant::now();

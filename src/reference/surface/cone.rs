@@ -14,7 +14,7 @@ pub fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hi
     for _ in 0..grid.bound(0) {
         let node = grid.node(cell, 0);
         let exits = grid.exits(&node);
-        let leave = exits[0].min(exits[1]).clamp(parameter, 1.0);
+        let leave = exits[0].min(exits[1]).max(parameter).min(1.0);
         let [highest, radius] = cones[(node.index[1] * grid.cells[0] + node.index[0]) as usize];
         samples += 1;
         let room = 1.0 - parameter - highest;
@@ -34,6 +34,9 @@ pub fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hi
             }
             if found >= 0.0 {
                 return narrowed(map, ray, march, [above, parameter], samples);
+            }
+            if leave >= 1.0 {
+                return Hit::of(ray, 1.0, samples, Outcome::Hit);
             }
             above = parameter;
         }

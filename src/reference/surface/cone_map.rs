@@ -50,6 +50,8 @@ impl Search<'_> {
     fn narrowed(&self, cell: [i32; 2], own: f32, radius: f32) -> f32 {
         let cells = self.layout.cells.map(|edge| edge as i32);
         let top = self.layout.levels - 1;
+        let at_rim = |i: usize| cell[i] <= 0 || cell[i] >= cells[i] - 1;
+        let is_rim = self.address == Address::Clamp && (at_rim(0) || at_rim(1));
         let (mut narrowest, mut level, mut node, mut orders) = (radius, top, [0, 0], 0_u32);
         loop {
             let low = node.map(|at| at << level);
@@ -65,7 +67,7 @@ impl Search<'_> {
                     if level == 0 {
                         let corners = self.corners(node);
                         let offset = [node[0] - cell[0], node[1] - cell[1]];
-                        if !rises(corners, offset) {
+                        if is_rim || !rises(corners, offset) {
                             narrowest = narrowest.min(leaf_radius(corners, offset, own));
                         }
                     } else if distance >= OPENING * (1 << level) as f32 {

@@ -5,6 +5,7 @@ use crate::surface::relief::Ray;
 
 const FAR: i32 = 1 << 30;
 const LEAST_TRAVEL: f32 = 1e-6;
+const NEVER: f32 = 2.0;
 
 /// The grid of bilinear cells under a ray.
 pub(super) struct Grid {
@@ -29,25 +30,14 @@ impl Grid {
         let size = [map.width(), map.height()];
         let texel = [0, 1].map(|i| ray.origin[i] * size[i] as f32 - 0.5);
         let travel = [0, 1].map(|i| ray.slope[i] * size[i] as f32);
-        let divisor = travel.map(|travel| {
-            let slow = if travel < 0.0 { -LEAST_TRAVEL } else { LEAST_TRAVEL };
-            if travel.abs() < LEAST_TRAVEL { slow } else { travel }
-        });
+        let inverse = travel.map(|travel| if travel.abs() < LEAST_TRAVEL { 0.0 } else { 1.0 / travel });
         let size = size.map(|edge| edge as i32);
         let base = [0, 1].map(|i| texel[i].floor() as i32);
         let (base, cells) = match address {
             Address::Wrap => ([0, 1].map(|i| base[i].rem_euclid(size[i])), size),
             Address::Clamp => (base, size.map(|edge| edge + 1)),
         };
-        Self {
-            size,
-            cells,
-            base,
-            start: texel.map(|at| at - at.floor()),
-            travel,
-            inverse: divisor.map(|divisor| 1.0 / divisor),
-            address,
-        }
+        Self { size, cells, base, start: texel.map(|at| at - at.floor()), travel, inverse, address }
     }
 
     pub fn bound(&self, levels: u32) -> u32 {
@@ -80,7 +70,8 @@ impl Grid {
     pub fn exits(&self, node: &Node) -> [f32; 2] {
         [0, 1].map(|axis| {
             let edge = if self.travel[axis] >= 0.0 { node.high[axis] } else { node.low[axis] };
-            (edge as f32 - self.start[axis]) * self.inverse[axis]
+            let exit = (edge as f32 - self.start[axis]) * self.inverse[axis];
+            if self.inverse[axis] == 0.0 { NEVER } else { exit }
         })
     }
 
@@ -127,9 +118,10 @@ impl Grid {
                 + twist * (at[0] * ahead[1] + at[1] * ahead[0]));
         let a = -twist * ahead[0] * ahead[1];
         let discriminant = b * b - a * c;
-        let divisor = discriminant.max(0.0).sqrt() - b;
-        if discriminant >= 0.0 && divisor >= c {
-            return enter + length * (c / divisor);
+        let root = discriminant.max(0.0).sqrt();
+        let (over, under) = if b > 0.0 { (b + root, -a) } else { (c, root - b) };
+        if discriminant >= 0.0 && under >= over {
+            return enter + length * (over / under);
         }
         if a + 2.0 * b + c <= 0.0 { leave } else { -1.0 }
     }

@@ -8,7 +8,7 @@ use super::shadow::{light_ray, shaded, soft_shadow};
 use crate::reference::terrain::blend::linear;
 use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
-use crate::surface::material::{Material, Shadow};
+use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mips::Mips;
 use crate::surface::relief::{Hit, March, Method, Ray};
 use crate::surface::view::SquareView;
@@ -58,7 +58,8 @@ impl Scene<'_> {
             Some(normals) => {
                 let texel = sampled(normals, hit.uv, steps, self.march.address);
                 let [x, y] = [texel[0], texel[1]].map(|channel| channel * 2.0 - 1.0);
-                [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()]
+                let along_v = if self.material.green == Green::Up { -y } else { y };
+                [x, along_v, (1.0 - x * x - y * y).max(0.0).sqrt()]
             }
         };
         let light = self.material.light;
@@ -77,7 +78,7 @@ impl Scene<'_> {
             Shadow::None => 1.0,
             Shadow::Hard => {
                 let first = self.surface.trace(self.method, &light_ray(hit, light, scale), self.march);
-                if shaded(&first, hit, 0.005) { 0.0 } else { 1.0 }
+                if shaded(&first, hit) { 0.0 } else { 1.0 }
             }
             Shadow::Soft => {
                 let (steps, softness) = (self.material.shadow_steps, self.material.softness);

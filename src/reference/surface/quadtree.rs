@@ -16,7 +16,7 @@ pub fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &March) -> H
     for _ in 0..grid.bound(top) {
         let node = grid.node(cell, level);
         let exits = grid.exits(&node);
-        let leave = exits[0].min(exits[1]).clamp(parameter, 1.0);
+        let leave = exits[0].min(exits[1]).max(parameter).min(1.0);
         let highest = pyramid[layout.index(level, node.index.map(|at| at as u32))];
         samples += 1;
         if 1.0 - leave <= highest {
@@ -31,6 +31,9 @@ pub fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &March) -> H
             let found = grid.patch(corners, node.corner(), parameter, leave);
             if found >= 0.0 {
                 return Hit::of(ray, found, samples, Outcome::Hit);
+            }
+            if leave >= 1.0 {
+                return Hit::of(ray, 1.0, samples, Outcome::Hit);
             }
         }
         cell = grid.beyond(&node, exits, leave);

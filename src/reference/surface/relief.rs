@@ -16,6 +16,8 @@ use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
 pub struct Surface<'a> {
     /// The heights.
     pub map: &'a HeightMap,
+    /// The address mode that its maps were made for, and that it is traced with.
+    pub address: Address,
     /// Its pyramid, for [`Method::Quadtree`]; else empty.
     pub pyramid: Vec<f32>,
     /// Its cones, for [`Method::Cone`]; else empty.
@@ -30,14 +32,15 @@ impl<'a> Surface<'a> {
             _ => Vec::new(),
         };
         let cones = if method == Method::Cone { cone_map(map, &pyramid, address) } else { Vec::new() };
-        Self { map, pyramid, cones }
+        Self { map, address, pyramid, cones }
     }
 
-    /// Where a ray meets the surface, as `method` finds it.
+    /// Where a ray meets the surface, as `method` finds it, in the surface's own address mode.
     pub fn trace(&self, method: Method, ray: &Ray, march: &March) -> Hit {
         if ray.cosine.is_nan() || ray.cosine <= 0.0 {
             return Hit::of(ray, ray.polygon, 0, Outcome::Miss);
         }
+        let march = &March { address: self.address, ..*march };
         match method {
             Method::Plain => plain(ray),
             Method::Parallax => parallax(self.map, ray, march),

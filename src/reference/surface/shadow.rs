@@ -13,9 +13,12 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     Ray { origin, slope, cosine: light[2], polygon: 0.0 }
 }
 
+/// What heights may differ by before a point shades itself, of the relief's depth.
+const BIAS: f32 = 0.005;
+
 /// Whether the light's ray ended above the point that it was sent to.
-pub fn shaded(first: &Hit, hit: &Hit, bias: f32) -> bool {
-    first.parameter < 1.0 - hit.height - bias
+pub fn shaded(first: &Hit, hit: &Hit) -> bool {
+    first.parameter < 1.0 - hit.height - BIAS
 }
 
 /// 0 in full shadow to 1 in full light.
@@ -31,15 +34,17 @@ pub fn soft_shadow(
     if light[2] <= 0.0 {
         return 0.0;
     }
-    let ray = light_ray(hit, light, scale);
-    let rise = 1.0 - hit.height;
+    let own = height(map, hit.uv, march.address);
+    let start = Hit { height: hit.height.max(own), ..*hit };
+    let ray = light_ray(&start, light, scale);
+    let rise = 1.0 - start.height;
     let count = steps.clamp(1, MOST_STEPS);
     let mut shade = 0.0;
     for step in 1..=count {
         let share = step as f32 / (count + 1) as f32;
         let travelled = share * share;
         let parameter = rise * (1.0 - travelled);
-        let excess = height(map, ray.at(parameter), march.address) - (1.0 - parameter);
+        let excess = height(map, ray.at(parameter), march.address) - (1.0 - parameter) - BIAS;
         shade = f32::max(shade, excess / (softness * (travelled * rise + 1e-3)));
     }
     1.0 - shade.min(1.0)

@@ -1,10 +1,11 @@
 //! `relievo relief --compare`: error and cost of every method, over angles.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
-use relievo::Error;
 use relievo::surface::{March, Measured, Method, Ray, SquareView};
 use relievo::terrain::export::write_bytes;
+use relievo::{Error, InputError};
 use serde::Serialize;
 
 use super::Plan;
@@ -46,8 +47,9 @@ struct Comparison<'a> {
     entries: &'a [Entry],
 }
 
-pub fn run(plan: &Plan, context: &Context, mut staged: Staged) -> Result<(), Error> {
+pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     let (entries, adapter) = compared(plan, context)?;
+    let mut staged = Staged::new(out)?;
     let [name, driver] = [0, 1].map(|i| adapter.as_ref().map(|names| names[i].as_str()));
     let comparison = Comparison {
         adapter: name,
@@ -80,6 +82,11 @@ fn compared(plan: &Plan, context: &Context) -> Result<(Vec<Entry>, Option<[Strin
         let view = SquareView { angle, ..plan.view };
         view.rays(plan.material.scale, plan.material.plane).into_iter().flatten().collect::<Vec<Ray>>()
     });
+    if let Some(at) = lists.iter().position(Vec::is_empty) {
+        let size = format!("{}x{}", plan.view.size[0], plan.view.size[1]);
+        let bound = format!("must be larger: no pixel sees the square at {}°", ANGLES[at]);
+        return Err(InputError::new("size", size, bound).into());
+    }
     let runs = |method: Method| if method.is_stepped() { STEPS.len() } else { 1 };
     let progress = bar((ANGLES.len() * Method::ALL.into_iter().map(runs).sum::<usize>()) as u64, "comparing");
     let (mut entries, mut adapter) = (Vec::new(), None);
