@@ -120,11 +120,10 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
             node = nearest_child(node, cell, level);
             continue;
         }
-        // The next child of the parent, or of its parent, and so on.
-        while level < top && ((orders >> (2u * level)) & 3u) == 3u {
-            node = node >> vec2<u32>(1u);
-            level += 1u;
-        }
+        // The next child of the parent, or, behind its last, of its parent's parent, and so on.
+        let last_children = countTrailingZeros(~(orders >> (2u * level))) >> 1u;
+        node = node >> vec2<u32>(last_children);
+        level += last_children;
         if level >= top {
             break;
         }

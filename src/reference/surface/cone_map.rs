@@ -83,10 +83,9 @@ impl Search<'_> {
                 node = nearest_child(node, cell, level);
                 continue;
             }
-            while level < top && (orders >> (2 * level)) & 3 == 3 {
-                node = node.map(|at| at >> 1);
-                level += 1;
-            }
+            let last_children = (!orders.wrapping_shr(2 * level)).trailing_zeros() >> 1;
+            node = node.map(|at| at >> last_children);
+            level += last_children;
             if level >= top {
                 return narrowest;
             }
