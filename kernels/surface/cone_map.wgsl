@@ -97,8 +97,10 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
             let high = min(low + (vec2<i32>(1) << vec2<u32>(level)), cells);
             let gap = vec2<f32>(max(max(low - cell - 1, cell - high), vec2<i32>(0)));
             let rise = highest(map, level, node) - own;
-            let distance = length(gap);
-            if rise > 0.0 && distance < narrowest * rise {
+            // Squares, since most nodes need no root.
+            let distance = dot(gap, gap);
+            let reach = narrowest * rise;
+            if rise > 0.0 && distance < reach * reach {
                 if level == 0u {
                     let corners = vec4<f32>(
                         texel(map, node), texel(map, node + vec2<i32>(1, 0)),
@@ -107,8 +109,8 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
                     if is_rim || !rises(corners, offset) {
                         narrowest = min(narrowest, leaf_radius(corners, offset, own));
                     }
-                } else if distance >= OPENING * f32(1u << level) {
-                    narrowest = distance / rise;
+                } else if distance >= OPENING * OPENING * f32(1u << (2u * level)) {
+                    narrowest = sqrt(distance) / rise;
                 } else {
                     open = true;
                 }

@@ -62,16 +62,17 @@ impl Search<'_> {
                     (low[i] - cell[i] - 1).max(cell[i] - high).max(0) as f32
                 });
                 let rise = self.highest(level, node) - own;
-                let distance = (gap[0] * gap[0] + gap[1] * gap[1]).sqrt();
-                if rise > 0.0 && distance < narrowest * rise {
+                let distance = gap[0] * gap[0] + gap[1] * gap[1];
+                let reach = narrowest * rise;
+                if rise > 0.0 && distance < reach * reach {
                     if level == 0 {
                         let corners = self.corners(node);
                         let offset = [node[0] - cell[0], node[1] - cell[1]];
                         if is_rim || !rises(corners, offset) {
                             narrowest = narrowest.min(leaf_radius(corners, offset, own));
                         }
-                    } else if distance >= OPENING * (1 << level) as f32 {
-                        narrowest = distance / rise;
+                    } else if distance >= OPENING * OPENING * (1_u32 << (2 * level)) as f32 {
+                        narrowest = distance.sqrt() / rise;
                     } else {
                         open = true;
                     }
