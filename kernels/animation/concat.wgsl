@@ -1,5 +1,8 @@
 // Concatenation into the model's space. A thread walks one chain of bones of one instance, the parent's matrix in
-// registers; a dispatch serves the chains of one level, whose parents are done.
+// registers; a dispatch serves the chains of one level, whose parents are done. With WHOLE, a thread walks all chains
+// of its instance, one after another.
+
+override WHOLE: bool = false;
 
 struct ConcatParams {
     instances: u32,
@@ -24,20 +27,7 @@ fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4
     return vec4<f32>(linear.xyz, linear.w + row.w);
 }
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    let instance = index / params.chains;
-    if instance >= params.instances {
-        return;
-    }
-    let chain_index = index - instance * params.chains;
-    let chain = chains[params.first_chain + chain_index];
-    let base = instance * params.bones;
+fn walk(chain: vec4<u32>, base: u32) {
     var x = vec4<f32>(1.0, 0.0, 0.0, 0.0);
     var y = vec4<f32>(0.0, 1.0, 0.0, 0.0);
     var z = vec4<f32>(0.0, 0.0, 1.0, 0.0);
@@ -65,5 +55,26 @@ fn main(
         models[bone] = x;
         models[bone + 1u] = y;
         models[bone + 2u] = z;
+    }
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    let instance = select(index / params.chains, index, WHOLE);
+    if instance >= params.instances {
+        return;
+    }
+    let base = instance * params.bones;
+    if WHOLE {
+        for (var chain = 0u; chain < params.chains; chain++) {
+            walk(chains[params.first_chain + chain], base);
+        }
+    } else {
+        walk(chains[params.first_chain + index - instance * params.chains], base);
     }
 }

@@ -3,7 +3,7 @@
 //! The skeleton is cut into chains, each a run of bones from parent to child, as heavy-path decompositions cut trees.
 //! A thread walks one chain of one instance with the parent's matrix in registers: every matrix is read once a chain
 //! instead of once a bone, and a dispatch serves every chain whose parent is done. There are far fewer such dispatches
-//! than levels of bones.
+//! than levels of bones. Where processors are few, a thread walks all chains of its instance (`Walk`).
 
 use super::skeleton::Skeleton;
 
@@ -11,7 +11,7 @@ use super::skeleton::Skeleton;
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub use pass::{ConcatJob, ConcatPass};
+pub use pass::{ConcatJob, ConcatPass, Walk};
 
 /// How far a component may lie from the twin's, on any device: times the bones of the longest chain, times the largest
 /// component (at least 1). A local matrix carries 10ε of its scale (ε = 2⁻²⁴, each operation to either neighbour 2ε), a

@@ -2,7 +2,7 @@
 
 use super::{CROWDS, Scene};
 use crate::Error;
-use crate::animation::concat::ConcatPass;
+use crate::animation::concat::{ConcatPass, Walk};
 use crate::animation::crowd::packed;
 use crate::animation::sample::RotationPath;
 use crate::bench::terrain::copy_of;
@@ -17,7 +17,7 @@ use crate::reference::animation::sample::sample_set;
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = ConcatPass::new(gpu)?;
+    let pass = ConcatPass::new(gpu, Walk::of(gpu))?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
         let found = places(&scene.set, &scene.instances, 0.4);

@@ -10,7 +10,7 @@ use relievo::animation::{Affine, Clip, Model, Transform, creature};
 #[cfg(feature = "gpu")]
 use relievo::animation::{
     ClipSet, Instance,
-    concat::ConcatPass,
+    concat::{ConcatPass, Walk},
     crowd::{ClipBuffers, Crowd, unpacked},
     place::PlacePass,
     sample::SamplePass,
@@ -120,7 +120,7 @@ fn on_gpu(gpu: &Gpu, model: &Model, clip: &Clip, time: f32) -> Result<(Vec<Trans
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
     let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let concat = ConcatPass::new(gpu)?.prepare(gpu, &model.skeleton, &crowd)?;
+    let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &model.skeleton, &crowd)?;
     gpu.run("pose", |encoder| {
         place.record(encoder);
         sample.record(encoder);

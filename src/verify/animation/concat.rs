@@ -2,7 +2,7 @@
 
 use super::{Draw, SIZES, random_crowd};
 use crate::Error;
-use crate::animation::concat::{CONCAT_BOUND, ConcatPass};
+use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::skeleton::Skeleton;
 use crate::animation::transform::{Affine, Transform};
@@ -37,17 +37,20 @@ fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count:
     let mut crowd = Crowd::new(gpu, &set, &instances)?;
     let locals = random_locals(case, bones * count)?;
     crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
-    let output = Poisoned::<Affine>::new(gpu, bones * count)?;
-    crowd.models = output.buffer.clone();
-    let job = ConcatPass::new(gpu)?.prepare(gpu, skeleton, &crowd)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
     let expected: Vec<Affine> = locals.chunks(bones).flat_map(|locals| concat(skeleton, locals)).collect();
     let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
     let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
     let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
     let bound = CONCAT_BOUND * deepest as f32 * largest;
-    let comparison = output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound))?;
-    cases.add(format!("{name}, {bones} bones × {count}"), comparison);
+    for walk in [Walk::Levels, Walk::Whole] {
+        let output = Poisoned::<Affine>::new(gpu, bones * count)?;
+        crowd.models = output.buffer.clone();
+        let job = ConcatPass::new(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let comparison =
+            output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound))?;
+        cases.add(format!("{name}, {bones} bones × {count}, {walk:?}"), comparison);
+    }
     Ok(())
 }
 
