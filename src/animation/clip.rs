@@ -8,7 +8,7 @@
 //! - `tracks`: three [`Track`]s a bone, translation, rotation, scale; 16 bytes each.
 //! - `times`: `f32` seconds, ascending within a track. Tracks with equal times share them.
 //! - `values`: `vec4<f32>`s: a translation or scale with 0 behind it, or a quaternion x, y, z, w. Cubic splines
-//!   have three a key: in-tangent, value, out-tangent.
+//!   have three a key: in-tangent, value, out-tangent, the tangents times the seconds of the stretch that they bend.
 //!
 //! So a key takes 16 bytes, 48 in a cubic spline, and 4 more where its time is not shared. A bone without keys has
 //! a track of 0 keys whose one value is the bone's rest pose.
@@ -43,6 +43,17 @@ pub enum Interpolation {
     CubicSpline = 2,
 }
 
+impl Interpolation {
+    /// What a track's number stands for.
+    pub fn of_code(code: u32) -> Self {
+        match code {
+            0 => Self::Step,
+            1 => Self::Linear,
+            _ => Self::CubicSpline,
+        }
+    }
+}
+
 /// The keys of one track, before they are laid out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keys {
@@ -55,31 +66,54 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Checks times and values, and normalizes `is_rotation`s; `paths` come before the fields of times and values.
+    /// Checks times and values of translations, scales or, if `is_rotation`, quaternions; `paths` come before the
+    /// fields of times and values.
     ///
     /// # Errors
     /// [`InputError`] for no keys, times that descend, are negative, too large or not finite, other than one value a
     /// key (three in splines), and values that are not finite or rotations without a direction.
-    pub(crate) fn checked(&self, [times, values]: [&str; 2], is_rotation: bool) -> Result<Self, InputError> {
+    pub(crate) fn validate(&self, [times, values]: [&str; 2], is_rotation: bool) -> Result<(), InputError> {
         check_times(times, &self.times)?;
-        let each = if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let each = self.values_a_key();
         if self.values.len() != each * self.times.len() {
             let bound = format!("must be {}, {each} a key", each * self.times.len());
             return Err(InputError::new(format!("{values}.len"), self.values.len(), bound));
         }
-        let mut keys = self.clone();
-        keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
-        for (at, value) in keys.values.iter_mut().enumerate() {
+        for (at, value) in self.values.iter().enumerate() {
             let path = format!("{values}[{at}]");
             finite(&path, value)?;
             if is_rotation && (each == 1 || at % 3 == 1) {
-                let normalized = unit(&path, *value)?;
-                // A spline's tangents belong to the value as it stands.
-                *value = if each == 1 { normalized } else { *value };
+                unit(&path, *value)?;
             }
         }
-        if is_rotation && self.interpolation == Interpolation::Linear {
-            take_short_ways(&mut keys.values);
+        Ok(())
+    }
+
+    fn values_a_key(&self) -> usize {
+        if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
+    }
+
+    /// Valid keys as they are stored.
+    ///
+    /// # Errors
+    /// [`InputError`] for tangents that leave `f32` when they are multiplied by their seconds.
+    fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
+        let mut keys = self.clone();
+        keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
+        match self.interpolation {
+            Interpolation::CubicSpline => {
+                stretch_tangents(&keys.times, &mut keys.values);
+                finite(path, keys.values.as_flattened())?;
+            }
+            _ if is_rotation => {
+                for value in &mut keys.values {
+                    *value = unit(path, *value)?;
+                }
+                if self.interpolation == Interpolation::Linear {
+                    take_short_ways(&mut keys.values);
+                }
+            }
+            _ => {}
         }
         Ok(keys)
     }
@@ -116,6 +150,15 @@ fn take_short_ways(values: &mut [[f32; 4]]) {
         let dot: f64 = before.iter().zip(here).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
         if dot < 0.0 {
             values[at] = here.map(|component| -component);
+        }
+    }
+}
+
+/// Multiplies tangents by the seconds between their key and the one on their side: what a spline needs of them.
+fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
+    for (key, pair) in times.windows(2).enumerate() {
+        for at in [3 * key + 2, 3 * key + 3] {
+            values[at] = values[at].map(|tangent| tangent * (pair[1] - pair[0]));
         }
     }
 }
@@ -165,11 +208,7 @@ pub struct Track {
 impl Track {
     /// How values between keys are found.
     pub fn interpolation(&self) -> Interpolation {
-        match self.code {
-            0 => Interpolation::Step,
-            1 => Interpolation::Linear,
-            _ => Interpolation::CubicSpline,
-        }
+        Interpolation::of_code(self.code)
     }
 }
 
@@ -216,9 +255,12 @@ impl Clip {
             ] {
                 let path = format!("clip.bones[{index}].{part}");
                 let paths = [format!("{path}.times"), format!("{path}.values")];
-                let paths = [paths[0].as_str(), &paths[1]];
-                let keys = keys.as_ref().map(|keys| keys.checked(paths, part == "rotation")).transpose()?;
-                layout.add(keys, rest);
+                let is_rotation = part == "rotation";
+                let keys = keys.as_ref().map(|keys| {
+                    keys.validate([&paths[0], &paths[1]], is_rotation)?;
+                    keys.stored(&paths[1], is_rotation)
+                });
+                layout.add(keys.transpose()?, rest);
             }
         }
         layout.finish(name.into(), duration)

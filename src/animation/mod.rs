@@ -2,17 +2,24 @@
 //! to 14).
 
 pub mod clip;
+pub mod clip_set;
+pub mod concat;
 pub mod creature;
+#[cfg(feature = "gpu")]
+pub mod crowd;
 pub mod gltf;
 pub mod model;
+pub mod place;
 pub mod priority;
 pub mod sample;
 pub mod skeleton;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use clip_set::ClipSet;
 pub use creature::creature;
 pub use model::Model;
+pub use place::Instance;
 pub use priority::{Priorities, Weights};
 pub use sample::{RotationPath, Wrap};
 pub use skeleton::{Bone, Skeleton, Skin};

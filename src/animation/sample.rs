@@ -6,9 +6,22 @@
 
 use crate::InputError;
 
+#[cfg(feature = "gpu")]
+mod pass;
+
+#[cfg(feature = "gpu")]
+pub use pass::{ActivePairs, SampleActiveJob, SamplePass};
+
 /// How far a sampled rotation between linear keys may lie from the true one, in radians. The polynomial alone is
 /// within 4e-8; the rest is `f32`'s rounding of keys, products and sums.
 pub const SLERP_BOUND: f32 = 1e-6;
+
+/// How far a component may lie from the twin's at the same place, on any device, times the largest value (at least 1).
+///
+/// With ε = 2⁻²⁴ (`+ − ×` to either neighbour 2ε, `inverseSqrt` 4ε): a spline adds four products of weights of at most
+/// 1.15, each with 8ε: 40ε. A slerp's cosine carries 8ε, its inverse 8ε, the cosine of half the angle 14ε; each of
+/// five terms adds 6ε, times at most 0.3: 16ε a weight, of two or three: 50ε. Normalizing adds 16ε. 160ε < 1e-5.
+pub const SAMPLE_BOUND: f32 = 1e-5;
 
 /// Coefficients of Eberly's polynomial for cosines from √½ to 1: 1/(i(2i + 1)) for i from 1 to 5. The last makes up
 /// for the terms that are left out.

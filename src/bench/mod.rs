@@ -1,6 +1,7 @@
 //! Benchmarks: every kernel beside its twin and a copy of the same bytes, in one run on the adapter at hand
 //! (`relievo bench`). Figures are ratios: absolute times mean little across machines.
 
+pub mod animation;
 pub mod baseline;
 mod measure;
 pub mod surface;
@@ -41,6 +42,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/height_pyramid", run: surface::height_pyramid::cases },
     Stem { name: "surface/cone_map", run: surface::cone_map::cases },
     Stem { name: "surface/tangent", run: surface::tangent::cases },
+    Stem { name: "animation/place", run: animation::place::cases },
+    Stem { name: "animation/sample", run: animation::sample::cases },
+    Stem { name: "animation/concat", run: animation::concat::cases },
     // Draws pictures: last, for the sake of lavapipe's clock (see its cases).
     Stem { name: "surface/relief", run: surface::relief::cases },
 ];

@@ -9,7 +9,8 @@ use super::readback::Readback;
 use super::{Gpu, GpuError};
 use crate::InputError;
 
-/// A storage buffer of `len` elements. Usable as storage, vertex and copy source and destination.
+/// A storage buffer of `len` elements. Usable as storage, vertices, indirect arguments, and copy source and
+/// destination.
 #[derive(Debug, Clone)]
 pub struct Buffer<T> {
     raw: wgpu::Buffer,
@@ -35,6 +36,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         }
         let usage = wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::VERTEX
+            | wgpu::BufferUsages::INDIRECT
             | wgpu::BufferUsages::COPY_SRC
             | wgpu::BufferUsages::COPY_DST;
         let raw = gpu.scoped(|| {

@@ -62,6 +62,21 @@ impl Kernel {
         [x, groups.div_ceil(x), 1]
     }
 
+    /// Records a compute pass of one dispatch, whose workgroups along x, y and z are the first words of `arguments`.
+    pub fn dispatch_indirect(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        label: &'static str,
+        group: &Group,
+        arguments: &wgpu::Buffer,
+    ) {
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups_indirect(arguments, 0);
+    }
+
     /// Workgroups for `invocations` along x.
     pub fn groups_for(&self, invocations: u32) -> u32 {
         let width = self.shader.entry_points.first().map_or(1, |entry| entry.workgroup_size[0].max(1));

@@ -1,6 +1,7 @@
 //! Parity: every kernel against its twin, on the adapter at hand. Part of the product, so that a user with a
 //! strange driver finds out (`relievo verify`).
 
+pub mod animation;
 pub mod baseline;
 pub mod compare;
 pub mod poison;
@@ -40,6 +41,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/cone_map", run: surface::cone_map::cases },
     Stem { name: "surface/relief", run: surface::relief::cases },
     Stem { name: "surface/tangent", run: surface::tangent::cases },
+    Stem { name: "animation/place", run: animation::place::cases },
+    Stem { name: "animation/sample", run: animation::sample::cases },
+    Stem { name: "animation/concat", run: animation::concat::cases },
 ];
 
 /// One case's result.

@@ -83,6 +83,34 @@ fn the_built_in_creature_has_clips() {
     }
 }
 
+/// The file's pose and the creature's, on both backends.
+#[test]
+fn both_backends_agree() {
+    let bench = Bench::new();
+    for (model, clip) in
+        [(&*bench.path("model.gltf"), "lift"), ("builtin", "walk"), ("builtin", "idle"), ("builtin", "wave")]
+    {
+        for time in ["0", "0.37", "1.9", "-3.3"] {
+            let pose = |backend| bench.pose(model, &["--clip", clip, "--time", time, "--backend", backend]);
+            let (mut gpu, mut cpu) = (Vec::new(), Vec::new());
+            numbers(&pose("gpu"), &mut gpu);
+            numbers(&pose("cpu"), &mut cpu);
+            assert_eq!(gpu.len(), cpu.len());
+            let error = gpu.iter().zip(&cpu).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-5, "{model} {clip} {time}: {error:e}");
+        }
+    }
+}
+
+fn numbers(value: &Value, found: &mut Vec<f64>) {
+    match value {
+        Value::Number(number) => found.extend(number.as_f64()),
+        Value::Array(values) => values.iter().for_each(|value| numbers(value, found)),
+        Value::Object(values) => values.values().for_each(|value| numbers(value, found)),
+        _ => {}
+    }
+}
+
 #[test]
 fn bad_input_is_refused_in_one_line() {
     let bench = Bench::new();

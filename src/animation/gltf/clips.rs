@@ -83,5 +83,7 @@ fn keys_of(
         _ => document.vectors::<3>(sampler.output)?.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect(),
     };
     let keys = Keys { times, values, interpolation };
-    keys.checked([&format!("{path}.input"), &format!("{path}.output")], property == Property::Rotation)
+    let paths = [format!("{path}.input"), format!("{path}.output")];
+    keys.validate([&paths[0], &paths[1]], property == Property::Rotation)?;
+    Ok(keys)
 }

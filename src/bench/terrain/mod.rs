@@ -16,7 +16,7 @@ use crate::gpu::{Buffer, Gpu, Job};
 use crate::verify::terrain::random_heights;
 
 /// A copy of `words` words, rounded up to a vector, as a baseline.
-pub(super) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
+pub(in crate::bench) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
     let words = words.next_multiple_of(4);
     let (source, destination) =
         (Buffer::new(gpu, "copy source", words)?, Buffer::new(gpu, "copy destination", words)?);

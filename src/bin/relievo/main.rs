@@ -96,7 +96,7 @@ fn main() -> ExitCode {
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Relief(command) => command.run(&context),
-        Command::Pose(command) => command.run(),
+        Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),

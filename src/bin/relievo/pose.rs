@@ -7,11 +7,22 @@ use clap::{Args, ValueEnum};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::column_major;
 use relievo::animation::{Affine, Clip, Model, Transform, creature};
+#[cfg(feature = "gpu")]
+use relievo::animation::{
+    ClipSet, Instance,
+    concat::{ConcatPass, Walk},
+    crowd::{ClipBuffers, Crowd, unpacked},
+    place::PlacePass,
+    sample::SamplePass,
+};
+#[cfg(feature = "gpu")]
+use relievo::gpu::Gpu;
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::sample::sample;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
+use crate::Context;
 use crate::output::{json, write_file};
 
 /// Writes where every bone of a model is at a moment of a clip, as JSON.
@@ -35,9 +46,21 @@ pub struct Pose {
     /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
     #[arg(long, value_name = "MODE", default_value = "loop")]
     wrap: WrapName,
+    /// What computes; both agree within rounding.
+    #[arg(long, default_value_t, value_enum)]
+    backend: Backend,
     /// The file.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum Backend {
+    #[cfg(feature = "gpu")]
+    #[default]
+    Gpu,
+    #[cfg_attr(not(feature = "gpu"), default)]
+    Cpu,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -62,7 +85,8 @@ struct BoneReport<'a> {
 }
 
 impl Pose {
-    pub fn run(&self) -> Result<ExitCode, Error> {
+    #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
+    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let model = open(&self.model)?;
         let clip = find(&model, &self.model, &self.clip)?;
         let wrap = match self.wrap {
@@ -70,12 +94,40 @@ impl Pose {
             WrapName::Clamp => Wrap::Clamp,
         };
         let time = wrap.inside(clip.duration(), self.time)?;
-        let locals = sample(clip, time, RotationPath::Slerp);
-        let models = concat(&model.skeleton, &locals);
+        let (locals, models) = match self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu => on_gpu(&context.gpu()?, &model, clip, time)?,
+            Backend::Cpu => on_cpu(&model, clip, time),
+        };
         check_range(&models)?;
         write_file(&self.out, &json(&report(&model, clip, time, &locals, &models))?)?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+fn on_cpu(model: &Model, clip: &Clip, time: f32) -> (Vec<Transform>, Vec<Affine>) {
+    let locals = sample(clip, time, RotationPath::Slerp);
+    let models = concat(&model.skeleton, &locals);
+    (locals, models)
+}
+
+/// A crowd of one.
+#[cfg(feature = "gpu")]
+fn on_gpu(gpu: &Gpu, model: &Model, clip: &Clip, time: f32) -> Result<(Vec<Transform>, Vec<Affine>), Error> {
+    let set = ClipSet::new(&[clip])?;
+    let clips = ClipBuffers::new(gpu, &set)?;
+    // The time is inside the clip already, and its end is not its start here.
+    let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
+    let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
+    let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
+    let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &model.skeleton, &crowd)?;
+    gpu.run("pose", |encoder| {
+        place.record(encoder);
+        sample.record(encoder);
+        concat.record(encoder);
+    })?;
+    let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
+    Ok((locals, crowd.models.read_blocking(gpu)?))
 }
 
 /// Refuses transforms that chains of large scales have driven out of range: JSON has no infinity.

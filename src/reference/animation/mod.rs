@@ -1,4 +1,5 @@
 //! Twins of `kernels/animation/`.
 
 pub mod concat;
+pub mod place;
 pub mod sample;

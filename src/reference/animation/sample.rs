@@ -1,29 +1,14 @@
 //! Sampling of clips: twin of `kernels/animation/sample.wgsl`.
 
 use crate::animation::clip::{Clip, Interpolation, Part, Track};
-use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V, Wrap};
+use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
+use crate::animation::place::{Instance, Place};
+use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V};
 use crate::animation::transform::Transform;
+use crate::reference::animation::place::place;
 
 /// A spline of rotations that passes this close to zero keeps the key before: nothing has a direction there.
 const VANISHING: f32 = 1e-12;
-
-/// The time inside a clip, in the order of the shader. [`Wrap::inside`] is more exact where times are large.
-pub fn wrapped(wrap: Wrap, duration: f32, time: f32) -> f32 {
-    if duration <= 0.0 {
-        return 0.0;
-    }
-    if wrap == Wrap::Clamp {
-        return time.max(0.0).min(duration);
-    }
-    let mut inside = time - (time / duration).floor() * duration;
-    if inside < 0.0 {
-        inside += duration;
-    }
-    if inside >= duration {
-        inside -= duration;
-    }
-    inside
-}
 
 /// Every bone's transform, in its parent's space, at a time inside the clip.
 pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
@@ -32,98 +17,63 @@ pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
 
 /// One bone's transform.
 pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> Transform {
+    let of = |part| {
+        let track: &Track = clip.track(bone, part);
+        let values = &clip.values()[track.first_value as usize..];
+        (values, track.interpolation(), place(clip.times_of(track), time))
+    };
     let vector = |part| {
-        let track = clip.track(bone, part);
-        let [x, y, z, _] = vector_at(clip, track, place(clip.times_of(track), time));
+        let (values, interpolation, place) = of(part);
+        let [x, y, z, _] = vector_at(values, interpolation, place);
         [x, y, z]
     };
-    let track = clip.track(bone, Part::Rotation);
-    let rotation = rotation_at(clip, track, place(clip.times_of(track), time), path);
+    let (values, interpolation, place) = of(Part::Rotation);
+    let rotation = rotation_at(values, interpolation, place, path);
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
 
-/// A place between two keys.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// The key before.
-    pub key: usize,
-    /// The way to the key after it, 0 to below 1. 0 outside the keys.
-    pub fraction: f32,
-    /// Seconds between both.
-    pub seconds: f32,
-}
-
-/// Where a time lies among key times. The last of equal times counts.
-pub fn place(times: &[f32], time: f32) -> Place {
-    let last = times.len().saturating_sub(1);
-    if last == 0 || time < times[0] {
-        return Place { key: 0, fraction: 0.0, seconds: 0.0 };
-    }
-    if time >= times[last] {
-        return Place { key: last, fraction: 0.0, seconds: 0.0 };
-    }
-    // Most clips are sampled evenly: a guess hits.
-    let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
-    let mut key = (evenly as usize).min(last - 1);
-    if times[key] > time || times[key + 1] <= time {
-        let mut end = last;
-        key = 0;
-        while end - key > 1 {
-            let middle = (key + end) / 2;
-            if times[middle] <= time {
-                key = middle;
-            } else {
-                end = middle;
-            }
-        }
-    }
-    let seconds = times[key + 1] - times[key];
-    Place { key, fraction: (time - times[key]) / seconds, seconds }
-}
-
-fn vector_at(clip: &Clip, track: &Track, place: Place) -> [f32; 4] {
-    let value = |at: usize| clip.values()[track.first_value as usize + at];
-    match track.interpolation() {
-        Interpolation::CubicSpline => spline(&value, place),
-        Interpolation::Linear if place.fraction > 0.0 => {
-            lerp(value(place.key), value(place.key + 1), place.fraction)
-        }
-        _ => value(place.key),
+fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
+    let key = place.key as usize;
+    match interpolation {
+        Interpolation::CubicSpline => spline(values, place),
+        Interpolation::Linear if place.fraction > 0.0 => lerp(values[key], values[key + 1], place.fraction),
+        _ => values[key],
     }
 }
 
-fn rotation_at(clip: &Clip, track: &Track, place: Place, path: RotationPath) -> [f32; 4] {
-    let value = |at: usize| clip.values()[track.first_value as usize + at];
-    match track.interpolation() {
+fn rotation_at(
+    values: &[[f32; 4]],
+    interpolation: Interpolation,
+    place: Place,
+    path: RotationPath,
+) -> [f32; 4] {
+    let key = place.key as usize;
+    match interpolation {
         Interpolation::CubicSpline => {
-            let between = spline(&value, place);
-            let key = value(3 * place.key + 1);
-            normalized(if dot(between, between) < VANISHING { key } else { between })
+            let between = spline(values, place);
+            normalized(if dot(between, between) < VANISHING { values[3 * key + 1] } else { between })
         }
-        Interpolation::Linear if place.fraction > 0.0 => {
-            let (before, after) = (value(place.key), value(place.key + 1));
-            match path {
-                RotationPath::Slerp => slerp(before, after, place.fraction),
-                RotationPath::Nlerp => normalized(lerp(before, after, place.fraction)),
-            }
-        }
-        _ => value(place.key),
+        Interpolation::Linear if place.fraction > 0.0 => match path {
+            RotationPath::Slerp => slerp(values[key], values[key + 1], place.fraction),
+            RotationPath::Nlerp => normalized(lerp(values[key], values[key + 1], place.fraction)),
+        },
+        _ => values[key],
     }
 }
 
 /// glTF's spline: values and tangents, three a key.
-fn spline(value: &impl Fn(usize) -> [f32; 4], place: Place) -> [f32; 4] {
-    let (at, t) = (3 * place.key, place.fraction);
-    let start = value(at + 1);
+fn spline(values: &[[f32; 4]], place: Place) -> [f32; 4] {
+    let (at, t) = (3 * place.key as usize, place.fraction);
+    let start = values[at + 1];
     if t <= 0.0 {
         return start;
     }
-    let (leaving, arriving, end) = (value(at + 2), value(at + 3), value(at + 4));
+    let (leaving, arriving, end) = (values[at + 2], values[at + 3], values[at + 4]);
     let (square, cube) = (t * t, t * t * t);
     let of_end = 3.0 * square - 2.0 * cube;
     let of_start = 1.0 - of_end;
-    let of_leaving = place.seconds * (cube - 2.0 * square + t);
-    let of_arriving = place.seconds * (cube - square);
+    let of_leaving = cube - 2.0 * square + t;
+    let of_arriving = cube - square;
     std::array::from_fn(|i| {
         of_start * start[i] + of_leaving * leaving[i] + of_end * end[i] + of_arriving * arriving[i]
     })
@@ -160,4 +110,42 @@ fn slerp_weight(t: f32, less_one: f32) -> f32 {
     let square = t * t;
     let terms = SLERP_U.iter().zip(SLERP_V).rev();
     t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * square - v) * less_one * sum)
+}
+
+/// Every bone's transform of every instance, at their places: what the kernel computes of a whole crowd.
+///
+/// # Panics
+/// With fewer places than the set needs.
+pub fn sample_set(
+    set: &ClipSet,
+    instances: &[Instance],
+    places: &[Place],
+    path: RotationPath,
+) -> Vec<Transform> {
+    let mut transforms = Vec::with_capacity(instances.len() * set.bones());
+    for (instance, places) in instances.iter().zip(places.chunks(set.timelines_a_clip())) {
+        let tracks = &set.tracks()[3 * set.bones() * instance.clip as usize..][..3 * set.bones()];
+        transforms.extend(tracks.chunks_exact(3).map(|tracks| {
+            let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
+                let (values, interpolation, place) = find(set, track, places);
+                let [x, y, z, _] = vector_at(values, interpolation, place);
+                [x, y, z]
+            });
+            let (values, interpolation, place) = find(set, tracks[1], places);
+            Transform { translation, rotation: rotation_at(values, interpolation, place, path), scale }
+        }));
+    }
+    transforms
+}
+
+/// A track's values from its first on, how they are interpolated, and where.
+fn find<'a>(set: &'a ClipSet, track: SetTrack, places: &[Place]) -> (&'a [[f32; 4]], Interpolation, Place) {
+    let first = track.first_value as usize;
+    let code = track.timeline_and_code >> 30;
+    match (track.timeline_and_code & CONSTANT, code) {
+        // The middle of three.
+        (CONSTANT, 2) => (&set.values()[first - 1..], Interpolation::CubicSpline, Place::default()),
+        (CONSTANT, _) => (&set.values()[first..], Interpolation::Step, Place::default()),
+        (timeline, _) => (&set.values()[first..], Interpolation::of_code(code), places[timeline as usize]),
+    }
 }

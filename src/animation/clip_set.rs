@@ -1,0 +1,201 @@
+//! Clips of one skeleton in one piece, as crowds play them: the clips' arrays end to end, and the timelines that
+//! tracks share.
+
+use std::collections::HashMap;
+
+use super::clip::Clip;
+use crate::InputError;
+
+/// A track's timeline when its value never changes.
+pub const CONSTANT: u32 = (1 << 30) - 1;
+
+/// Key times that tracks share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Timeline {
+    /// The first time.
+    pub first_time: u32,
+    /// How many, at least 2.
+    pub keys: u32,
+}
+
+/// A clip's place in a set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct ClipEntry {
+    /// Its first timeline.
+    pub first_timeline: u32,
+    /// How many it has.
+    pub timelines: u32,
+    /// Seconds.
+    pub duration: f32,
+}
+
+/// A track of a set: 8 bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct SetTrack {
+    /// In the lower 30 bits the timeline, counted from the clip's first, or [`CONSTANT`]; above them 0 step, 1 linear,
+    /// 2 cubic spline.
+    pub timeline_and_code: u32,
+    /// Its first value; of a constant spline, the middle of its three.
+    pub first_value: u32,
+}
+
+/// Clips of one skeleton.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClipSet {
+    bones: usize,
+    clips: Vec<ClipEntry>,
+    tracks: Vec<SetTrack>,
+    timelines: Vec<Timeline>,
+    times: Vec<f32>,
+    values: Vec<[f32; 4]>,
+}
+
+impl ClipSet {
+    /// A set of clips.
+    ///
+    /// # Errors
+    /// [`InputError`] for no clips, clips of different numbers of bones, and more values or times than `u32` counts
+    /// bytes of.
+    pub fn new(clips: &[&Clip]) -> Result<Self, InputError> {
+        let Some(first) = clips.first() else {
+            return Err(InputError::new("clips.len", 0, "must be at least 1"));
+        };
+        let (clips_len, tracks_len) = (clips.len(), clips.len() * first.tracks().len());
+        let mut set = Self {
+            bones: first.bones(),
+            clips: Vec::with_capacity(clips_len),
+            tracks: Vec::with_capacity(tracks_len),
+            timelines: Vec::new(),
+            times: Vec::new(),
+            values: Vec::new(),
+        };
+        for (index, clip) in clips.iter().enumerate() {
+            if clip.bones() != set.bones {
+                let bound = format!("must be {}, as the first clip's", set.bones);
+                return Err(InputError::new(format!("clips[{index}].bones"), clip.bones(), bound));
+            }
+            set.add(clip);
+        }
+        for (field, len) in [("clips.values.len", set.values.len()), ("clips.times.len", set.times.len())] {
+            if len >= 1 << 28 {
+                return Err(InputError::new(field, len, "must be below 2^28"));
+            }
+        }
+        Ok(set)
+    }
+
+    fn add(&mut self, clip: &Clip) {
+        let (first_timeline, first_time) = (self.timelines.len(), self.times.len());
+        let mut known = HashMap::new();
+        for track in clip.tracks() {
+            let first_value = self.values.len() as u32 + track.first_value;
+            let is_constant = track.keys < 2;
+            let timeline = if is_constant {
+                CONSTANT
+            } else {
+                *known.entry((track.first_time, track.keys)).or_insert_with(|| {
+                    let timeline =
+                        Timeline { first_time: first_time as u32 + track.first_time, keys: track.keys };
+                    self.timelines.push(timeline);
+                    (self.timelines.len() - first_timeline - 1) as u32
+                })
+            };
+            let middle = u32::from(is_constant && track.code == 2);
+            self.tracks.push(SetTrack {
+                timeline_and_code: track.code << 30 | timeline,
+                first_value: first_value + middle,
+            });
+        }
+        self.times.extend(clip.times());
+        self.values.extend(clip.values());
+        self.clips.push(ClipEntry {
+            first_timeline: first_timeline as u32,
+            timelines: (self.timelines.len() - first_timeline) as u32,
+            duration: clip.duration(),
+        });
+    }
+
+    /// Bones of every clip.
+    pub fn bones(&self) -> usize {
+        self.bones
+    }
+
+    /// The clips.
+    pub fn clips(&self) -> &[ClipEntry] {
+        &self.clips
+    }
+
+    /// Three a bone and clip: translation, rotation, scale.
+    pub fn tracks(&self) -> &[SetTrack] {
+        &self.tracks
+    }
+
+    /// Clip by clip.
+    pub fn timelines(&self) -> &[Timeline] {
+        &self.timelines
+    }
+
+    /// Room that an instance needs for its places: the most timelines of a clip, at least 1.
+    pub fn timelines_a_clip(&self) -> usize {
+        self.clips.iter().map(|clip| clip.timelines as usize).max().unwrap_or(0).max(1)
+    }
+
+    /// Key times of all clips, in seconds.
+    pub fn times(&self) -> &[f32] {
+        &self.times
+    }
+
+    /// Values of all clips.
+    pub fn values(&self) -> &[[f32; 4]] {
+        &self.values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::creature;
+
+    #[test]
+    fn tracks_find_their_own_times_and_values() {
+        let model = creature().expect("valid");
+        let clips: Vec<&Clip> = model.clips.iter().collect();
+        let set = ClipSet::new(&clips).expect("one skeleton");
+        assert_eq!((set.bones(), set.clips().len(), set.tracks().len()), (153, 3, 3 * 153 * 3));
+        for (entry, (clip, tracks)) in set.clips().iter().zip(clips.iter().zip(set.tracks().chunks(3 * 153)))
+        {
+            assert_eq!(entry.duration, clip.duration());
+            // Many tracks share a timeline.
+            assert!((2..20).contains(&entry.timelines), "{}", entry.timelines);
+            for (track, own) in tracks.iter().zip(clip.tracks()) {
+                let code = track.timeline_and_code >> 30;
+                assert_eq!(code, own.code);
+                let middle = if own.keys == 1 && code == 2 { 1 } else { 0 };
+                let own_value = clip.values()[own.first_value as usize + middle];
+                assert_eq!(set.values()[track.first_value as usize], own_value);
+                let timeline = track.timeline_and_code & CONSTANT;
+                assert_eq!(timeline == CONSTANT, own.keys < 2);
+                if timeline != CONSTANT {
+                    let found = set.timelines()[(entry.first_timeline + timeline) as usize];
+                    let times = &set.times()[found.first_time as usize..][..found.keys as usize];
+                    assert_eq!(times, clip.times_of(own));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn clips_of_other_skeletons_are_refused() {
+        assert_eq!(ClipSet::new(&[]).expect_err("refused").field, "clips.len");
+        let model = creature().expect("valid");
+        let one = crate::animation::Skeleton::of_joints(model.skeleton.bones()[..1].to_vec()).expect("valid");
+        let other = Clip::new("other", &one, &[Default::default()], 1.0).expect("valid");
+        assert_eq!(ClipSet::new(&[&model.clips[0], &other]).expect_err("refused").field, "clips[1].bones");
+    }
+}

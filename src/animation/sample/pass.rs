@@ -1,0 +1,150 @@
+//! `kernels/animation/sample.wgsl`.
+
+use encase::ShaderType;
+
+use super::RotationPath;
+use crate::Error;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+
+/// `SampleParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct SampleParams {
+    pub bones: u32,
+    pub timelines: u32,
+    pub pairs: u32,
+}
+
+/// The pairs of instance and bone that are to be sampled, in a buffer that kernels may fill.
+#[derive(Debug, Clone)]
+pub struct ActivePairs {
+    /// `instance · bones + bone`; others are skipped.
+    pub pairs: Buffer<u32>,
+    /// Workgroups of 64 along x, y and z, and how many pairs: arguments of an indirect dispatch.
+    pub dispatched: Buffer<u32>,
+}
+
+impl ActivePairs {
+    /// Room for all pairs of a crowd; none is active.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
+        let dispatched = Buffer::from_slice(gpu, "dispatched", &[0, 1, 1, 0])?;
+        Ok(Self { pairs: Buffer::new(gpu, "pairs", crowd.pairs())?, dispatched })
+    }
+
+    /// Makes these pairs active, from the host.
+    ///
+    /// # Errors
+    /// [`GpuError`], for more pairs than the crowd has too.
+    pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
+        self.pairs.write(gpu, pairs)?;
+        let groups = pairs.len().div_ceil(64) as u32;
+        let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
+        self.dispatched.write(gpu, &[x, groups.div_ceil(x), 1, pairs.len() as u32])
+    }
+}
+
+/// Samples bones.
+#[derive(Debug, Clone)]
+pub struct SamplePass {
+    all: Kernel,
+    compacted: Kernel,
+}
+
+impl SamplePass {
+    /// Compiles the pipelines.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
+        let nlerp = f64::from(path == RotationPath::Nlerp);
+        let kernel = |compacted| {
+            let overrides = [("COMPACTED", compacted), ("NLERP", nlerp)];
+            Kernel::new(gpu, &shaders::ANIMATION_SAMPLE, &overrides)
+        };
+        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)? })
+    }
+
+    /// Prepares sampling of every bone of every instance, at the crowd's places.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
+        let nothing = ActivePairs {
+            pairs: Buffer::new(gpu, "no pairs", 0)?,
+            dispatched: Buffer::from_slice(gpu, "no pairs", &[0; 4])?,
+        };
+        let step = Step {
+            groups: vec![bind(&self.all, gpu, clips, crowd, &nothing)?],
+            workgroups: self.all.spread(gpu, crowd.pairs() as u32),
+            kernel: self.all.clone(),
+        };
+        Ok(Job::new(gpu, "animation/sample", vec![step])?)
+    }
+
+    /// Prepares sampling of the active pairs alone; the other local transforms stay.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn prepare_active(
+        &self,
+        gpu: &Gpu,
+        clips: &ClipBuffers,
+        crowd: &Crowd,
+        active: &ActivePairs,
+    ) -> Result<SampleActiveJob, Error> {
+        let group = bind(&self.compacted, gpu, clips, crowd, active)?;
+        Ok(SampleActiveJob { kernel: self.compacted.clone(), group, dispatched: active.dispatched.clone() })
+    }
+}
+
+fn bind(
+    kernel: &Kernel,
+    gpu: &Gpu,
+    clips: &ClipBuffers,
+    crowd: &Crowd,
+    active: &ActivePairs,
+) -> Result<Group, GpuError> {
+    let params = SampleParams {
+        bones: crowd.bones as u32,
+        timelines: clips.timelines_a_clip as u32,
+        pairs: crowd.pairs() as u32,
+    };
+    let uniform = Uniform::new(gpu, "sample", &params)?;
+    let resources = [
+        uniform.raw().as_entire_binding(),
+        crowd.instances.raw().as_entire_binding(),
+        clips.tracks.raw().as_entire_binding(),
+        clips.values.raw().as_entire_binding(),
+        crowd.places.raw().as_entire_binding(),
+        active.pairs.raw().as_entire_binding(),
+        active.dispatched.raw().as_entire_binding(),
+        crowd.locals.raw().as_entire_binding(),
+    ];
+    kernel.bind(gpu, 0, &resources)
+}
+
+/// Prepared sampling of pairs that a kernel or the host chooses.
+#[derive(Debug, Clone)]
+pub struct SampleActiveJob {
+    kernel: Kernel,
+    group: Group,
+    dispatched: Buffer<u32>,
+}
+
+impl SampleActiveJob {
+    /// Records the sampling.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.kernel.dispatch_indirect(encoder, "animation/sample", &self.group, self.dispatched.raw());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(sample_params_layout: SampleParams = ANIMATION_SAMPLE "SampleParams");
+}

@@ -1,0 +1,65 @@
+//! Where instances stand in their clips: twin of `kernels/animation/place.wgsl`.
+
+use crate::animation::clip_set::ClipSet;
+use crate::animation::place::{Instance, Place};
+use crate::animation::sample::Wrap;
+
+/// The time inside a clip, in the order of the shader. [`Wrap::inside`] is more exact where times are large.
+pub fn wrapped(wrap: Wrap, duration: f32, time: f32) -> f32 {
+    if duration <= 0.0 {
+        return 0.0;
+    }
+    if wrap == Wrap::Clamp {
+        return time.max(0.0).min(duration);
+    }
+    let mut inside = time - (time / duration).floor() * duration;
+    if inside < 0.0 {
+        inside += duration;
+    }
+    if inside >= duration {
+        inside -= duration;
+    }
+    inside
+}
+
+/// Where a time lies among key times. The last of equal times counts.
+pub fn place(times: &[f32], time: f32) -> Place {
+    let last = times.len().saturating_sub(1);
+    if last == 0 || time < times[0] {
+        return Place { key: 0, fraction: 0.0 };
+    }
+    if time >= times[last] {
+        return Place { key: last as u32, fraction: 0.0 };
+    }
+    // Most clips are sampled evenly: a guess hits.
+    let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
+    let mut key = (evenly as usize).min(last - 1);
+    if times[key] > time || times[key + 1] <= time {
+        let mut end = last;
+        key = 0;
+        while end - key > 1 {
+            let middle = (key + end) / 2;
+            if times[middle] <= time {
+                key = middle;
+            } else {
+                end = middle;
+            }
+        }
+    }
+    Place { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
+}
+
+/// The place of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] an instance. Where the clip
+/// has fewer, the rest is left as it is by the kernel, and at the start here.
+pub fn places(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<Place> {
+    let mut places = vec![Place::default(); instances.len() * set.timelines_a_clip()];
+    for (instance, places) in instances.iter().zip(places.chunks_mut(set.timelines_a_clip())) {
+        let clip = &set.clips()[instance.clip as usize];
+        let time = wrapped(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
+        let timelines = &set.timelines()[clip.first_timeline as usize..][..clip.timelines as usize];
+        for (timeline, found) in timelines.iter().zip(places) {
+            *found = place(&set.times()[timeline.first_time as usize..][..timeline.keys as usize], time);
+        }
+    }
+    places
+}
