@@ -39,7 +39,8 @@ impl HeightBatch {
         }
         let texels: usize = size.iter().map(|edge| *edge as usize).product();
         // Kernels load vectors of four.
-        let heights = Buffer::new(gpu, "height maps", (texels * maps.len()).next_multiple_of(4))?;
+        let heights = Buffer::new(gpu, "height maps", (texels * maps.len()).next_multiple_of(4))
+            .map_err(with_remedy)?;
         let all: Vec<f32> = maps.iter().flat_map(HeightMap::heights).copied().collect();
         heights.write(gpu, &all)?;
         Ok(Self { heights, size, count: maps.len() as u32 })
@@ -84,6 +85,17 @@ impl SurfaceTextures {
             return Err(InputError::new("march.address", march.address.name(), bound));
         }
         Ok(())
+    }
+}
+
+/// What helps where a map is larger than a binding.
+pub(super) fn with_remedy(error: GpuError) -> GpuError {
+    match error {
+        GpuError::Limit { pass, limit, needed, available, .. } => {
+            let remedy = "use smaller or fewer height maps, or compute on the CPU (--backend cpu)";
+            GpuError::Limit { pass, limit, needed, available, remedy }
+        }
+        other => other,
     }
 }
 

@@ -6,7 +6,7 @@ use glam::UVec2;
 use super::OPENING;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::surface::height_pyramid::Pyramids;
-use crate::surface::texture::HeightBatch;
+use crate::surface::texture::{HeightBatch, with_remedy};
 use crate::{Error, InputError};
 
 /// `ConeParams` of the kernel.
@@ -57,7 +57,8 @@ impl ConeMapPass {
         let cells = pyramids.layout.cells;
         // A texture's rows start at multiples of 256 bytes.
         let pitch = cells[0].next_multiple_of(32);
-        let cones = Buffer::new(gpu, "cones", (pitch * cells[1]) as usize * pyramids.count as usize)?;
+        let cones = Buffer::new(gpu, "cones", (pitch * cells[1]) as usize * pyramids.count as usize)
+            .map_err(with_remedy)?;
         Ok(Cones { cones, cells, pitch, count: pyramids.count })
     }
 

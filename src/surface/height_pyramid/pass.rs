@@ -6,7 +6,7 @@ use glam::UVec2;
 use super::PyramidLayout;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::surface::map::Address;
-use crate::surface::texture::HeightBatch;
+use crate::surface::texture::{HeightBatch, with_remedy};
 use crate::{Error, InputError};
 
 /// `PyramidParams` of the kernel.
@@ -41,7 +41,7 @@ impl Pyramids {
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, maps: &HeightBatch, address: Address) -> Result<Self, GpuError> {
         let layout = PyramidLayout::new(maps.size, address);
-        let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize)?;
+        let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize).map_err(with_remedy)?;
         Ok(Self { nodes, layout, address, count: maps.count })
     }
 
