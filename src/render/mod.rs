@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod color;
 pub mod picture;
+mod pipeline;
 pub mod relief;
 pub mod square;
 pub mod target;

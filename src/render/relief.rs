@@ -3,9 +3,9 @@
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
-use crate::gpu::{Gpu, GpuError, Group, Uniform, bind, layouts, module, pipeline_layout, shaders};
+use crate::gpu::{Gpu, GpuError, Group, Uniform, bind, shaders};
 use crate::render::color::ColorTexture;
-use crate::render::target::DEPTH_FORMAT;
+use crate::render::pipeline::Draws;
 use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::relief::{March, Method, SurfaceMarch};
@@ -78,13 +78,12 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2];
 
 impl ReliefRenderer {
-    /// Compiles the pipeline for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
+    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a
+    /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, options: ReliefOptions) -> Result<Self, GpuError> {
-        let shader = &shaders::RENDER_RELIEF;
-        let layouts = layouts(gpu, shader)?;
         let accelerated = matches!(options.method, Method::Cone | Method::Quadtree);
         let flag = |on: bool| f64::from(u8::from(on));
         let constants = [
@@ -95,41 +94,19 @@ impl ReliefRenderer {
             ("SILHOUETTE", flag(options.silhouette)),
             ("CHOOSE_MIP", flag(options.mip && !accelerated)),
         ];
-        let compilation = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        let pipeline = gpu.scoped(|| {
-            let module = module(gpu, shader);
-            gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(shader.name),
-                layout: Some(&pipeline_layout(gpu, shader, &layouts)),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex"),
-                    compilation_options: compilation(),
-                    buffers: &[Some(wgpu::VertexBufferLayout {
-                        array_stride: size_of::<SurfaceVertex>() as u64,
-                        step_mode: wgpu::VertexStepMode::Vertex,
-                        attributes: &ATTRIBUTES,
-                    })],
-                },
-                primitive: Default::default(),
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::Less),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(if options.depth { "fragment_depth" } else { "fragment" }),
-                    compilation_options: compilation(),
-                    targets: &[Some(color.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        })?;
+        let draws = Draws {
+            shader: &shaders::RENDER_RELIEF,
+            fragment: if options.depth { "fragment_depth" } else { "fragment" },
+            constants: &constants,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            vertices: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<SurfaceVertex>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &ATTRIBUTES,
+            })],
+        };
+        let key = format!("{} {color:?} {options:?}", shaders::RENDER_RELIEF.name);
+        let (pipeline, layouts) = gpu.render_pipelines.get(key, || draws.compile(gpu, color))?;
         Ok(Self { pipeline, layouts, options })
     }
 

@@ -7,10 +7,8 @@ use glam::Mat4;
 
 pub use scene::{FieldsId, TerrainScene};
 
-use crate::gpu::{
-    Buffer, Gpu, GpuError, RenderPipeline, Uniform, bind, layouts, module, pipeline_layout, shaders, storage,
-};
-use crate::render::target::DEPTH_FORMAT;
+use crate::gpu::{Buffer, Gpu, GpuError, Uniform, bind, shaders, storage};
+use crate::render::pipeline::Draws;
 use crate::terrain::blend::{Light, Shading, Zone, ZoneRange};
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
@@ -42,55 +40,22 @@ pub struct TerrainRenderer {
 }
 
 impl TerrainRenderer {
-    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
+    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a
+    /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<Self, GpuError> {
         let key = format!("{} {color:?} {style:?}", shaders::RENDER_TERRAIN.name);
-        let (pipeline, layouts) = gpu.render_pipelines.get(key, || Self::compile(gpu, color, style))?;
+        let draws = Draws {
+            shader: &shaders::RENDER_TERRAIN,
+            fragment: "fragment",
+            constants: &[("WIREFRAME", f64::from(u8::from(style == Style::Wireframe)))],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            vertices: &[],
+        };
+        let (pipeline, layouts) = gpu.render_pipelines.get(key, || draws.compile(gpu, color))?;
         Ok(Self { pipeline, layouts })
-    }
-
-    fn compile(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<RenderPipeline, GpuError> {
-        let shader = &shaders::RENDER_TERRAIN;
-        let layouts = layouts(gpu, shader)?;
-        let constants = [("WIREFRAME", f64::from(u8::from(style == Style::Wireframe)))];
-        let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        let pipeline = gpu.scoped(|| {
-            let module = module(gpu, shader);
-            gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(shader.name),
-                layout: Some(&pipeline_layout(gpu, shader, &layouts)),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex"),
-                    compilation_options: options(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology: wgpu::PrimitiveTopology::TriangleStrip,
-                    ..Default::default()
-                },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::Less),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fragment"),
-                    compilation_options: options(),
-                    targets: &[Some(color.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        })?;
-        Ok((pipeline, layouts))
     }
 
     /// Binds materials and a view of them.

@@ -1,10 +1,9 @@
 // Cone stepping over `cone_map`: each cell knows its highest corner, and a cone on it that a ray may cross with at
 // most one crossing of the surface, the first. So no step loses the surface, and binary steps find it between
 // the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear filtering).
-import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
-import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
+import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
-import package::wgsl::surface::linear::SURFACE_MOST_BINARY;
+import package::wgsl::surface::linear::surface_narrowed;
 
 fn surface_cone(
     heights: texture_2d<f32>, cones: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
@@ -60,7 +59,10 @@ fn surface_cone(
             return surface_point(ray, found, samples, SURFACE_HIT);
         }
         if found >= 0.0 {
-            return surface_narrowed(heights, ray, march, above, parameter, samples);
+            // Cones belong to level 0 of the heights.
+            var level = march;
+            level.mip = 0u;
+            return surface_narrowed(heights, ray, level, above, parameter, samples);
         }
         above = parameter;
         if leave >= 1.0 {
@@ -73,24 +75,4 @@ fn surface_cone(
     // The bottom of the volume is under every surface.
     let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
     return surface_point(ray, parameter, samples, outcome);
-}
-
-// The one crossing between a point above the surface and one at or under it.
-fn surface_narrowed(
-    heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, above: f32, under: f32, samples: u32,
-) -> SurfaceHit {
-    var low = above;
-    var high = under;
-    var loads = samples;
-    for (var step = 0u; step < min(march.binary_steps, SURFACE_MOST_BINARY); step++) {
-        let middle = 0.5 * (low + high);
-        let height = surface_height(heights, surface_at(ray, middle), 0u, march.address);
-        loads += SURFACE_BILINEAR;
-        if 1.0 - middle <= height {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
 }

@@ -47,18 +47,28 @@ fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
     }
-    var bracket = surface_search(heights, ray, march);
+    let bracket = surface_search(heights, ray, march);
+    return surface_narrowed(heights, ray, march, bracket.above, bracket.under, bracket.samples);
+}
+
+// Binary steps between a point above the surface and one at or under it.
+fn surface_narrowed(
+    heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, above: f32, under: f32, samples: u32,
+) -> SurfaceHit {
+    var low = above;
+    var high = under;
+    var loads = samples;
     for (var step = 0u; step < min(march.binary_steps, SURFACE_MOST_BINARY); step++) {
-        let middle = 0.5 * (bracket.above + bracket.under);
+        let middle = 0.5 * (low + high);
         let height = surface_height(heights, surface_at(ray, middle), march.mip, march.address);
-        bracket.samples += SURFACE_BILINEAR;
+        loads += SURFACE_BILINEAR;
         if 1.0 - middle <= height {
-            bracket.under = middle;
+            high = middle;
         } else {
-            bracket.above = middle;
+            low = middle;
         }
     }
-    return surface_point(ray, 0.5 * (bracket.above + bracket.under), bracket.samples, SURFACE_HIT);
+    return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
 }
 
 fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {

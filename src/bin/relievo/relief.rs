@@ -311,6 +311,12 @@ fn steps(text: &str) -> Result<[u32; 2], InputError> {
 
 impl Plan {
     fn draw(&self, context: &Context) -> Result<Drawn, Error> {
+        let rays = self.view.rays(self.material.scale, self.material.plane);
+        let seen: Vec<Ray> = rays.iter().flatten().copied().collect();
+        if seen.is_empty() {
+            let bound = "must be smaller, or --size larger: no pixel sees the square";
+            return Err(InputError::new("angle", self.view.angle, bound).into());
+        }
         let progress = bar(4, "building maps");
         let step = |what: &str, start: Instant| {
             progress.inc(1);
@@ -321,12 +327,6 @@ impl Plan {
         let tracer = Tracer::new(&self.map, self.method, self.march.address, self.backend, context)?;
         let maps = step("tracing rays", start);
         let start = Instant::now();
-        let rays = self.view.rays(self.material.scale, self.material.plane);
-        let seen: Vec<Ray> = rays.iter().flatten().copied().collect();
-        if seen.is_empty() {
-            let bound = "must be smaller, or --size larger: no pixel sees the square";
-            return Err(InputError::new("angle", self.view.angle, bound).into());
-        }
         let found = tracer.trace(&seen, &self.march)?;
         let traced = step("drawing", start);
         let start = Instant::now();
