@@ -5,9 +5,11 @@
 mod harness;
 
 use relievo::gpu::Buffer;
+use relievo::surface::Hit;
 use relievo::terrain::morph::{Morph, MorphPass};
-use relievo::verify::compare::{absolute, exact, levels, ulps};
+use relievo::verify::compare::{absolute, exact, levels, relative, ulps};
 use relievo::verify::poison::{POISON, Poisoned};
+use relievo::verify::surface::relief::hits;
 use relievo::verify::{self, CaseResult};
 
 #[test]
@@ -46,6 +48,37 @@ fn ulps_counts_neighbours() {
     assert!(ulps(&[-0.0], &[0.0], 0).holds);
     assert!(ulps(&[f32::from_bits(1)], &[-f32::from_bits(1)], 2).holds);
     assert!(!ulps(&[f32::NAN], &[1.0], u32::MAX).holds);
+}
+
+#[test]
+fn relative_sees_errors_beyond_its_share() {
+    assert!(relative(&[1.25, 125.0], &[1.0, 100.0], 0.25).holds);
+    assert!(!relative(&[1.26], &[1.0], 0.25).holds);
+    assert!(!relative(&[f32::NAN], &[1.0], 1e9).holds);
+}
+
+#[test]
+fn hits_sees_rays_that_go_astray() {
+    let hit = Hit { uv: [0.5, 0.25], height: 0.5, parameter: 0.5, samples: 9, code: 1 };
+    let expected = vec![hit; 400];
+    let with = |astray: usize, wrong: Hit| {
+        let mut actual = expected.clone();
+        actual[..astray].fill(wrong);
+        hits(&actual, &expected, [64, 64]).holds
+    };
+    let faults = [
+        Hit { uv: [0.51, 0.25], ..hit },
+        Hit { uv: [0.5, f32::NAN], ..hit },
+        Hit { height: 0.52, ..hit },
+        Hit { parameter: 0.52, ..hit },
+        Hit { samples: 10, ..hit },
+        Hit { code: 2, ..hit },
+    ];
+    for fault in faults {
+        // Two of 400 may touch and go, three may not.
+        assert!(with(2, fault) && !with(3, fault), "{fault:?}");
+    }
+    assert!(!hits(&expected[1..], &expected, [64, 64]).holds);
 }
 
 #[test]
