@@ -1,60 +1,146 @@
-// Concatenation into the model's space. A thread walks one chain of bones of one instance, the parent's matrix in
-// registers; a dispatch serves the chains of one level, whose parents are done. With WHOLE, a thread walks all chains
-// of its instance, one after another.
+// Concatenation into the model's space. A thread walks one chain of one instance, the parent's matrix in registers; a
+// dispatch serves the chains of one level, whose parents are done. With WHOLE, a thread walks all chains of its
+// instance. With COMPACTED, only instances of a list are walked, and of them only what is dirty: with a bone always all
+// bones below it.
 
 override WHOLE: bool = false;
+override COMPACTED: bool = false;
 
 struct ConcatParams {
     instances: u32,
     bones: u32,
+    // Words of dirty bits an instance.
+    words: u32,
     first_chain: u32,
     chains: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: ConcatParams;
-// First bone in `chain_bones`, how many, parent.
-@group(0) @binding(1) var<storage, read> chains: array<vec4<u32>>;
-@group(0) @binding(2) var<storage, read> chain_bones: array<u32>;
+// Bone, parent, slots of the subtree.
+@group(0) @binding(1) var<storage, read> slots: array<vec4<u32>>;
+// First slot, number of slots.
+@group(0) @binding(2) var<storage, read> chains: array<vec2<u32>>;
+// A bit for each slot of each instance.
+@group(0) @binding(3) var<storage, read> dirty: array<u32>;
+@group(0) @binding(4) var<storage, read> dirty_instances: array<u32>;
+// Of the first, w: how many instances are dirty.
+@group(0) @binding(5) var<storage, read> dispatches: array<vec4<u32>>;
 // Translation and scale x; rotation; scale y and z.
-@group(0) @binding(3) var<storage, read> locals: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> locals: array<vec4<f32>>;
 // Three rows a bone.
-@group(0) @binding(4) var<storage, read_write> models: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> models: array<vec4<f32>>;
 
 const NO_PARENT = 0xffffffffu;
+const CONTINUES = 0xfffffffeu;
+
+struct Rows {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+}
 
 fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
     let linear = row.x * x + row.y * y + row.z * z;
     return vec4<f32>(linear.xyz, linear.w + row.w);
 }
 
-fn walk(chain: vec4<u32>, base: u32) {
-    var x = vec4<f32>(1.0, 0.0, 0.0, 0.0);
-    var y = vec4<f32>(0.0, 1.0, 0.0, 0.0);
-    var z = vec4<f32>(0.0, 0.0, 1.0, 0.0);
-    if chain.z != NO_PARENT {
-        let parent = 3u * (base + chain.z);
-        x = models[parent];
-        y = models[parent + 1u];
-        z = models[parent + 2u];
+// The bone's model-space rows, from those of its parent; they are stored too.
+fn joined(parent: Rows, bone: u32) -> Rows {
+    let first = locals[bone];
+    let q = locals[bone + 1u];
+    let scale = vec3<f32>(first.w, locals[bone + 2u].xy);
+    let d = q.xyz + q.xyz;
+    let x = vec4<f32>(
+        vec3<f32>(1.0 - (q.y * d.y + q.z * d.z), q.x * d.y - q.w * d.z, q.x * d.z + q.w * d.y) * scale, first.x);
+    let y = vec4<f32>(
+        vec3<f32>(q.x * d.y + q.w * d.z, 1.0 - (q.x * d.x + q.z * d.z), q.y * d.z - q.w * d.x) * scale, first.y);
+    let z = vec4<f32>(
+        vec3<f32>(q.x * d.z - q.w * d.y, q.y * d.z + q.w * d.x, 1.0 - (q.x * d.x + q.y * d.y)) * scale, first.z);
+    let rows = Rows(
+        product_row(parent.x, x, y, z), product_row(parent.y, x, y, z), product_row(parent.z, x, y, z));
+    models[bone] = rows.x;
+    models[bone + 1u] = rows.y;
+    models[bone + 2u] = rows.z;
+    return rows;
+}
+
+// Of a bone, or of what is above the roots.
+fn stored_rows(base: u32, bone: u32) -> Rows {
+    if bone == NO_PARENT {
+        return Rows(vec4<f32>(1.0, 0.0, 0.0, 0.0), vec4<f32>(0.0, 1.0, 0.0, 0.0), vec4<f32>(0.0, 0.0, 1.0, 0.0));
     }
-    for (var at = chain.x; at < chain.x + chain.y; at++) {
-        let bone = 3u * (base + chain_bones[at]);
-        let first = locals[bone];
-        let q = locals[bone + 1u];
-        let scale = vec3<f32>(first.w, locals[bone + 2u].xy);
-        let d = q.xyz + q.xyz;
-        let local_x = vec4<f32>(
-            vec3<f32>(1.0 - (q.y * d.y + q.z * d.z), q.x * d.y - q.w * d.z, q.x * d.z + q.w * d.y) * scale, first.x);
-        let local_y = vec4<f32>(
-            vec3<f32>(q.x * d.y + q.w * d.z, 1.0 - (q.x * d.x + q.z * d.z), q.y * d.z - q.w * d.x) * scale, first.y);
-        let local_z = vec4<f32>(
-            vec3<f32>(q.x * d.z - q.w * d.y, q.y * d.z + q.w * d.x, 1.0 - (q.x * d.x + q.y * d.y)) * scale, first.z);
-        x = product_row(x, local_x, local_y, local_z);
-        y = product_row(y, local_x, local_y, local_z);
-        z = product_row(z, local_x, local_y, local_z);
-        models[bone] = x;
-        models[bone + 1u] = y;
-        models[bone + 2u] = z;
+    let at = 3u * (base + bone);
+    return Rows(models[at], models[at + 1u], models[at + 2u]);
+}
+
+// The bone above a slot.
+fn bone_above(slot: u32) -> u32 {
+    let parent = slots[slot].y;
+    if parent == CONTINUES {
+        return slots[slot - 1u].x;
+    }
+    return parent;
+}
+
+// The first dirty slot of an instance from `start` on, or at least `end`.
+fn next_dirty(instance: u32, start: u32, end: u32) -> u32 {
+    if start >= end {
+        return end;
+    }
+    let first_word = instance * params.words;
+    var word = start / 32u;
+    var bits = dirty[first_word + word] & (0xffffffffu << (start % 32u));
+    while bits == 0u {
+        word++;
+        if 32u * word >= end {
+            return end;
+        }
+        bits = dirty[first_word + word];
+    }
+    return 32u * word + firstTrailingBit(bits);
+}
+
+fn walk_whole(instance: u32) {
+    let base = instance * params.bones;
+    var slot = 0u;
+    // Slots below it need nothing but the slot before, or stored rows.
+    var end = 0u;
+    var rows: Rows;
+    loop {
+        var parent = CONTINUES;
+        if slot == end {
+            if COMPACTED {
+                slot = next_dirty(instance, slot, params.bones);
+            }
+            if slot >= params.bones {
+                break;
+            }
+            end = slot + slots[slot].z;
+            parent = bone_above(slot);
+        } else {
+            parent = slots[slot].y;
+        }
+        if parent != CONTINUES {
+            rows = stored_rows(base, parent);
+        }
+        rows = joined(rows, 3u * (base + slots[slot].x));
+        slot++;
+    }
+}
+
+fn walk_chain(instance: u32, chain: vec2<u32>) {
+    let base = instance * params.bones;
+    let end = chain.x + chain.y;
+    var start = chain.x;
+    if COMPACTED {
+        start = next_dirty(instance, start, end);
+    }
+    if start >= end {
+        return;
+    }
+    var rows = stored_rows(base, bone_above(start));
+    for (var slot = start; slot < end; slot++) {
+        rows = joined(rows, 3u * (base + slots[slot].x));
     }
 }
 
@@ -65,16 +151,20 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + lane;
-    let instance = select(index / params.chains, index, WHOLE);
+    let place = select(index / params.chains, index, WHOLE);
+    var instance = place;
+    if COMPACTED {
+        if place >= dispatches[0].w {
+            return;
+        }
+        instance = dirty_instances[place];
+    }
     if instance >= params.instances {
         return;
     }
-    let base = instance * params.bones;
     if WHOLE {
-        for (var chain = 0u; chain < params.chains; chain++) {
-            walk(chains[params.first_chain + chain], base);
-        }
+        walk_whole(instance);
     } else {
-        walk(chains[params.first_chain + index - instance * params.chains], base);
+        walk_chain(instance, chains[params.first_chain + index - place * params.chains]);
     }
 }

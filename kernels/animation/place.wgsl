@@ -1,5 +1,7 @@
 // Where instances stand in their clips: for each instance and timeline of its clip the key before, and the way to the
 // next. A thread finds one of them.
+import package::wgsl::animation::clip::ClipEntry;
+import package::wgsl::animation::clock::clock;
 import package::wgsl::animation::instance::AnimationInstance;
 
 struct PlaceParams {
@@ -10,15 +12,6 @@ struct PlaceParams {
     elapsed: f32,
 }
 
-struct ClipEntry {
-    first_timeline: u32,
-    timelines: u32,
-    duration: f32,
-}
-
-// 0 is WRAP_LOOP.
-const WRAP_CLAMP = 1u;
-
 @group(0) @binding(0) var<uniform> params: PlaceParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
@@ -28,24 +21,6 @@ const WRAP_CLAMP = 1u;
 // Key and, as bits, fraction.
 @group(0) @binding(5) var<storage, read_write> places: array<vec2<u32>>;
 
-fn wrapped(wrap: u32, duration: f32, time: f32) -> f32 {
-    if duration <= 0.0 {
-        return 0.0;
-    }
-    if wrap == WRAP_CLAMP {
-        return min(max(time, 0.0), duration);
-    }
-    var inside = time - floor(time / duration) * duration;
-    if inside < 0.0 {
-        inside += duration;
-    }
-    if inside >= duration {
-        inside -= duration;
-    }
-    return inside;
-}
-
-// At least two times, the first at `first`.
 fn place(first: u32, keys: u32, time: f32) -> vec2<u32> {
     let last = keys - 1u;
     let start = times[first];
@@ -96,6 +71,6 @@ fn main(
         return;
     }
     let timeline = timelines[clip.first_timeline + timeline_index];
-    let time = wrapped(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
-    places[index] = place(timeline.x, timeline.y, time);
+    let now = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
+    places[index] = place(timeline.x, timeline.y, now.inside);
 }

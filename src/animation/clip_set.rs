@@ -1,5 +1,5 @@
 //! Clips of one skeleton in one piece, as crowds play them: the clips' arrays end to end, and the timelines that
-//! tracks share.
+//! tracks share. The first timeline of a clip has the times of all its tracks.
 
 use std::collections::HashMap;
 
@@ -10,13 +10,13 @@ use crate::InputError;
 pub const CONSTANT: u32 = (1 << 30) - 1;
 
 /// Key times that tracks share.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Timeline {
     /// The first time.
     pub first_time: u32,
-    /// How many, at least 2.
+    /// How many, at least 1.
     pub keys: u32,
 }
 
@@ -31,6 +31,8 @@ pub struct ClipEntry {
     pub timelines: u32,
     /// Seconds.
     pub duration: f32,
+    /// Its first row in tables that have one for each time of its first timeline, and one more.
+    pub first_row: u32,
 }
 
 /// A track of a set: 8 bytes.
@@ -92,16 +94,19 @@ impl ClipSet {
 
     fn add(&mut self, clip: &Clip) {
         let (first_timeline, first_time) = (self.timelines.len(), self.times.len());
-        let mut known = HashMap::new();
+        let first_row = self.clips.last().map_or(0, |last| last.first_row + self.rows(last));
+        self.times.extend(clip.times());
+        let common = self.add_common_timeline(clip, first_time);
+        let mut known = HashMap::from([(common, 0)]);
         for track in clip.tracks() {
             let first_value = self.values.len() as u32 + track.first_value;
             let is_constant = track.keys < 2;
             let timeline = if is_constant {
                 CONSTANT
             } else {
-                *known.entry((track.first_time, track.keys)).or_insert_with(|| {
-                    let timeline =
-                        Timeline { first_time: first_time as u32 + track.first_time, keys: track.keys };
+                let timeline =
+                    Timeline { first_time: first_time as u32 + track.first_time, keys: track.keys };
+                *known.entry(timeline).or_insert_with(|| {
                     self.timelines.push(timeline);
                     (self.timelines.len() - first_timeline - 1) as u32
                 })
@@ -112,13 +117,49 @@ impl ClipSet {
                 first_value: first_value + middle,
             });
         }
-        self.times.extend(clip.times());
         self.values.extend(clip.values());
         self.clips.push(ClipEntry {
             first_timeline: first_timeline as u32,
             timelines: (self.timelines.len() - first_timeline) as u32,
             duration: clip.duration(),
+            first_row,
         });
+    }
+
+    /// A clip's first timeline has the times of all its tracks, each once: tables of gates know of no other. In most
+    /// clips a track has the same.
+    fn add_common_timeline(&mut self, clip: &Clip, first_time: usize) -> Timeline {
+        let moving = || clip.tracks().iter().filter(|track| track.keys > 1);
+        let mut common: Vec<f32> = moving().flat_map(|track| clip.times_of(track)).copied().collect();
+        common.sort_by(f32::total_cmp);
+        common.dedup();
+        if common.is_empty() {
+            common.push(0.0);
+        }
+        let same = moving().find(|track| clip.times_of(track) == common);
+        let timeline = Timeline {
+            first_time: match same {
+                Some(track) => first_time as u32 + track.first_time,
+                None => self.times.len() as u32,
+            },
+            keys: common.len() as u32,
+        };
+        if same.is_none() {
+            self.times.extend(common);
+        }
+        self.timelines.push(timeline);
+        timeline
+    }
+
+    /// The times at which a clip's tables of gates have rows.
+    pub fn common_times(&self, clip: &ClipEntry) -> &[f32] {
+        let timeline = self.timelines[clip.first_timeline as usize];
+        &self.times[timeline.first_time as usize..][..timeline.keys as usize]
+    }
+
+    /// Rows of a clip in tables of gates: one for each of its [`ClipSet::common_times`], and one for the whole clip.
+    pub fn rows(&self, clip: &ClipEntry) -> u32 {
+        self.timelines[clip.first_timeline as usize].keys + 1
     }
 
     /// Bones of every clip.

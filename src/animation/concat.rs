@@ -1,9 +1,12 @@
 //! Concatenation of local transforms into the model's space, parents first.
 //!
-//! The skeleton is cut into chains, each a run of bones from parent to child, as heavy-path decompositions cut trees.
-//! A thread walks one chain of one instance with the parent's matrix in registers: every matrix is read once a chain
+//! Bones are walked in an order of their own ([`Order`]): every bone before its children, subtrees without a gap, and
+//! first of a bone's children the one that continues its chain. A chain is a run of slots from parent to child, as
+//! heavy-path decompositions cut trees, with the parent's matrix in registers: every matrix is read once a chain
 //! instead of once a bone, and a dispatch serves every chain whose parent is done. There are far fewer such dispatches
 //! than levels of bones. Where processors are few, a thread walks all chains of its instance (`Walk`).
+//!
+//! What is below an active bone is a run of slots too: so a thread that knows the first bone to compute knows them all.
 
 use super::skeleton::Skeleton;
 
@@ -18,72 +21,100 @@ pub use pass::{ConcatJob, ConcatPass, Walk};
 /// row of the product 8ε of the sum of its terms, at most √3 of the largest component: 32ε a bone, rounded up.
 pub const CONCAT_BOUND: f32 = 2e-6;
 
-/// The parent of a chain that begins at a root.
+/// The parent of a root.
 pub const NO_PARENT: u32 = u32::MAX;
 
-/// Bones from parent to child.
+/// The parent's bone is the slot before.
+pub const CONTINUES: u32 = u32::MAX - 1;
+
+/// A bone's place in an [`Order`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
-pub struct Chain {
-    /// Where its bones begin, in [`Chains::bones`].
-    pub first: u32,
-    /// How many.
-    pub count: u32,
-    /// The bone above the first, or [`NO_PARENT`].
+pub struct Slot {
+    /// The bone.
+    pub bone: u32,
+    /// The bone above it, [`CONTINUES`] or [`NO_PARENT`].
     pub parent: u32,
+    /// Slots of the bone and all below it: they begin here.
+    pub subtree: u32,
     /// Unused.
     pub padding: u32,
 }
 
-/// A skeleton's chains, cut so that as few as possible wait for each other.
+/// Slots from parent to child.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Chain {
+    /// The first slot.
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+}
+
+/// The order in which a skeleton's bones are walked, cut into chains so that as few as possible wait for each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Chains {
-    /// All bones, chain by chain.
-    pub bones: Vec<u32>,
-    /// Those that wait for none, then those that wait for these, and so on.
+pub struct Order {
+    /// Every bone once.
+    pub slots: Vec<Slot>,
+    /// Chains that wait for none, then those that wait for these, and so on.
     pub chains: Vec<Chain>,
-    /// Where each such level begins; one more than there are levels.
+    /// Where each such level begins in `chains`; one more than there are levels.
     pub levels: Vec<u32>,
 }
 
-impl Chains {
-    /// The chains of a skeleton.
+impl Order {
+    /// The order of a skeleton's bones.
     pub fn new(skeleton: &Skeleton) -> Self {
         let heir = heirs(skeleton);
-        // A bone that is nobody's heir begins a chain; its level is one below that of the chain it hangs from.
-        let mut level_of_bone = vec![0; skeleton.len()];
-        let mut begins: Vec<Vec<u32>> = Vec::new();
-        for (bone, node) in (0..).zip(skeleton.bones()) {
-            let parent = node.parent.map(|parent| parent as usize);
-            let continues = parent.is_some_and(|parent| heir[parent] == Some(bone));
-            let above = parent.map(|parent| level_of_bone[parent]);
-            let level = above.map_or(0, |above| above + usize::from(!continues));
-            level_of_bone[bone as usize] = level;
-            if !continues {
-                begins.resize(begins.len().max(level + 1), Vec::new());
-                begins[level].push(bone);
+        let others = other_children(skeleton, &heir);
+        let bones = skeleton.bones();
+        let mut slots: Vec<Slot> = Vec::with_capacity(bones.len());
+        // Of each level.
+        let mut chains: Vec<Vec<Chain>> = Vec::new();
+        let roots = (0..bones.len() as u32).filter(|bone| bones[*bone as usize].parent.is_none());
+        // First bones of chains that are still to be walked, with their levels; the last is next.
+        let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
+        while let Some((first_bone, level)) = waiting.pop() {
+            let first = slots.len() as u32;
+            for bone in std::iter::successors(Some(first_bone), |bone| heir[*bone as usize]) {
+                let above = bones[bone as usize].parent.unwrap_or(NO_PARENT);
+                let parent = if bone == first_bone { above } else { CONTINUES };
+                let subtree = skeleton.descendants()[bone as usize] + 1;
+                slots.push(Slot { bone, parent, subtree, padding: 0 });
+                waiting.extend(others[bone as usize].iter().map(|child| (*child, level + 1)));
             }
+            chains.resize(chains.len().max(level + 1), Vec::new());
+            chains[level].push(Chain { first, count: slots.len() as u32 - first });
         }
-        let mut all = Self { bones: Vec::with_capacity(skeleton.len()), chains: Vec::new(), levels: vec![0] };
-        let length = |first: u32| std::iter::successors(Some(first), |bone| heir[*bone as usize]).count();
-        for mut level in begins {
+        let mut order = Self { slots, chains: Vec::new(), levels: vec![0] };
+        for mut level in chains {
             // Threads beside each other walk chains of one instance, as long as each other where possible.
-            level.sort_by_key(|first| std::cmp::Reverse(length(*first)));
-            for first in level {
-                let start = all.bones.len();
-                all.bones.extend(std::iter::successors(Some(first), |bone| heir[*bone as usize]));
-                all.chains.push(Chain {
-                    first: start as u32,
-                    count: (all.bones.len() - start) as u32,
-                    parent: skeleton.bones()[first as usize].parent.unwrap_or(NO_PARENT),
-                    padding: 0,
-                });
-            }
-            all.levels.push(all.chains.len() as u32);
+            level.sort_by_key(|chain| std::cmp::Reverse(chain.count));
+            order.chains.extend(level);
+            order.levels.push(order.chains.len() as u32);
         }
-        all
+        order
     }
+
+    /// Words of 32 bits that hold one for each bone.
+    pub fn words(&self) -> usize {
+        self.slots.len().div_ceil(32)
+    }
+}
+
+/// For each bone, the children that do not continue its chain.
+fn other_children(skeleton: &Skeleton, heir: &[Option<u32>]) -> Vec<Vec<u32>> {
+    let mut others = vec![Vec::new(); skeleton.len()];
+    for (bone, node) in (0..).zip(skeleton.bones()) {
+        if let Some(parent) = node.parent
+            && heir[parent as usize] != Some(bone)
+        {
+            others[parent as usize].push(bone);
+        }
+    }
+    others
 }
 
 /// For each bone, the child that continues its chain: the one below which most levels of chains lie, or else most
@@ -120,30 +151,41 @@ mod tests {
         Skeleton::of_joints(parents.iter().map(bone).collect()).expect("valid")
     }
 
-    /// Every bone once, parents first, in dispatches that wait for each other.
-    fn check(skeleton: &Skeleton) -> Chains {
-        let chains = Chains::new(skeleton);
-        let mut done = vec![false; skeleton.len()];
-        for level in chains.levels.windows(2) {
-            let here = &chains.chains[level[0] as usize..level[1] as usize];
-            assert!(!here.is_empty());
-            for chain in here {
-                assert!(
-                    chain.parent == NO_PARENT || done[chain.parent as usize],
-                    "a parent of the same level"
-                );
+    /// Every bone once, parents first, subtrees without a gap, in levels of chains that wait for each other.
+    fn check(skeleton: &Skeleton) -> Order {
+        let order = Order::new(skeleton);
+        let mut slot_of = vec![usize::MAX; skeleton.len()];
+        for (at, slot) in order.slots.iter().enumerate() {
+            let above = skeleton.bones()[slot.bone as usize].parent;
+            match slot.parent {
+                CONTINUES => assert_eq!(above, Some(order.slots[at - 1].bone)),
+                parent => assert_eq!(above.unwrap_or(NO_PARENT), parent),
             }
-            for chain in here {
-                let mut above = (chain.parent != NO_PARENT).then_some(chain.parent);
-                for bone in &chains.bones[chain.first as usize..][..chain.count as usize] {
-                    assert_eq!(skeleton.bones()[*bone as usize].parent, above);
-                    assert!(!std::mem::replace(&mut done[*bone as usize], true), "{bone} twice");
-                    above = Some(*bone);
-                }
+            assert!(above.is_none_or(|above| slot_of[above as usize] < at), "a parent comes later");
+            let old = std::mem::replace(&mut slot_of[slot.bone as usize], at);
+            assert_eq!(old, usize::MAX, "{} twice", slot.bone);
+        }
+        for (bone, node) in skeleton.bones().iter().enumerate() {
+            let below = |at: usize| at..at + order.slots[at].subtree as usize;
+            if let Some(parent) = node.parent {
+                let (here, above) = (below(slot_of[bone]), below(slot_of[parent as usize]));
+                assert!(above.start < here.start && here.end <= above.end, "a subtree with a gap");
             }
         }
-        assert!(done.iter().all(|done| *done), "a bone is missing");
-        chains
+        let mut done = vec![false; skeleton.len()];
+        for level in order.levels.windows(2) {
+            let here = &order.chains[level[0] as usize..level[1] as usize];
+            assert!(!here.is_empty());
+            let slots = |chain: &Chain| chain.first as usize..(chain.first + chain.count) as usize;
+            for chain in here {
+                let parent = order.slots[chain.first as usize].parent;
+                assert!(parent == NO_PARENT || done[slot_of[parent as usize]], "a parent of the same level");
+                assert!(order.slots[slots(chain)][1..].iter().all(|slot| slot.parent == CONTINUES));
+            }
+            here.iter().flat_map(slots).for_each(|slot| assert!(!std::mem::replace(&mut done[slot], true)));
+        }
+        assert!(done.iter().all(|done| *done), "a slot is missing");
+        order
     }
 
     #[test]

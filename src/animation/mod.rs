@@ -3,12 +3,18 @@
 
 pub mod clip;
 pub mod clip_set;
+pub mod compact;
 pub mod concat;
 pub mod creature;
 #[cfg(feature = "gpu")]
 pub mod crowd;
+pub mod gate;
+pub mod gate_table;
 pub mod gltf;
+pub mod lod;
 pub mod model;
+pub mod motion;
+pub mod phase;
 pub mod place;
 pub mod priority;
 pub mod sample;
@@ -17,7 +23,11 @@ pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use clip_set::ClipSet;
+pub use concat::Order;
 pub use creature::creature;
+pub use gate::{Frame, Gate};
+pub use gate_table::GateTable;
+pub use lod::{Lens, Lod, Range};
 pub use model::Model;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};

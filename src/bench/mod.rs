@@ -43,6 +43,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/cone_map", run: surface::cone_map::cases },
     Stem { name: "surface/tangent", run: surface::tangent::cases },
     Stem { name: "animation/place", run: animation::place::cases },
+    Stem { name: "animation/phase", run: animation::phase::cases },
+    Stem { name: "animation/gate", run: animation::gate::cases },
+    Stem { name: "animation/compact", run: animation::compact::cases },
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
     // Draws pictures: last, for the sake of lavapipe's clock (see its cases).

@@ -62,19 +62,20 @@ impl Kernel {
         [x, groups.div_ceil(x), 1]
     }
 
-    /// Records a compute pass of one dispatch, whose workgroups along x, y and z are the first words of `arguments`.
+    /// Records a compute pass of one dispatch, whose workgroups along x, y and z are the three words of a buffer
+    /// from a byte on.
     pub fn dispatch_indirect(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         label: &'static str,
         group: &Group,
-        arguments: &wgpu::Buffer,
+        (arguments, offset): (&wgpu::Buffer, u64),
     ) {
         let descriptor = wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups_indirect(arguments, 0);
+        pass.dispatch_workgroups_indirect(arguments, offset);
     }
 
     /// Workgroups for `invocations` along x.

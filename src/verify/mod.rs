@@ -42,6 +42,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/relief", run: surface::relief::cases },
     Stem { name: "surface/tangent", run: surface::tangent::cases },
     Stem { name: "animation/place", run: animation::place::cases },
+    Stem { name: "animation/phase", run: animation::phase::cases },
+    Stem { name: "animation/gate", run: animation::gate::cases },
+    Stem { name: "animation/compact", run: animation::compact::cases },
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
 ];

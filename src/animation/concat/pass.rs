@@ -2,10 +2,11 @@
 
 use encase::ShaderType;
 
-use super::{Chain, Chains};
+use super::{Order, Slot};
+use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::skeleton::Skeleton;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `ConcatParams` of the kernel.
@@ -13,6 +14,7 @@ use crate::{Error, InputError};
 pub(crate) struct ConcatParams {
     pub instances: u32,
     pub bones: u32,
+    pub words: u32,
     pub first_chain: u32,
     pub chains: u32,
 }
@@ -37,7 +39,8 @@ impl Walk {
 /// Concatenates local transforms.
 #[derive(Debug, Clone)]
 pub struct ConcatPass {
-    kernel: Kernel,
+    all: Kernel,
+    compacted: Kernel,
     walk: Walk,
 }
 
@@ -45,13 +48,17 @@ pub struct ConcatPass {
 pub type ConcatJob = Job;
 
 impl ConcatPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
         let whole = f64::from(walk == Walk::Whole);
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_CONCAT, &[("WHOLE", whole)])?, walk })
+        let kernel = |compacted| {
+            let overrides = [("WHOLE", whole), ("COMPACTED", compacted)];
+            Kernel::new(gpu, &shaders::ANIMATION_CONCAT, &overrides)
+        };
+        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)?, walk })
     }
 
     /// Prepares the model-space matrices of a crowd from its local transforms.
@@ -59,47 +66,140 @@ impl ConcatPass {
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<ConcatJob, Error> {
+        let binder = Binder::new(gpu, skeleton, crowd)?;
+        let nothing = Nothing::new(gpu)?;
+        let instances = (crowd.pairs() / crowd.bones) as u32;
+        let step = |level: &[u32]| {
+            let threads = match self.walk {
+                Walk::Levels => instances * (level[1] - level[0]),
+                Walk::Whole => instances,
+            };
+            Ok(Step {
+                groups: vec![binder.bind(gpu, &self.all, level, &nothing.lists())?],
+                workgroups: self.all.spread(gpu, threads),
+                kernel: self.all.clone(),
+            })
+        };
+        let steps = self.levels(&binder.order).into_iter().map(|level| step(&level));
+        Ok(Job::new(gpu, "animation/concat", steps.collect::<Result<_, GpuError>>()?)?)
+    }
+
+    /// Prepares the matrices of what is dirty alone; the others stay.
+    ///
+    /// # Errors
+    /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
+    pub fn prepare_active(
+        &self,
+        gpu: &Gpu,
+        skeleton: &Skeleton,
+        crowd: &Crowd,
+        active: &Active,
+    ) -> Result<ConcatActiveJob, Error> {
+        let binder = Binder::new(gpu, skeleton, crowd)?;
+        let lists =
+            Lists { dirty: &active.dirty, instances: &active.instances, dispatches: &active.dispatches };
+        let group = |level: &[u32; 2]| binder.bind(gpu, &self.compacted, level, &lists);
+        let groups = self.levels(&binder.order).iter().map(group).collect::<Result<_, _>>()?;
+        Ok(ConcatActiveJob {
+            kernel: self.compacted.clone(),
+            groups,
+            dispatches: active.dispatches.clone(),
+            first_dispatch: u64::from(self.walk == Walk::Levels),
+        })
+    }
+
+    /// First and last chain of each dispatch.
+    fn levels(&self, order: &Order) -> Vec<[u32; 2]> {
+        match self.walk {
+            Walk::Levels => order.levels.windows(2).map(|level| [level[0], level[1]]).collect(),
+            Walk::Whole => vec![[0, order.chains.len() as u32]],
+        }
+    }
+}
+
+/// Which instances and slots are walked.
+struct Lists<'a> {
+    dirty: &'a Buffer<u32>,
+    instances: &'a Buffer<u32>,
+    dispatches: &'a Buffer<[u32; 4]>,
+}
+
+/// What is bound where every slot is walked.
+struct Nothing {
+    words: Buffer<u32>,
+    dispatches: Buffer<[u32; 4]>,
+}
+
+impl Nothing {
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { words: Buffer::new(gpu, "nothing", 0)?, dispatches: Buffer::new(gpu, "nothing", 1)? })
+    }
+
+    fn lists(&self) -> Lists<'_> {
+        Lists { dirty: &self.words, instances: &self.words, dispatches: &self.dispatches }
+    }
+}
+
+/// What all dispatches bind.
+struct Binder<'a> {
+    order: Order,
+    slots: Buffer<Slot>,
+    chains: Buffer<super::Chain>,
+    crowd: &'a Crowd,
+}
+
+impl<'a> Binder<'a> {
+    fn new(gpu: &Gpu, skeleton: &Skeleton, crowd: &'a Crowd) -> Result<Self, Error> {
         if crowd.bones != skeleton.len() {
             let bound = format!("must be {}, as the skeleton's", skeleton.len());
             return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
         }
-        let all = Chains::new(skeleton);
-        let chains: Buffer<Chain> = Buffer::from_slice(gpu, "chains", &all.chains)?;
-        let bones = Buffer::from_slice(gpu, "chain bones", &all.bones)?;
-        let level = |level: &[u32]| {
-            let params = ConcatParams {
-                instances: crowd.instances.len() as u32,
-                bones: crowd.bones as u32,
-                first_chain: level[0],
-                chains: level[1] - level[0],
-            };
-            let uniform = Uniform::new(gpu, "concat", &params)?;
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                chains.raw().as_entire_binding(),
-                bones.raw().as_entire_binding(),
-                crowd.locals.raw().as_entire_binding(),
-                crowd.models.raw().as_entire_binding(),
-            ];
-            Ok(Step {
-                groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-                workgroups: self.kernel.spread(
-                    gpu,
-                    match self.walk {
-                        Walk::Levels => params.instances * params.chains,
-                        Walk::Whole => params.instances,
-                    },
-                ),
-                kernel: self.kernel.clone(),
-            })
+        let order = Order::new(skeleton);
+        let slots = Buffer::from_slice(gpu, "slots", &order.slots)?;
+        let chains = Buffer::from_slice(gpu, "chains", &order.chains)?;
+        Ok(Self { order, slots, chains, crowd })
+    }
+
+    fn bind(&self, gpu: &Gpu, kernel: &Kernel, level: &[u32], lists: &Lists<'_>) -> Result<Group, GpuError> {
+        let crowd = self.crowd;
+        let params = ConcatParams {
+            instances: (crowd.pairs() / crowd.bones) as u32,
+            bones: crowd.bones as u32,
+            words: self.order.words() as u32,
+            first_chain: level[0],
+            chains: level[1] - level[0],
         };
-        let every = [0, all.chains.len() as u32];
-        let levels: Vec<&[u32]> = match self.walk {
-            Walk::Levels => all.levels.windows(2).collect(),
-            Walk::Whole => vec![&every],
-        };
-        let steps = levels.into_iter().map(level).collect::<Result<_, GpuError>>()?;
-        Ok(Job::new(gpu, "animation/concat", steps)?)
+        let uniform = Uniform::new(gpu, "concat", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            self.slots.raw().as_entire_binding(),
+            self.chains.raw().as_entire_binding(),
+            lists.dirty.raw().as_entire_binding(),
+            lists.instances.raw().as_entire_binding(),
+            lists.dispatches.raw().as_entire_binding(),
+            crowd.locals.raw().as_entire_binding(),
+            crowd.models.raw().as_entire_binding(),
+        ];
+        kernel.bind(gpu, 0, &resources)
+    }
+}
+
+/// A prepared concatenation of what is dirty.
+#[derive(Debug, Clone)]
+pub struct ConcatActiveJob {
+    kernel: Kernel,
+    groups: Vec<Group>,
+    dispatches: Buffer<[u32; 4]>,
+    first_dispatch: u64,
+}
+
+impl ConcatActiveJob {
+    /// Records the concatenation.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for (dispatch, group) in (self.first_dispatch..).zip(&self.groups) {
+            let arguments = (self.dispatches.raw(), 16 * dispatch);
+            self.kernel.dispatch_indirect(encoder, "animation/concat", group, arguments);
+        }
     }
 }
 

@@ -137,7 +137,7 @@ pub struct SampleActiveJob {
 impl SampleActiveJob {
     /// Records the sampling.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.dispatch_indirect(encoder, "animation/sample", &self.group, self.dispatched.raw());
+        self.kernel.dispatch_indirect(encoder, "animation/sample", &self.group, (self.dispatched.raw(), 0));
     }
 }
 

@@ -1,16 +1,21 @@
 //! Benchmarks of `kernels/animation/`: crowds of the creature's 153 bones that play a clip with 60 keys for each
 //! part of each bone, every instance at a time of its own.
 
+pub mod compact;
 pub mod concat;
+pub mod gate;
+pub mod phase;
 pub mod place;
 pub mod sample;
 
 use crate::Error;
 use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::animation::clip_set::ClipSet;
+use crate::animation::concat::Order;
 use crate::animation::creature;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::place::Instance;
+use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::sample::{RotationPath, Wrap};
 use crate::animation::skeleton::Skeleton;
 use crate::gpu::Gpu;
@@ -25,6 +30,7 @@ const KEYS: usize = 60;
 /// A crowd, on the host and the device.
 struct Scene {
     skeleton: Skeleton,
+    clip: Clip,
     set: ClipSet,
     instances: Vec<Instance>,
     clips: ClipBuffers,
@@ -34,16 +40,26 @@ struct Scene {
 impl Scene {
     fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
         let model = creature()?;
-        let set = ClipSet::new(&[&dense(&model.skeleton, &model.clips[0])?])?;
+        let clip = dense(&model.skeleton, &model.clips[0])?;
+        let set = ClipSet::new(&[&clip])?;
         // Fractions of the golden ratio: never two the same.
         let start = |index: usize| (index as f32 * 0.618_034).fract();
         let instances: Vec<_> = (0..count).map(|i| Instance::new(0, Wrap::Loop, start(i), 1.0)).collect();
         let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &instances)?);
-        Ok(Self { skeleton: model.skeleton, set, instances, clips, crowd })
+        Ok(Self { skeleton: model.skeleton, clip, set, instances, clips, crowd })
     }
 
     fn pairs(&self) -> usize {
         self.crowd.pairs()
+    }
+
+    fn order(&self) -> Order {
+        Order::new(&self.skeleton)
+    }
+
+    fn priorities(&self) -> Result<Priorities, Error> {
+        let user = vec![USER_DEFAULT; self.skeleton.len()];
+        Ok(Priorities::new(&self.skeleton, &self.clip, true, &Weights::default(), &user)?)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Concatenation into the model's space: twin of `kernels/animation/concat.wgsl`.
 
+use crate::animation::concat::{CONTINUES, NO_PARENT, Order};
 use crate::animation::skeleton::Skeleton;
 use crate::animation::transform::{Affine, Transform};
 
@@ -37,4 +38,23 @@ pub fn product(a: &Affine, b: &Affine) -> Affine {
             if i == 3 { linear + row[3] } else { linear }
         })
     })
+}
+
+/// One instance's transforms in the model's space, of the dirty slots alone: `dirty` holds a bit for each slot, with a
+/// slot's always all below it.
+///
+/// # Panics
+/// With fewer bits, locals or models than bones.
+pub fn concat_dirty(order: &Order, dirty: &[u32], locals: &[Transform], models: &mut [Affine]) {
+    for (at, slot) in order.slots.iter().enumerate() {
+        if dirty[at / 32] >> (at % 32) & 1 == 0 {
+            continue;
+        }
+        let local = affine(&locals[slot.bone as usize]);
+        models[slot.bone as usize] = match slot.parent {
+            NO_PARENT => local,
+            CONTINUES => product(&models[order.slots[at - 1].bone as usize], &local),
+            parent => product(&models[parent as usize], &local),
+        };
+    }
 }

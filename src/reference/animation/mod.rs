@@ -1,5 +1,9 @@
 //! Twins of `kernels/animation/`.
 
+pub mod compact;
 pub mod concat;
+pub mod crowd;
+pub mod gate;
+pub mod phase;
 pub mod place;
 pub mod sample;

@@ -4,22 +4,26 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::Wrap;
 
-/// The time inside a clip, in the order of the shader. [`Wrap::inside`] is more exact where times are large.
-pub fn wrapped(wrap: Wrap, duration: f32, time: f32) -> f32 {
+/// The seconds since the clip's start, inside the clip, and how often it began again before: in the order of
+/// `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more exact where times are large.
+pub fn clock(wrap: Wrap, duration: f32, time: f32) -> (f32, i32) {
     if duration <= 0.0 {
-        return 0.0;
+        return (0.0, 0);
     }
     if wrap == Wrap::Clamp {
-        return time.max(0.0).min(duration);
+        return (time.max(0.0).min(duration), 0);
     }
-    let mut inside = time - (time / duration).floor() * duration;
+    let mut turns = (time / duration).floor();
+    let mut inside = time - turns * duration;
     if inside < 0.0 {
         inside += duration;
+        turns -= 1.0;
     }
     if inside >= duration {
         inside -= duration;
+        turns += 1.0;
     }
-    inside
+    (inside, turns.clamp(-1e9, 1e9) as i32)
 }
 
 /// Where a time lies among key times. The last of equal times counts.
@@ -55,7 +59,7 @@ pub fn places(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<Place>
     let mut places = vec![Place::default(); instances.len() * set.timelines_a_clip()];
     for (instance, places) in instances.iter().zip(places.chunks_mut(set.timelines_a_clip())) {
         let clip = &set.clips()[instance.clip as usize];
-        let time = wrapped(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
+        let (time, _) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
         let timelines = &set.timelines()[clip.first_timeline as usize..][..clip.timelines as usize];
         for (timeline, found) in timelines.iter().zip(places) {
             *found = place(&set.times()[timeline.first_time as usize..][..timeline.keys as usize], time);

@@ -124,18 +124,30 @@ pub fn sample_set(
 ) -> Vec<Transform> {
     let mut transforms = Vec::with_capacity(instances.len() * set.bones());
     for (instance, places) in instances.iter().zip(places.chunks(set.timelines_a_clip())) {
-        let tracks = &set.tracks()[3 * set.bones() * instance.clip as usize..][..3 * set.bones()];
-        transforms.extend(tracks.chunks_exact(3).map(|tracks| {
-            let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
-                let (values, interpolation, place) = find(set, track, places);
-                let [x, y, z, _] = vector_at(values, interpolation, place);
-                [x, y, z]
-            });
-            let (values, interpolation, place) = find(set, tracks[1], places);
-            Transform { translation, rotation: rotation_at(values, interpolation, place, path), scale }
-        }));
+        transforms.extend((0..set.bones()).map(|bone| sample_pair(set, instance, places, bone, path)));
     }
     transforms
+}
+
+/// One bone's transform of one instance, at the instance's places.
+///
+/// # Panics
+/// With fewer places than the clip needs.
+pub fn sample_pair(
+    set: &ClipSet,
+    instance: &Instance,
+    places: &[Place],
+    bone: usize,
+    path: RotationPath,
+) -> Transform {
+    let tracks = &set.tracks()[3 * (set.bones() * instance.clip as usize + bone)..][..3];
+    let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
+        let (values, interpolation, place) = find(set, track, places);
+        let [x, y, z, _] = vector_at(values, interpolation, place);
+        [x, y, z]
+    });
+    let (values, interpolation, place) = find(set, tracks[1], places);
+    Transform { translation, rotation: rotation_at(values, interpolation, place, path), scale }
 }
 
 /// A track's values from its first on, how they are interpolated, and where.

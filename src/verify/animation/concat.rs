@@ -2,15 +2,18 @@
 
 use super::{Draw, SIZES, random_crowd};
 use crate::Error;
-use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
+use crate::animation::compact::{Active, CompactPass};
+use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Order, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::skeleton::Skeleton;
 use crate::animation::transform::{Affine, Transform};
-use crate::reference::animation::concat::concat;
+use crate::reference::animation::compact::compact;
+use crate::reference::animation::concat::{concat, concat_dirty};
 use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
-/// Random skeletons of every size and shape, mirrored and uneven scales; a chain and a star.
+/// Random skeletons of every size and shape, mirrored and uneven scales; a chain and a star. All bones, and those below
+/// active ones alone: the others keep their matrices to the bit.
 ///
 /// # Errors
 /// What the device reports.
@@ -18,6 +21,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (skeleton, ..) = random_crowd(case as u32, bones, 1)?;
         add(cases, case as u32, "random", &skeleton, count)?;
+        add_dirty(cases, case as u32, &skeleton, count)?;
     }
     for (name, straight) in [("chain", true), ("star", false)] {
         let (random, ..) = random_crowd(99, 200, 1)?;
@@ -50,6 +54,68 @@ fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count:
         let comparison =
             output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound))?;
         cases.add(format!("{name}, {bones} bones × {count}, {walk:?}"), comparison);
+    }
+    Ok(())
+}
+
+fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let (bones, order) = (skeleton.len(), Order::new(skeleton));
+    let (_, set, instances) = random_crowd(case, bones, count)?;
+    let [before, locals] = [case + 100, case].map(|case| random_locals(case, bones * count));
+    let (before, locals) = (before?, locals?);
+    let stale: Vec<Affine> = before.chunks(bones).flat_map(|locals| concat(skeleton, locals)).collect();
+    let mut draw = Draw::new(case ^ 0xd127);
+    // A third of the instances have none, a third few, a third all but few.
+    let mut bits = vec![0; count * order.words()];
+    for (instance, words) in bits.chunks_mut(order.words()).enumerate() {
+        for slot in (0..bones).filter(|_| instance % 3 > 0) {
+            let is_active = draw.word().is_multiple_of(50) == (instance % 3 == 1);
+            words[slot / 32] |= u32::from(is_active) << (slot % 32);
+        }
+    }
+    let mut expected = stale.clone();
+    let work = compact(&order, &bits);
+    for ((dirty, locals), models) in
+        work.dirty.chunks(order.words()).zip(locals.chunks(bones)).zip(expected.chunks_mut(bones))
+    {
+        concat_dirty(&order, dirty, locals, models);
+    }
+    let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
+    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
+    let is_kept = |pair: usize, actual: &[Affine]| {
+        let slot =
+            order.slots.iter().position(|slot| slot.bone as usize == pair % bones).expect("every bone");
+        let word = work.dirty[pair / bones * order.words() + slot / 32];
+        word >> (slot % 32) & 1 == 1 || actual[pair] == stale[pair]
+    };
+    for walk in [Walk::Levels, Walk::Whole] {
+        let mut crowd = Crowd::new(gpu, &set, &instances)?;
+        crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
+        let output = Poisoned::<Affine>::new(gpu, bones * count)?;
+        output.buffer.write(gpu, &stale)?;
+        crowd.models = output.buffer.clone();
+        let active = Active::new(gpu, &order, &crowd)?;
+        active.bits.write(gpu, &bits)?;
+        let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active)?;
+        let job = ConcatPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
+        gpu.run("verify", |encoder| {
+            lists.record(encoder);
+            job.record(encoder);
+        })?;
+        let comparison =
+            output.check(gpu, |actual| match (0..stale.len()).find(|pair| !is_kept(*pair, actual)) {
+                Some(pair) => {
+                    compare::Comparison::failed(stale.len(), format!("pair {pair} is clean, and changed"))
+                }
+                None => compare::absolute(
+                    &flat(actual),
+                    &flat(&expected),
+                    CONCAT_BOUND * deepest as f32 * largest,
+                ),
+            })?;
+        cases.add(format!("dirty, {bones} bones × {count}, {walk:?}"), comparison);
     }
     Ok(())
 }

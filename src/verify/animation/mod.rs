@@ -1,6 +1,9 @@
 //! Parity of `kernels/animation/`.
 
+pub mod compact;
 pub mod concat;
+pub mod gate;
+pub mod phase;
 pub mod place;
 pub mod sample;
 

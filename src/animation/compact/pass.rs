@@ -1,0 +1,132 @@
+//! `kernels/animation/compact.wgsl`.
+
+use encase::ShaderType;
+
+use crate::animation::concat::Order;
+use crate::animation::crowd::Crowd;
+use crate::animation::sample::ActivePairs;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
+
+/// `CompactParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct CompactParams {
+    pub instances: u32,
+    pub bones: u32,
+    pub words: u32,
+    pub levels: u32,
+    pub most_groups: u32,
+}
+
+/// What is to be done for a crowd in a frame. All buffers may be read and bound by the caller.
+#[derive(Debug, Clone)]
+pub struct Active {
+    /// A bit for each slot of each instance, [`Order::words`] words an instance: those that are sampled. Written by a
+    /// gate, or by the caller.
+    pub bits: Buffer<u32>,
+    /// Likewise: those that are concatenated.
+    pub dirty: Buffer<u32>,
+    /// The pairs that are sampled.
+    pub pairs: ActivePairs,
+    /// Instances with an active bone.
+    pub instances: Buffer<u32>,
+    /// Workgroups of 64 along x, y, z for a thread an instance of the list, and how many these are; then, for each
+    /// level of chains, workgroups for a thread a chain of each of them, and the level's chains.
+    pub dispatches: Buffer<[u32; 4]>,
+    pub(crate) slots: Buffer<super::super::concat::Slot>,
+    pub(crate) counts: Buffer<u32>,
+    pub(crate) words: u32,
+    pub(crate) levels: u32,
+}
+
+impl Active {
+    /// Room for a crowd of a skeleton; nothing is active.
+    ///
+    /// # Errors
+    /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
+    pub fn new(gpu: &Gpu, order: &Order, crowd: &Crowd) -> Result<Self, Error> {
+        if crowd.bones != order.slots.len() {
+            let bound = format!("must be {}, as the skeleton's", order.slots.len());
+            return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
+        }
+        let instances = crowd.pairs() / crowd.bones;
+        let words = order.words();
+        let chains = order.levels.windows(2).map(|level| [0, 1, 1, level[1] - level[0]]);
+        let dispatches: Vec<[u32; 4]> = std::iter::once([0, 1, 1, 0]).chain(chains).collect();
+        Ok(Self {
+            bits: Buffer::new(gpu, "active bits", instances * words)?,
+            dirty: Buffer::new(gpu, "dirty bits", instances * words)?,
+            pairs: ActivePairs::new(gpu, crowd)?,
+            instances: Buffer::new(gpu, "dirty instances", instances)?,
+            dispatches: Buffer::from_slice(gpu, "dispatches", &dispatches)?,
+            slots: Buffer::from_slice(gpu, "slots", &order.slots)?,
+            counts: Buffer::new(gpu, "counts", instances)?,
+            words: words as u32,
+            levels: dispatches.len() as u32 - 1,
+        })
+    }
+}
+
+/// Makes lists of bits.
+#[derive(Debug, Clone)]
+pub struct CompactPass {
+    stages: [Kernel; 3],
+}
+
+/// Prepared lists.
+pub type CompactJob = Job;
+
+impl CompactPass {
+    /// Compiles the pipelines.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let stage = |stage| Kernel::new(gpu, &shaders::ANIMATION_COMPACT, &[("STAGE", stage)]);
+        Ok(Self { stages: [stage(0.0)?, stage(1.0)?, stage(2.0)?] })
+    }
+
+    /// Prepares the lists of a crowd's active bits.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, crowd: &Crowd, active: &Active) -> Result<CompactJob, Error> {
+        let params = CompactParams {
+            instances: (crowd.pairs() / crowd.bones) as u32,
+            bones: crowd.bones as u32,
+            words: active.words,
+            levels: active.levels,
+            most_groups: gpu.device().limits().max_compute_workgroups_per_dimension,
+        };
+        let uniform = Uniform::new(gpu, "compact", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            active.bits.raw().as_entire_binding(),
+            active.slots.raw().as_entire_binding(),
+            active.dirty.raw().as_entire_binding(),
+            active.counts.raw().as_entire_binding(),
+            active.pairs.pairs.raw().as_entire_binding(),
+            active.pairs.dispatched.raw().as_entire_binding(),
+            active.instances.raw().as_entire_binding(),
+            active.dispatches.raw().as_entire_binding(),
+        ];
+        let threads = [params.instances, 1, params.instances * params.words];
+        let step = |(kernel, threads): (&Kernel, u32)| {
+            Ok(Step {
+                groups: vec![kernel.bind(gpu, 0, &resources)?],
+                workgroups: kernel.spread(gpu, threads),
+                kernel: kernel.clone(),
+            })
+        };
+        let steps = self.stages.iter().zip(threads).map(step).collect::<Result<_, GpuError>>()?;
+        Ok(Job::new(gpu, "animation/compact", steps)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(compact_params_layout: CompactParams = ANIMATION_COMPACT "CompactParams");
+}

@@ -1,0 +1,163 @@
+//! `kernels/animation/gate.wgsl`.
+
+use encase::ShaderType;
+
+use super::{Frame, Gate};
+use crate::animation::compact::Active;
+use crate::animation::crowd::Crowd;
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::Lod;
+use crate::animation::phase::Phase;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
+
+/// `GateParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct GateParams {
+    pub instances: u32,
+    pub bones: u32,
+    pub words: u32,
+    pub stride: u32,
+    pub ticks: u32,
+    pub frame_ticks: u32,
+    pub period: u32,
+    pub frame: u32,
+}
+
+/// What gates know of a crowd. All buffers may be read and bound by the caller.
+#[derive(Debug, Clone)]
+pub struct Gating {
+    /// One an instance; written by the host, full detail at first.
+    pub lods: Buffer<Lod>,
+    /// Written by [`crate::animation::phase::PhasePass`].
+    pub phases: Buffer<Phase>,
+    /// Each instance's last clip + 1 and its last turns / 16. Zeros: no pose is stored.
+    pub history: Buffer<[u32; 2]>,
+    /// For each slot of each instance, the sum of motion when it was sampled last.
+    pub sampled: Buffer<u32>,
+    /// The table of movers.
+    pub(crate) movers: Buffer<u32>,
+    /// The table's rows.
+    pub(crate) table: Buffer<[u32; 2]>,
+    pub(crate) words: u32,
+    pub(crate) stride: u32,
+}
+
+impl Gating {
+    /// Uploads a table and makes room for a crowd.
+    ///
+    /// # Errors
+    /// [`InputError`] for a table of another number of bones; [`GpuError`].
+    pub fn new(gpu: &Gpu, table: &GateTable, crowd: &Crowd) -> Result<Self, Error> {
+        if table.bones() != crowd.bones {
+            let bound = format!("must be {}, as the crowd's", crowd.bones);
+            return Err(InputError::new("table.bones", table.bones(), bound).into());
+        }
+        let instances = crowd.pairs() / crowd.bones;
+        Ok(Self {
+            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
+            phases: Buffer::new(gpu, "phases", instances)?,
+            history: Buffer::new(gpu, "history", instances)?,
+            sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
+            movers: Buffer::from_slice(gpu, "movers", table.movers())?,
+            table: Buffer::from_slice(gpu, "gate table", table.rows())?,
+            words: table.words() as u32,
+            stride: table.stride() as u32,
+        })
+    }
+}
+
+/// Decides which bones are sampled.
+#[derive(Debug, Clone)]
+pub struct GatePass {
+    kernel: Kernel,
+    gate: Gate,
+}
+
+impl GatePass {
+    /// Compiles the pipeline of a mode.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, gate: Gate) -> Result<Self, GpuError> {
+        let mode = match gate {
+            Gate::Off => 0,
+            Gate::SkipPeriod { .. } => 1,
+            Gate::Uniform => 2,
+            Gate::Random => 3,
+            Gate::Bounded => 4,
+        };
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_GATE, &[("MODE", mode.into())])?, gate })
+    }
+
+    /// Prepares the decision, from a crowd's phases.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        crowd: &Crowd,
+        gating: &Gating,
+        active: &Active,
+    ) -> Result<GateJob, Error> {
+        let params = GateParams {
+            instances: gating.lods.len() as u32,
+            bones: crowd.bones as u32,
+            words: gating.words,
+            stride: gating.stride,
+            ticks: 0,
+            frame_ticks: 0,
+            period: if let Gate::SkipPeriod { period } = self.gate { period } else { 0 },
+            frame: 0,
+        };
+        let uniform = Uniform::new(gpu, "gate", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            gating.lods.raw().as_entire_binding(),
+            gating.phases.raw().as_entire_binding(),
+            gating.movers.raw().as_entire_binding(),
+            gating.table.raw().as_entire_binding(),
+            gating.sampled.raw().as_entire_binding(),
+            active.bits.raw().as_entire_binding(),
+        ];
+        let step = Step {
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: self.kernel.spread(gpu, params.instances * params.words),
+            kernel: self.kernel.clone(),
+        };
+        Ok(GateJob { params, uniform, job: Job::new(gpu, "animation/gate", vec![step])? })
+    }
+}
+
+/// A prepared decision: set the frame, then record.
+#[derive(Debug, Clone)]
+pub struct GateJob {
+    params: GateParams,
+    uniform: Uniform<GateParams>,
+    job: Job,
+}
+
+impl GateJob {
+    /// Chooses the frame of the next submission.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
+        let Frame { ticks, frame_ticks, frame } = *frame;
+        self.uniform.write(gpu, &GateParams { ticks, frame_ticks, frame, ..self.params })
+    }
+
+    /// Records the decision.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.job.record(encoder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(gate_params_layout: GateParams = ANIMATION_GATE "GateParams");
+}

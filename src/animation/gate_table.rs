@@ -1,0 +1,330 @@
+//! Tables of gates: what clips tell about their bones, once, at load. Columns are slots of an
+//! [`Order`], rows the common times of each clip, one clip after another, and one more row a clip.
+
+use super::clip::{Clip, Interpolation, Part};
+use super::clip_set::ClipSet;
+use super::concat::Order;
+use super::motion::{BoneMotion, Path, bounding_levers, motions, shares, typical_levers, whole_reaches};
+use super::priority::Priorities;
+use super::sample::RotationPath;
+use super::skeleton::Skeleton;
+use crate::InputError;
+
+/// The largest sum of motion of a whole clip. 17 of them, as many as can pass between two samples of a bone, are below
+/// 2³¹.
+const MOST_MOTION: f64 = (1 << 26) as f64;
+
+/// The most entries.
+const MOST_ENTRIES: usize = 1 << 27;
+
+/// A gate's table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GateTable {
+    bones: usize,
+    words: usize,
+    stride: usize,
+    movers: Vec<u32>,
+    rows: Vec<[u32; 2]>,
+    /// Metres (or what the table's motion counts) a unit; 0 without motion.
+    unit: f64,
+    radius: f32,
+}
+
+impl GateTable {
+    /// Which bones their clips move at all: what [`Gate::Off`](super::gate::Gate::Off), `Uniform` and `Random` need.
+    ///
+    /// # Errors
+    /// [`InputError`] for other clips than the set's, or a skeleton of other bones.
+    pub fn of_movers(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
+        if clips.len() != set.clips().len() {
+            let bound = format!("must be {}, those of the set", set.clips().len());
+            return Err(InputError::new("clips.len", clips.len(), bound));
+        }
+        if order.slots.len() != set.bones() {
+            let bound = format!("must be {}, as the clips'", set.bones());
+            return Err(InputError::new("skeleton.len", order.slots.len(), bound));
+        }
+        let words = order.words();
+        let mut movers = Vec::with_capacity(clips.len() * (words + 1));
+        for (entry, clip) in set.clips().iter().zip(clips) {
+            movers.push(entry.first_row + set.rows(entry) - 1);
+            let first = movers.len();
+            movers.resize(first + words, 0);
+            for (at, slot) in order.slots.iter().enumerate() {
+                movers[first + at / 32] |= u32::from(moves(clip, slot.bone as usize)) << (at % 32);
+            }
+        }
+        let bones = order.slots.len();
+        Ok(Self { bones, words, stride: 0, movers, rows: vec![[0; 2]], unit: 0.0, radius: 0.0 })
+    }
+
+    /// Each clip's priorities: what [`Gate::SkipPeriod`](super::gate::Gate::SkipPeriod) needs. Before a bone's first key
+    /// its first counts.
+    ///
+    /// # Errors
+    /// As [`GateTable::of_movers`]; other than one set of priorities a clip; a table of more than 2²⁷ entries.
+    pub fn of_priorities(
+        order: &Order,
+        set: &ClipSet,
+        clips: &[&Clip],
+        priorities: &[Priorities],
+    ) -> Result<Self, InputError> {
+        let mut table = Self::of_movers(order, set, clips)?;
+        if priorities.len() != clips.len() {
+            let bound = format!("must be {}, one a clip", clips.len());
+            return Err(InputError::new("priorities.len", priorities.len(), bound));
+        }
+        table.make_room(set, table.bones.div_ceil(4))?;
+        for (entry, priorities) in set.clips().iter().zip(priorities) {
+            for (slot, bone) in order.slots.iter().enumerate() {
+                let keys = priorities.of(bone.bone as usize);
+                for (row, time) in (entry.first_row as usize..).zip(set.common_times(entry)) {
+                    let key = keys.partition_point(|key| key.time <= *time).saturating_sub(1);
+                    let priority = keys.get(key).map_or(0.0, |key| key.priority);
+                    let four = &mut table.rows[row * table.stride + slot / 4];
+                    four[slot / 2 % 2] |=
+                        ((priority.clamp(0.0, 1.0) * 65535.0).round() as u32) << (16 * (slot % 2));
+                }
+            }
+        }
+        Ok(table)
+    }
+
+    /// Bounds of the motion that each bone contributes to any point, divided by its share of what is allowed: what
+    /// [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `reaches`: for each bone, how far points that follow it
+    /// alone lie from its origin, metres. `path`: as instances are sampled.
+    ///
+    /// # Errors
+    /// As [`GateTable::of_movers`]; other than one reach a bone, or one that is negative or not finite; a table of more
+    /// than 2²⁷ entries.
+    pub fn of_bounds(
+        skeleton: &Skeleton,
+        set: &ClipSet,
+        clips: &[&Clip],
+        reaches: &[f32],
+        path: RotationPath,
+    ) -> Result<Self, InputError> {
+        let mut table = Self::of_motion(skeleton, set, clips, reaches, path, true)?;
+        for (entry, clip) in set.clips().iter().zip(clips) {
+            let motions = motions(set, entry, clip, path);
+            let whole = whole_reaches(skeleton, &motions, reaches);
+            let roots = skeleton.bones().iter().enumerate().filter(|(_, bone)| bone.parent.is_none());
+            let radius = roots
+                .map(|(root, _)| motions[root].translation + motions[root].scale * whole[root])
+                .fold(0.0, f64::max);
+            table.radius = table.radius.max(radius as f32 * 1.000_001);
+        }
+        Ok(table)
+    }
+
+    /// The motion that each bone contributes to points at and below it, as a root of the sum of squares: what
+    /// [`super::budget`] ranks bones by. Arguments as for [`GateTable::of_bounds`].
+    ///
+    /// # Errors
+    /// As [`GateTable::of_bounds`].
+    pub fn of_expectations(
+        skeleton: &Skeleton,
+        set: &ClipSet,
+        clips: &[&Clip],
+        reaches: &[f32],
+        path: RotationPath,
+    ) -> Result<Self, InputError> {
+        Self::of_motion(skeleton, set, clips, reaches, path, false)
+    }
+
+    fn of_motion(
+        skeleton: &Skeleton,
+        set: &ClipSet,
+        clips: &[&Clip],
+        reaches: &[f32],
+        path: RotationPath,
+        is_bound: bool,
+    ) -> Result<Self, InputError> {
+        let order = Order::new(skeleton);
+        let mut table = Self::of_movers(&order, set, clips)?;
+        check_reaches(skeleton, reaches)?;
+        table.make_room(set, table.bones)?;
+        let columns = set.clips().iter().zip(clips).map(|(entry, clip)| {
+            let motions = motions(set, entry, clip, path);
+            let levers = if is_bound {
+                bounding_levers(skeleton, &motions, reaches)
+            } else {
+                typical_levers(skeleton, reaches)
+            };
+            let mut columns: Vec<Column> =
+                (motions.iter().zip(&levers)).map(|(bone, levers)| Column::new(bone, levers)).collect();
+            if is_bound {
+                share_out(skeleton, &mut columns);
+            }
+            columns
+        });
+        let columns: Vec<Vec<Column>> = columns.collect();
+        let largest = columns.iter().flatten().map(Column::total).fold(0.0, f64::max);
+        table.unit = if largest > 0.0 { largest / MOST_MOTION } else { 1.0 };
+        for (entry, columns) in set.clips().iter().zip(&columns) {
+            for (slot, bone) in order.slots.iter().enumerate() {
+                let at = entry.first_row as usize * table.stride + slot;
+                columns[bone.bone as usize].write(&mut table.rows[at..], table.stride, table.unit);
+            }
+        }
+        Ok(table)
+    }
+
+    fn make_room(&mut self, set: &ClipSet, stride: usize) -> Result<(), InputError> {
+        let rows: usize = set.clips().iter().map(|entry| set.rows(entry) as usize).sum();
+        match rows.checked_mul(stride).filter(|entries| *entries <= MOST_ENTRIES) {
+            Some(entries) => {
+                (self.stride, self.rows) = (stride, vec![[0; 2]; entries]);
+                Ok(())
+            }
+            None => {
+                let bound = format!(
+                    "times {stride} columns must be at most 2^27: let more tracks share their key times"
+                );
+                Err(InputError::new("table.rows", rows, bound))
+            }
+        }
+    }
+
+    /// Columns: slots of the skeleton's order.
+    pub fn bones(&self) -> usize {
+        self.bones
+    }
+
+    /// Words of bits an instance.
+    pub fn words(&self) -> usize {
+        self.words
+    }
+
+    /// Entries a row.
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// For each clip the number of its last row, then a bit for each slot that it moves.
+    pub fn movers(&self) -> &[u32] {
+        &self.movers
+    }
+
+    /// The entries, row by row: four priorities of 16 bits; or a sum of motion at the row's time and its rise to the
+    /// next, in a clip's last row its sum over the whole clip and what rounding may hide.
+    pub fn rows(&self) -> &[[u32; 2]] {
+        &self.rows
+    }
+
+    /// A clip's last row, and its movers.
+    pub fn record(&self, clip: u32) -> (u32, &[u32]) {
+        let record = &self.movers[clip as usize * (self.words + 1)..][..self.words + 1];
+        (record[0], &record[1..])
+    }
+
+    /// A slot's priority in a row, in 65536ths.
+    pub fn priority(&self, row: u32, slot: usize) -> u32 {
+        self.rows[row as usize * self.stride + slot / 4][slot / 2 % 2] >> (16 * (slot % 2)) & 0xffff
+    }
+
+    /// A slot's motion in a row.
+    pub fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
+        self.rows[row as usize * self.stride + slot]
+    }
+
+    /// A bound of how far any point lies from the model's origin in any clip, metres; of [`GateTable::of_bounds`].
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// [`Lod::allowed`](super::lod::Lod::allowed) for a way in metres in the model's space; of
+    /// [`GateTable::of_bounds`].
+    pub fn units(&self, metres: f32) -> u32 {
+        // At most what sums can reach.
+        (f64::from(metres) / self.unit).min((1_u32 << 31) as f64 - 1.0).floor() as u32
+    }
+}
+
+fn check_reaches(skeleton: &Skeleton, reaches: &[f32]) -> Result<(), InputError> {
+    if reaches.len() != skeleton.len() {
+        let bound = format!("must be {}, one a bone", skeleton.len());
+        return Err(InputError::new("reaches.len", reaches.len(), bound));
+    }
+    match reaches.iter().position(|reach| !(*reach >= 0.0 && reach.is_finite())) {
+        None => Ok(()),
+        Some(bone) => {
+            let bound = "must be at least 0 and finite";
+            Err(InputError::new(format!("reaches[{bone}]"), reaches[bone], bound))
+        }
+    }
+}
+
+/// Whether any of a bone's parts changes in a clip.
+fn moves(clip: &Clip, bone: usize) -> bool {
+    Part::ALL.iter().any(|part| {
+        let track = clip.track(bone, *part);
+        let is_spline = track.interpolation() == Interpolation::CubicSpline;
+        let each = if is_spline { 3 } else { 1 };
+        let values = &clip.values()[track.first_value as usize..][..each * track.keys as usize];
+        track.keys > 1
+            && values.chunks_exact(each).any(|key| {
+                let (tangents, value) =
+                    if is_spline { ([key[0], key[2]], key[1]) } else { ([[0.0; 4]; 2], key[0]) };
+                value != clip.key(track, 0) || tangents != [[0.0; 4]; 2]
+            })
+    })
+}
+
+/// One bone's motion along a clip.
+struct Column {
+    rises: Vec<f64>,
+    jumps: Vec<f64>,
+    wrap: f64,
+}
+
+impl Column {
+    fn new(bone: &BoneMotion, levers: &[f64; 3]) -> Self {
+        let weighed = |of: &dyn Fn(&Path) -> f64| {
+            bone.parts.iter().zip(levers).map(|(part, lever)| lever * of(part)).sum::<f64>()
+        };
+        let times = bone.parts[0].rises.len();
+        Self {
+            rises: (0..times).map(|at| weighed(&|path| path.rises[at])).collect(),
+            jumps: (0..times).map(|at| weighed(&|path| path.jumps[at])).collect(),
+            wrap: weighed(&|path| path.wrap),
+        }
+    }
+
+    fn total(&self) -> f64 {
+        self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.rises.iter_mut().chain(&mut self.jumps).for_each(|value| *value *= factor);
+        self.wrap *= factor;
+    }
+
+    /// Writes it down a table.
+    ///
+    /// Starts are rounded to the nearest unit, rises up: what two sums differ by is at most 2 units too small, and 1
+    /// more for each fraction cut to 16 bits. The times that gates and samplers see differ by at most 2⁻¹² of a
+    /// stretch (times up to 64 s, stretches of 1/64 s: see `PLACE_BOUND`).
+    fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
+        let mut sum = 0.0;
+        let mut steepest = 0.0_f64;
+        for (row, (rise, jump)) in self.rises.iter().zip(&self.jumps).enumerate() {
+            sum += jump;
+            table[row * stride] = [(sum / unit).round() as u32, (rise / unit).ceil() as u32];
+            sum += rise;
+            steepest = steepest.max(rise / unit);
+        }
+        let slack = 4.0 + (steepest / 4096.0).ceil();
+        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, slack as u32];
+    }
+}
+
+/// Divides each bone's motion by its share of what is allowed.
+fn share_out(skeleton: &Skeleton, columns: &mut [Column]) {
+    let rates: Vec<f64> = columns.iter().map(Column::total).collect();
+    for (column, share) in columns.iter_mut().zip(shares(skeleton, &rates)) {
+        if share > 0.0 {
+            column.scale(share.recip());
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! What gates know of an instance from its view: how far away it is (A section 12.10) and how much motion may be
+//! missed before it shows. Quantized on the host, so that every device decides alike.
+
+use crate::InputError;
+
+/// [`Lod::omega`] at full detail.
+pub const OMEGA_ONE: u32 = 1 << 16;
+
+/// An instance's level of detail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Lod {
+    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], where nothing is skipped. See [`Range::omega`].
+    pub omega: u32,
+    /// Motion that may be missed, in units of the gate's table: see [`Lens::allowed`].
+    pub allowed: u32,
+    /// How much motion counts against that of other instances, 0 to 65535: in proportion to its size on screen.
+    pub weight: u32,
+    /// [`Lod::HIDDEN`], [`Lod::REFRESH`].
+    pub flags: u32,
+}
+
+impl Lod {
+    /// Not in view: costs nothing, and is sampled in full when it comes back.
+    pub const HIDDEN: u32 = 1;
+    /// Sampled in full this frame: set it when blend weights change.
+    pub const REFRESH: u32 = 2;
+    /// Full detail.
+    pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };
+}
+
+impl Default for Lod {
+    fn default() -> Self {
+        Self::FULL
+    }
+}
+
+/// Distances in metres between which detail falls from full to none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Up to here Ω is 1.
+    pub min: f32,
+    /// From here on Ω is 0.
+    pub max: f32,
+}
+
+impl Range {
+    /// Checks the distances.
+    ///
+    /// # Errors
+    /// [`InputError`] for a minimum that is negative or not finite, and a maximum that is not above it.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !(self.min >= 0.0 && self.min.is_finite()) {
+            return Err(InputError::new("range.min", self.min, "must be at least 0 and finite"));
+        }
+        if !(self.max > self.min && self.max.is_finite()) {
+            return Err(InputError::new(
+                "range.max",
+                self.max,
+                format!("must be above range.min, {}", self.min),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Ω at a distance, in 65536ths. **Decided**: `(max − d)/(max − min)`; A prints `(d − min)/(max − min)`, against
+    /// its own end points.
+    pub fn omega(&self, distance: f32) -> u32 {
+        let share = (f64::from(self.max) - f64::from(distance)) / (f64::from(self.max) - f64::from(self.min));
+        (share.clamp(0.0, 1.0) * f64::from(OMEGA_ONE)).round() as u32
+    }
+}
+
+/// How a camera makes pixels of metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// Pixels that a metre at a distance of one metre takes on the axis: half the picture's height, in pixels, divided
+    /// by the tangent of half the field of view; the larger one of both directions.
+    pub focal_pixels: f32,
+    /// The near plane's distance in metres.
+    pub near: f32,
+}
+
+impl Lens {
+    /// The lens of a picture `height` pixels high with a vertical field of view in radians.
+    pub fn new(height: u32, field_of_view: f32, near: f32) -> Self {
+        Self { focal_pixels: height as f32 / 2.0 / (field_of_view / 2.0).tan(), near }
+    }
+
+    /// The longest way in metres of which every point inside a sphere may be off without being more than `pixels` off
+    /// on screen. `centre`: in the camera's space, x and y across, z along the view. 0 where a part of the sphere may
+    /// reach the near plane.
+    ///
+    /// A point at depth z, φ off the axis, that moves by e moves on screen by at most `focal·e/((z − e)·cos φ)` pixels
+    /// (spec 3.4). Over the sphere z is least, and tan φ at most what lies farthest across at that depth.
+    pub fn allowed(&self, centre: [f32; 3], radius: f32, pixels: f32) -> f32 {
+        let [x, y, z] = centre.map(f64::from);
+        let (radius, pixels, focal) = (f64::from(radius), f64::from(pixels), f64::from(self.focal_pixels));
+        let depth = z - radius;
+        if depth <= f64::from(self.near) {
+            return 0.0;
+        }
+        let across = x.hypot(y) + radius;
+        let cosine = depth / depth.hypot(across);
+        let way = pixels * cosine * depth / (focal + pixels * cosine);
+        if depth - way <= f64::from(self.near) { 0.0 } else { way as f32 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn omega_falls_from_one_to_none() {
+        let range = Range { min: 200.0, max: 1700.0 };
+        assert_eq!([0.0, 200.0, 950.0, 1700.0, 5000.0].map(|d| range.omega(d)), [65536, 65536, 32768, 0, 0]);
+        assert!(range.validate().is_ok());
+        let refused = |min, max| Range { min, max }.validate().expect_err("refused").field;
+        assert_eq!([refused(-1.0, 2.0), refused(f32::NAN, 2.0)], ["range.min", "range.min"]);
+        assert_eq!([refused(2.0, 2.0), refused(2.0, f32::INFINITY)], ["range.max", "range.max"]);
+    }
+
+    /// Moves points inside spheres by the allowed way, in every direction, and projects them.
+    #[test]
+    fn what_is_allowed_stays_within_the_pixels() {
+        let lens = Lens::new(1080, 1.0, 0.1);
+        let mut worst = 0.0_f64;
+        for (x, z, radius, pixels) in
+            [(0.0, 10.0, 1.0, 1.0), (6.0, 8.0, 2.0, 0.25), (-3.0, 3.0, 0.5, 8.0), (40.0, 30.0, 1.0, 2.0)]
+        {
+            let allowed = f64::from(lens.allowed([x, 0.5, z], radius, pixels));
+            assert!(allowed > 0.0);
+            let around = |steps: u32, of: u32| {
+                let (azimuth, height) = (f64::from(of % steps), f64::from(of / steps));
+                let polar = height / f64::from(steps) * std::f64::consts::PI;
+                let turn = azimuth / f64::from(steps) * std::f64::consts::TAU;
+                [polar.sin() * turn.cos(), polar.sin() * turn.sin(), polar.cos()]
+            };
+            let screen = |[x, y, z]: [f64; 3]| [x / z, y / z].map(|s| s * f64::from(lens.focal_pixels));
+            for (at, to) in (0..144).flat_map(|at| (0..144).map(move |to| (at, to))) {
+                let (out, way) = (around(12, at), around(12, to));
+                let centre = [f64::from(x), 0.5, f64::from(z)];
+                let fresh: [f64; 3] = std::array::from_fn(|i| centre[i] + f64::from(radius) * out[i]);
+                let stale: [f64; 3] = std::array::from_fn(|i| fresh[i] + allowed * way[i]);
+                let ([ax, ay], [bx, by]) = (screen(fresh), screen(stale));
+                let off = (ax - bx).hypot(ay - by) / f64::from(pixels);
+                worst = worst.max(off);
+                assert!(off <= 1.0 + 1e-6, "{off} of the pixels");
+            }
+        }
+        assert!(worst > 0.5, "far too careful: {worst}");
+        assert_eq!(lens.allowed([0.0, 0.0, 1.0], 0.95, 1.0), 0.0, "reaches the near plane");
+        assert_eq!(lens.allowed([0.0, 0.0, -5.0], 1.0, 1.0), 0.0, "behind");
+    }
+}

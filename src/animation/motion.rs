@@ -1,0 +1,293 @@
+//! How far a clip moves each bone: the path of its local transform along the clip's common timeline, weighed by how far
+//! that moves points of the model. Bounds of the error that a stale pose causes are read from it (spec 3.4).
+//!
+//! With stale prefixes P′ and fresh suffixes y, a point moves by `v′ − v = Σ P′ (L′ − L) y` over the bones above it,
+//! so one bone contributes at most `σ·(|ΔT| + θ·ρ⁺ + |ΔS|·ρ)`: ΔT, θ and ΔS are what its local translation, rotation
+//! and scale (largest component) moved since it was sampled, σ the product of the largest scales of the bones above,
+//! ρ its reach, the farthest that a point which follows it lies from its origin before its own scale, ρ⁺ = S·ρ with
+//! its own largest scale S. A path is never shorter than its chord, so sums along the clip bound the differences:
+//!
+//! - linear: the way between the keys, evenly; rotations at constant speed;
+//! - nlerp: the arc's largest speed, `tan(θ/4)/(θ/4)` of the mean;
+//! - cubic: at most the longest edge of the control polygon times 3, a unit of the way between the keys; for rotations
+//!   twice that divided by the spline's least length;
+//! - step, and repeated times: a jump at the later key;
+//! - a loop: a jump from the last pose to the first.
+
+use super::clip::{Clip, Interpolation, Part, Track};
+use super::clip_set::{ClipEntry, ClipSet};
+use super::sample::RotationPath;
+use super::skeleton::Skeleton;
+
+/// Moments at which a spline of rotations is measured between two keys.
+const MOMENTS: usize = 64;
+
+/// A rotation that may be anything: far more than half a turn.
+const ANY_TURN: f64 = 1e3;
+
+/// Path lengths of one part of one bone: at the times of the common timeline.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Path {
+    /// From each time to the next, evenly; 0 after the last.
+    pub rises: Vec<f64>,
+    /// At each time, all at once.
+    pub jumps: Vec<f64>,
+    /// From the end of the clip to its start.
+    pub wrap: f64,
+}
+
+impl Path {
+    fn still(times: usize) -> Self {
+        Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0 }
+    }
+
+    /// Of the whole clip, the way back to its start included.
+    pub fn total(&self) -> f64 {
+        self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
+    }
+}
+
+/// The motion of one bone along a clip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoneMotion {
+    /// Metres, radians, factors.
+    pub parts: [Path; 3],
+    /// The farthest that its origin lies from its parent's, metres.
+    pub translation: f64,
+    /// Its largest scale along an axis.
+    pub scale: f64,
+}
+
+/// The motion of every bone along a clip.
+///
+/// # Panics
+/// With a clip that is not the set's.
+pub fn motions(set: &ClipSet, entry: &ClipEntry, clip: &Clip, path: RotationPath) -> Vec<BoneMotion> {
+    let times = set.common_times(entry);
+    (0..clip.bones()).map(|bone| bone_motion(clip, bone, times, path)).collect()
+}
+
+fn bone_motion(clip: &Clip, bone: usize, times: &[f32], path: RotationPath) -> BoneMotion {
+    let keys = Part::ALL.map(|part| Keys::new(clip, clip.track(bone, part), part, path));
+    let parts = keys.each_ref().map(|keys| keys.path(times));
+    let [translations, _, scales] = keys;
+    let longest = |points: &[Value], norm: fn(&Value) -> f64| points.iter().map(norm).fold(0.0, f64::max);
+    BoneMotion {
+        parts,
+        translation: longest(&translations.hull(), length),
+        scale: longest(&scales.hull(), largest),
+    }
+}
+
+type Value = [f64; 4];
+
+/// A track's keys in f64.
+struct Keys<'a> {
+    part: Part,
+    path: RotationPath,
+    interpolation: Interpolation,
+    times: &'a [f32],
+    /// One a key, or three.
+    values: Vec<Value>,
+}
+
+impl<'a> Keys<'a> {
+    fn new(clip: &'a Clip, track: &Track, part: Part, path: RotationPath) -> Self {
+        let interpolation = track.interpolation();
+        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let count = each * track.keys.max(1) as usize;
+        let values = &clip.values()[track.first_value as usize..][..count];
+        let values = values.iter().map(|value| value.map(f64::from)).collect();
+        Self { part, path, interpolation, times: clip.times_of(track), values }
+    }
+
+    fn is_spline(&self) -> bool {
+        self.interpolation == Interpolation::CubicSpline
+    }
+
+    fn value(&self, key: usize) -> &Value {
+        if self.is_spline() { &self.values[3 * key + 1] } else { &self.values[key] }
+    }
+
+    /// How far two values are apart.
+    fn distance(&self, a: &Value, b: &Value) -> f64 {
+        let minus = |a: &Value, b: &Value| std::array::from_fn(|i| a[i] - b[i]);
+        match self.part {
+            Part::Translation => length(&minus(a, b)),
+            Part::Rotation => {
+                let [a, b] = [a, b].map(normalized);
+                // From the chord of q and the nearer one of ±q.
+                let plus: Value = std::array::from_fn(|i| a[i] + b[i]);
+                let (near, far) = (length(&minus(&a, &b)), length(&plus));
+                4.0 * near.min(far).atan2(near.max(far))
+            }
+            Part::Scale => largest(&minus(a, b)),
+        }
+    }
+
+    fn path(&self, times: &[f32]) -> Path {
+        let mut path = Path::still(times.len());
+        let last = self.times.len().saturating_sub(1);
+        if last == 0 {
+            return path;
+        }
+        let row = |time: f32| times.partition_point(|other| *other < time);
+        for key in 0..last {
+            let [from, to] = [self.times[key], self.times[key + 1]];
+            let way = self.distance(self.value(key), self.value(key + 1));
+            if from == to || self.interpolation == Interpolation::Step {
+                path.jumps[row(to)] += way;
+                continue;
+            }
+            let speed = self.speed(key, way);
+            for at in row(from)..row(to) {
+                let share = f64::from(times[at + 1] - times[at]) / f64::from(to - from);
+                path.rises[at] += speed * share;
+            }
+        }
+        path.wrap = self.distance(self.value(last), self.value(0));
+        path
+    }
+
+    /// The largest way a unit of the stretch between a key and the next, whose values are `way` apart.
+    fn speed(&self, key: usize, way: f64) -> f64 {
+        if self.is_spline() {
+            let bezier = self.bezier(key);
+            let edges = (0..3)
+                .map(|edge| -> Value { std::array::from_fn(|i| bezier[edge + 1][i] - bezier[edge][i]) });
+            return match self.part {
+                Part::Scale => 3.0 * edges.map(|edge| largest(&edge)).fold(0.0, f64::max),
+                Part::Translation => 3.0 * edges.map(|edge| length(&edge)).fold(0.0, f64::max),
+                Part::Rotation => {
+                    turn_of_spline(&bezier, 3.0 * edges.map(|e| length(&e)).fold(0.0, f64::max))
+                }
+            };
+        }
+        let quarter = way / 4.0;
+        let is_chord = self.part == Part::Rotation && self.path == RotationPath::Nlerp;
+        if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way }
+    }
+
+    /// The control points of a spline between two keys; its tangents are already in units of the stretch.
+    fn bezier(&self, key: usize) -> [Value; 4] {
+        let [start, leaving, arriving, end] = [1, 2, 3, 4].map(|at| self.values[3 * key + at]);
+        let off = |point: Value, tangent: Value, side: f64| -> Value {
+            std::array::from_fn(|i| point[i] + side * tangent[i] / 3.0)
+        };
+        [start, off(start, leaving, 1.0), off(end, arriving, -1.0), end]
+    }
+
+    /// Points whose hull holds all values.
+    fn hull(&self) -> Vec<Value> {
+        if !self.is_spline() {
+            return self.values.clone();
+        }
+        let keys = self.values.len() / 3;
+        let mut points: Vec<Value> = (0..keys).map(|key| *self.value(key)).collect();
+        points.extend((1..keys).flat_map(|key| self.bezier(key - 1)));
+        points
+    }
+}
+
+/// The largest angle a unit of a spline of quaternions, whose largest speed is `speed`, turns after normalization.
+fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> f64 {
+    let at = |t: f64| -> Value {
+        let u = 1.0 - t;
+        let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
+        std::array::from_fn(|i| (0..4).map(|point| weights[point] * bezier[point][i]).sum())
+    };
+    let moments = (0..=MOMENTS).map(|moment| length(&at(moment as f64 / MOMENTS as f64)));
+    // Between two moments it is at most half a step from one of them.
+    let least = moments.fold(f64::INFINITY, f64::min) - speed / (2 * MOMENTS) as f64;
+    if least <= 1e-3 { ANY_TURN } else { (2.0 * speed / least).min(ANY_TURN) }
+}
+
+fn length(value: &Value) -> f64 {
+    value.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn largest(value: &Value) -> f64 {
+    value.iter().map(|x| x.abs()).fold(0.0, f64::max)
+}
+
+fn normalized(value: &Value) -> Value {
+    let length = length(value);
+    value.map(|x| x / length)
+}
+
+/// How far each bone's parts move points: factors of [`Path`]s of translation, rotation and scale, metres a unit.
+pub type Levers = Vec<[f64; 3]>;
+
+/// The largest: a bound of what any point that follows the bone moves. `reaches`: for each bone, how far points that
+/// follow it alone lie from its origin, metres.
+pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32]) -> Levers {
+    let reach = whole_reaches(skeleton, motions, reaches);
+    let mut above = vec![1.0; motions.len()];
+    let mut levers = Levers::with_capacity(motions.len());
+    for (bone, node) in skeleton.bones().iter().enumerate() {
+        if let Some(parent) = node.parent {
+            above[bone] = above[parent as usize] * motions[parent as usize].scale;
+        }
+        let sigma: f64 = above[bone];
+        levers.push([sigma, sigma * motions[bone].scale * reach[bone], sigma * reach[bone]]);
+    }
+    levers
+}
+
+/// The farthest that points which follow each bone or one below it lie from its origin, before its own scale.
+pub fn whole_reaches(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32]) -> Vec<f64> {
+    let mut whole: Vec<f64> = reaches.iter().copied().map(f64::from).collect();
+    for (bone, node) in skeleton.bones().iter().enumerate().rev() {
+        if let Some(parent) = node.parent {
+            let below = motions[bone].translation + motions[bone].scale * whole[bone];
+            whole[parent as usize] = whole[parent as usize].max(below);
+        }
+    }
+    whole
+}
+
+/// The root of the sum of squares over points, `reaches` from each bone at or below, of how far they move: at rest, on
+/// average over directions.
+pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
+    let models = crate::reference::animation::concat::concat(skeleton, &skeleton.rest());
+    let origin = |bone: usize| glam::DVec3::from_array(models[bone].map(|row| f64::from(row[3])));
+    // Of each bone: points, and squares of their distances.
+    let mut sums = vec![[0.0; 3]; models.len()];
+    for (bone, reach) in reaches.iter().enumerate() {
+        let own = f64::from(*reach).powi(2);
+        let path = std::iter::successors(Some(bone), |bone| {
+            skeleton.bones()[*bone].parent.map(|parent| parent as usize)
+        });
+        for above in path {
+            let square = origin(bone).distance_squared(origin(above)) + own;
+            let [points, across, along] = &mut sums[above];
+            // Two of three directions lie across an axis.
+            (*points, *across, *along) = (*points + 1.0, *across + square * 2.0 / 3.0, *along + square / 3.0);
+        }
+    }
+    sums.into_iter().map(|sums| sums.map(f64::sqrt)).collect()
+}
+
+/// How much of the allowed way each bone may take, so that the shares on every way from a root to a leaf sum to 1.
+///
+/// A bone that moves at rate r is sampled r/s times for its share s. The fewest samples of a subtree with the budget b
+/// are K/b: for a leaf K = r, and for a bone above subtrees K = (√r + √ΣK)², of which it takes √r/(√r + √ΣK).
+pub fn shares(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
+    let bones = skeleton.bones();
+    let mut below = vec![0.0; rates.len()];
+    for (bone, node) in bones.iter().enumerate().rev() {
+        let needed = (rates[bone].sqrt() + f64::sqrt(below[bone])).powi(2);
+        if let Some(parent) = node.parent {
+            below[parent as usize] += needed;
+        }
+    }
+    let mut left = vec![1.0; rates.len()];
+    let mut shares = vec![0.0; rates.len()];
+    for (bone, node) in bones.iter().enumerate() {
+        let budget = node.parent.map_or(1.0, |parent| left[parent as usize]);
+        let (own, others) = (rates[bone].sqrt(), f64::sqrt(below[bone]));
+        shares[bone] = if own > 0.0 { budget * own / (own + others) } else { 0.0 };
+        left[bone] = budget - shares[bone];
+    }
+    shares
+}

@@ -1,0 +1,61 @@
+//! Where instances stand on the timeline that all bones of their clip share, in whole numbers: what gates decide by.
+//! Comes after `animation/place`, before `animation/gate`. Whether an instance has to be sampled in full is found here
+//! too: at its first frame, after it was hidden, when its clip changed, when the host asks for it
+//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and every 16 turns of a loop, before sums of motion overflow.
+
+#[cfg(feature = "gpu")]
+mod pass;
+
+#[cfg(feature = "gpu")]
+pub use pass::{PhaseJob, PhasePass};
+
+/// After 2⁴ turns an instance is sampled in full.
+pub const TURNS_SHIFT: u32 = 4;
+
+/// What asks for a pose besides the time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Verdict {
+    /// Nothing: the gate decides.
+    Free = 0,
+    /// Nobody sees it: nothing is sampled.
+    Hidden = 1,
+    /// Its stored pose means nothing: everything is sampled.
+    Forced = 2,
+}
+
+/// Where an instance stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Phase {
+    /// Row of the gate's table: the clip's first, and the key before.
+    pub row: u32,
+    /// In the lower 20 bits the way to the next row, 0 to 65536; above them the [`Verdict`].
+    pub fraction_and_verdict: u32,
+    /// How often the clip began again.
+    pub turns: i32,
+    /// The clip.
+    pub clip: u32,
+}
+
+impl Phase {
+    /// A phase from its parts.
+    pub fn new(row: u32, fraction: u32, verdict: Verdict, turns: i32, clip: u32) -> Self {
+        Self { row, fraction_and_verdict: (verdict as u32) << 20 | fraction, turns, clip }
+    }
+
+    /// The way to the next row, 0 to 65536.
+    pub fn fraction(&self) -> u32 {
+        self.fraction_and_verdict & 0xf_ffff
+    }
+
+    /// What asks for a pose besides the time.
+    pub fn verdict(&self) -> Verdict {
+        match self.fraction_and_verdict >> 20 {
+            0 => Verdict::Free,
+            1 => Verdict::Hidden,
+            _ => Verdict::Forced,
+        }
+    }
+}

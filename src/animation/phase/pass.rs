@@ -1,0 +1,100 @@
+//! `kernels/animation/phase.wgsl`.
+
+use encase::ShaderType;
+
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate::Gating;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
+
+/// `PhaseParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct PhaseParams {
+    pub instances: u32,
+    pub timelines: u32,
+    pub elapsed: f32,
+}
+
+/// Finds phases.
+#[derive(Debug, Clone)]
+pub struct PhasePass {
+    kernel: Kernel,
+}
+
+impl PhasePass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_PHASE, &[])? })
+    }
+
+    /// Prepares the phases of a crowd, from its places.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        clips: &ClipBuffers,
+        crowd: &Crowd,
+        gating: &Gating,
+    ) -> Result<PhaseJob, Error> {
+        let params = PhaseParams {
+            instances: gating.lods.len() as u32,
+            timelines: clips.timelines_a_clip as u32,
+            elapsed: 0.0,
+        };
+        let uniform = Uniform::new(gpu, "phase", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            crowd.instances.raw().as_entire_binding(),
+            clips.clips.raw().as_entire_binding(),
+            crowd.places.raw().as_entire_binding(),
+            gating.lods.raw().as_entire_binding(),
+            gating.history.raw().as_entire_binding(),
+            gating.phases.raw().as_entire_binding(),
+        ];
+        let step = Step {
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: self.kernel.spread(gpu, params.instances),
+            kernel: self.kernel.clone(),
+        };
+        Ok(PhaseJob { params, uniform, job: Job::new(gpu, "animation/phase", vec![step])? })
+    }
+}
+
+/// Prepared phases: set the time, then record.
+#[derive(Debug, Clone)]
+pub struct PhaseJob {
+    params: PhaseParams,
+    uniform: Uniform<PhaseParams>,
+    job: Job,
+}
+
+impl PhaseJob {
+    /// Chooses the time of the next submission, as for [`super::super::place::PlaceJob::set`].
+    ///
+    /// # Errors
+    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
+        if !elapsed.is_finite() {
+            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
+        }
+        Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ..self.params })?)
+    }
+
+    /// Records the pass.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.job.record(encoder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(phase_params_layout: PhaseParams = ANIMATION_PHASE "PhaseParams");
+}

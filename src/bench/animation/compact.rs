@@ -1,0 +1,44 @@
+//! Lists of what is active in crowds.
+
+use super::{CROWDS, Scene};
+use crate::Error;
+use crate::animation::compact::{Active, CompactPass};
+use crate::bench::terrain::copy_of;
+use crate::bench::{Backend, Bench, Contender};
+use crate::reference::animation::compact::compact;
+
+/// All bones active, and a quarter.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = CompactPass::new(gpu)?;
+    for (share, pattern) in [("all", u32::MAX), ("a quarter", 0x1111_1111)] {
+        for count in CROWDS {
+            let scene = Scene::new(gpu, count)?;
+            let order = scene.order();
+            let active = Active::new(gpu, &order, &scene.crowd)?;
+            let mut bits = vec![pattern; count * order.words()];
+            let unused = order.words() * 32 - scene.skeleton.len();
+            bits.iter_mut()
+                .skip(order.words() - 1)
+                .step_by(order.words())
+                .for_each(|word| *word &= u32::MAX >> unused);
+            active.bits.write(gpu, &bits)?;
+            let job = pass.prepare(gpu, &scene.crowd, &active)?;
+            let chosen: u32 = bits.iter().map(|word| word.count_ones()).sum();
+            // Bits twice in and once out, a pair and its slot.
+            let words = (3 * bits.len() + 2 * chosen as usize) / 2;
+            let copied = copy_of(gpu, words)?;
+            let contenders = vec![
+                Contender::job(Backend::Gpu, &job),
+                Contender::job(Backend::Copy, &copied),
+                Contender::host(Backend::Twin, || drop(std::hint::black_box(compact(&order, &bits)))),
+            ];
+            let name = format!("{count} × 153, {share}");
+            bench.case(name, (scene.pairs(), "bone"), 8 * words as u64, contenders)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,42 @@
+//! From bits to lists: twin of `kernels/animation/compact.wgsl`.
+
+use super::gate::bits_of;
+use crate::animation::concat::Order;
+
+/// What is to be done in a frame.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Work {
+    /// `instance · bones + bone` of each pair that is sampled, in the order of instances and slots.
+    pub pairs: Vec<u32>,
+    /// A bit for each slot of each instance: those below an active one too.
+    pub dirty: Vec<u32>,
+    /// Instances with an active bone.
+    pub instances: Vec<u32>,
+}
+
+/// The work that active bits mean; `bits` holds [`Order::words`] words an instance.
+pub fn compact(order: &Order, bits: &[u32]) -> Work {
+    let bones = order.slots.len() as u32;
+    let mut work = Work { dirty: Vec::with_capacity(bits.len()), ..Work::default() };
+    for (instance, words) in (0..).zip(bits.chunks_exact(order.words())) {
+        let first_pair = work.pairs.len();
+        let mut end = 0;
+        for (word, active) in words.iter().enumerate() {
+            let mut below = 0;
+            for bit in 0..32 {
+                let slot = 32 * word + bit;
+                if active >> bit & 1 != 0 {
+                    end = end.max(slot + order.slots[slot].subtree as usize);
+                }
+                below |= u32::from(slot < end) << bit;
+            }
+            work.dirty.push(below);
+            work.pairs
+                .extend(bits_of(*active).map(|bit| instance * bones + order.slots[32 * word + bit].bone));
+        }
+        if work.pairs.len() > first_pair {
+            work.instances.push(instance);
+        }
+    }
+    work
+}

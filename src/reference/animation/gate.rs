@@ -1,0 +1,147 @@
+//! Which bones are sampled: twin of `kernels/animation/gate.wgsl`.
+
+use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::phase::{Phase, Verdict};
+
+/// A bit for each slot of each instance: [`GateTable::words`] words an instance. `sampled` holds, for each slot of each
+/// instance, the sum of motion when it was sampled last; [`Gate::Bounded`] alone uses it.
+///
+/// # Panics
+/// With fewer levels or sums than the phases need.
+pub fn gate(
+    table: &GateTable,
+    gate: Gate,
+    frame: &Frame,
+    lods: &[Lod],
+    phases: &[Phase],
+    sampled: &mut [u32],
+) -> Vec<u32> {
+    let mut bits = Vec::with_capacity(phases.len() * table.words());
+    for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
+        let (periods, movers) = table.record(phase.clip);
+        for (word, candidates) in movers.iter().enumerate() {
+            let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
+            let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
+            bits.push(match (phase.verdict(), gate) {
+                (Verdict::Hidden, _) => 0,
+                (verdict, Gate::Bounded) => {
+                    let forced = if verdict == Verdict::Forced { all } else { 0 };
+                    let sampled = &mut sampled[instance * table.bones() + at.first..];
+                    by_motion(table, &at, lod, *candidates, forced, phase, periods, sampled)
+                }
+                (Verdict::Forced, _) => all,
+                (_, Gate::Off) => *candidates,
+                _ if lod.omega >= OMEGA_ONE => *candidates,
+                (_, Gate::SkipPeriod { period }) => {
+                    by_priority(table, &at, lod, *candidates, phase, frame, period)
+                }
+                (_, Gate::Uniform) => all_or_none(&at, lod, *candidates, frame),
+                (_, Gate::Random) => at_random(&at, lod, *candidates, frame),
+            });
+        }
+    }
+    bits
+}
+
+/// A word's place.
+struct At {
+    instance: u32,
+    first: usize,
+    bones: usize,
+}
+
+/// Wellons' "lowbias32".
+pub fn scramble(word: u32) -> u32 {
+    let mixed = (word ^ (word >> 16)).wrapping_mul(0x21f0_aaad);
+    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x735a_2d97);
+    mixed ^ (mixed >> 15)
+}
+
+/// The numbers of a word's bits.
+pub fn bits_of(word: u32) -> impl Iterator<Item = usize> {
+    std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
+        .take_while(|rest| *rest != 0)
+        .map(|rest| rest.trailing_zeros() as usize)
+}
+
+/// A skips an update each period: at once where a period is no longer than a frame, else when the last frame has
+/// passed a multiple of it.
+pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
+    period <= frame_ticks || ticks % period < frame_ticks
+}
+
+fn by_priority(
+    table: &GateTable,
+    at: &At,
+    lod: &Lod,
+    candidates: u32,
+    phase: &Phase,
+    frame: &Frame,
+    longest: u32,
+) -> u32 {
+    let ticks = frame.ticks.wrapping_add(scramble(at.instance) & 0xffff);
+    let is_active = |bit: &usize| {
+        let level = (table.priority(phase.row, at.first + bit) * lod.omega) >> 16;
+        let period = (longest >> 16) * level + (((longest & 0xffff) * level) >> 16);
+        !is_skipped(period, ticks, frame.frame_ticks)
+    };
+    bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
+}
+
+fn all_or_none(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
+    let frame = frame.frame.wrapping_add(scramble(at.instance)) & 0xffff;
+    let is_due = (frame * lod.omega) >> 16 != ((frame + 1) * lod.omega) >> 16;
+    if is_due { candidates } else { 0 }
+}
+
+fn at_random(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
+    let first = scramble(frame.frame)
+        .wrapping_add(at.instance.wrapping_mul(at.bones as u32))
+        .wrapping_add(at.first as u32);
+    let is_active = |bit: &usize| scramble(first.wrapping_add(*bit as u32)) >> 16 < lod.omega;
+    bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
+}
+
+#[allow(clippy::too_many_arguments, reason = "the shader's own")]
+fn by_motion(
+    table: &GateTable,
+    at: &At,
+    lod: &Lod,
+    candidates: u32,
+    forced: u32,
+    phase: &Phase,
+    periods: u32,
+    sampled: &mut [u32],
+) -> u32 {
+    let mut active = forced;
+    for bit in bits_of(candidates | forced) {
+        let [period, slack] = table.motion(periods, at.first + bit);
+        let now = motion_at(table.motion(phase.row, at.first + bit), period, phase);
+        let missed = motion_between(now, sampled[bit]);
+        if forced >> bit & 1 != 0 || (missed > 0 && missed.wrapping_add(slack) > lod.allowed) {
+            active |= 1 << bit;
+            sampled[bit] = now;
+        }
+    }
+    active
+}
+
+/// `value · fraction / 65536`, the fraction at most 65536.
+pub fn share_of(value: u32, fraction: u32) -> u32 {
+    ((u64::from(value) * u64::from(fraction)) >> 16) as u32
+}
+
+/// How far a bone has moved along its clip, modulo 2³²: `row` is the sum at the row's start and its rise to the next,
+/// `period` that of the whole clip.
+pub fn motion_at([start, rise]: [u32; 2], period: u32, phase: &Phase) -> u32 {
+    start
+        .wrapping_add(share_of(rise, phase.fraction()))
+        .wrapping_add((phase.turns as u32).wrapping_mul(period))
+}
+
+/// On either way.
+pub fn motion_between(now: u32, last: u32) -> u32 {
+    (now.wrapping_sub(last) as i32).unsigned_abs()
+}

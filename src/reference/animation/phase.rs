@@ -1,0 +1,41 @@
+//! Where instances stand on their clips' common timelines: twin of `kernels/animation/phase.wgsl`.
+
+use super::place::clock;
+use crate::animation::clip_set::ClipSet;
+use crate::animation::lod::Lod;
+use crate::animation::phase::{Phase, TURNS_SHIFT, Verdict};
+use crate::animation::place::{Instance, Place};
+
+/// The phase of each instance. `places` are those of [`super::place::places`]; `history` is kept from frame to frame,
+/// and zero at first.
+///
+/// # Panics
+/// With fewer places, levels or histories than instances.
+pub fn phases(
+    set: &ClipSet,
+    instances: &[Instance],
+    places: &[Place],
+    lods: &[Lod],
+    elapsed: f32,
+    history: &mut [[u32; 2]],
+) -> Vec<Phase> {
+    let of = |(index, instance): (usize, &Instance)| {
+        let clip = &set.clips()[instance.clip as usize];
+        let (_, turns) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
+        let place = places[index * set.timelines_a_clip()];
+        let known = [instance.clip + 1, (turns >> TURNS_SHIFT) as u32];
+        let last = std::mem::replace(&mut history[index], known);
+        let flags = lods[index].flags;
+        let verdict = if flags & Lod::HIDDEN != 0 {
+            history[index] = [0; 2];
+            Verdict::Hidden
+        } else if flags & Lod::REFRESH != 0 || last != known {
+            Verdict::Forced
+        } else {
+            Verdict::Free
+        };
+        let fraction = (place.fraction.clamp(0.0, 1.0) * 65536.0) as u32;
+        Phase::new(clip.first_row + place.key, fraction, verdict, turns, instance.clip)
+    };
+    instances.iter().enumerate().map(of).collect()
+}

@@ -1,0 +1,103 @@
+//! Parity of `kernels/animation/compact.wgsl`.
+
+use super::{Draw, SIZES, random_crowd};
+use crate::Error;
+use crate::animation::compact::{Active, CompactPass};
+use crate::animation::concat::Order;
+use crate::animation::crowd::Crowd;
+use crate::reference::animation::compact::{Work, compact};
+use crate::verify::Cases;
+use crate::verify::compare::{Comparison, exact};
+use crate::verify::poison::{POISON, Poisoned};
+
+/// No bit, all, every third, single ones, whole instances; more instances than the sums have threads.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let sizes = SIZES.into_iter().chain([[33, 63], [31, 129], [5, 1000]]);
+    for (case, [bones, count]) in sizes.enumerate() {
+        let (skeleton, set, instances) = random_crowd(case as u32, bones, count)?;
+        let order = Order::new(&skeleton);
+        let crowd = Crowd::new(cases.gpu, &set, &instances)?;
+        let mut draw = Draw::new(case as u32 ^ 0xc0de);
+        for kind in ["none", "all", "a third", "few", "whole instances"] {
+            let bits = random_bits(&mut draw, kind, &order, count);
+            let name = format!("{bones} bones × {count}, {kind}");
+            add(cases, &name, &order, &crowd, &bits)?;
+        }
+    }
+    Ok(())
+}
+
+/// Words of bits, none beyond the bones.
+fn random_bits(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Vec<u32> {
+    let words = order.words();
+    let mut bits = vec![0; count * words];
+    for instance in 0..count {
+        let whole = draw.word().is_multiple_of(4);
+        for slot in 0..order.slots.len() {
+            let is_active = match kind {
+                "none" => false,
+                "all" => true,
+                "a third" => draw.word().is_multiple_of(3),
+                "few" => draw.word().is_multiple_of(100),
+                _ => whole,
+            };
+            bits[instance * words + slot / 32] |= u32::from(is_active) << (slot % 32);
+        }
+    }
+    bits
+}
+
+fn add(cases: &mut Cases<'_>, name: &str, order: &Order, crowd: &Crowd, bits: &[u32]) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let mut active = Active::new(gpu, order, crowd)?;
+    active.bits.write(gpu, bits)?;
+    let dirty = Poisoned::<u32>::new(gpu, bits.len())?;
+    let pairs = Poisoned::<u32>::new(gpu, crowd.pairs())?;
+    let instances = Poisoned::<u32>::new(gpu, crowd.pairs() / crowd.bones)?;
+    active.dirty = dirty.buffer.clone();
+    active.pairs.pairs = pairs.buffer.clone();
+    active.instances = instances.buffer.clone();
+    let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let expected = compact(order, bits);
+    let padded = |list: &[u32], room: usize| {
+        let mut list = list.to_vec();
+        list.resize(room, POISON);
+        list
+    };
+    let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
+    let listed = padded(expected_pairs, crowd.pairs());
+    let shown = padded(expected_instances, crowd.pairs() / crowd.bones);
+    cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
+    cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
+    cases.add(format!("{name}: dirty"), dirty.check(gpu, |actual| exact(actual, &expected.dirty))?);
+    cases.add(format!("{name}: dispatches"), dispatches(gpu, order, &active, &expected)?);
+    Ok(())
+}
+
+/// Workgroups of 64 for each pair, each instance, each level's chains.
+fn dispatches(
+    gpu: &crate::gpu::Gpu,
+    order: &Order,
+    active: &Active,
+    expected: &Work,
+) -> Result<Comparison, Error> {
+    let groups = |threads: usize, last: usize| {
+        let groups = threads.div_ceil(64) as u32;
+        let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
+        [x, groups.div_ceil(x), 1, last as u32]
+    };
+    let mut all = vec![groups(expected.pairs.len(), expected.pairs.len())];
+    all.push(groups(expected.instances.len(), expected.instances.len()));
+    all.extend(order.levels.windows(2).map(|level| {
+        let chains = (level[1] - level[0]) as usize;
+        groups(chains * expected.instances.len(), chains)
+    }));
+    let of_pairs = active.pairs.dispatched.read_blocking(gpu)?;
+    let mut actual = vec![[of_pairs[0], of_pairs[1], of_pairs[2], of_pairs[3]]];
+    actual.extend(active.dispatches.read_blocking(gpu)?);
+    Ok(exact(&actual, &all))
+}

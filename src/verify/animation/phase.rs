@@ -1,0 +1,66 @@
+//! Parity of `kernels/animation/phase.wgsl`.
+
+use super::{Draw, SIZES, random_crowd};
+use crate::Error;
+use crate::animation::concat::Order;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate::Gating;
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::Lod;
+use crate::animation::phase::{Phase, PhasePass};
+use crate::animation::place::Instance;
+use crate::reference::animation::phase::phases;
+use crate::reference::animation::place::places;
+use crate::verify::poison::Poisoned;
+use crate::verify::{Cases, compare};
+
+/// Frame after frame at the twin's places: the first, some hidden and some refreshed, others' clips changed, and a leap
+/// of many turns. Times are whole 64ths of a second and clips too, so that all devices agree on every turn.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = PhasePass::new(gpu)?;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let mut draw = Draw::new(case as u32 ^ 0xfa5e);
+        let (skeleton, set, mut instances) = random_crowd(case as u32, bones, count)?;
+        let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &instances)?);
+        let clips_of = super::random_clips(case as u32, &skeleton, 3)?;
+        let table = GateTable::of_movers(&Order::new(&skeleton), &set, &clips_of.iter().collect::<Vec<_>>())?;
+        let mut gating = Gating::new(gpu, &table, &crowd)?;
+        let output = Poisoned::<Phase>::new(gpu, count)?;
+        gating.phases = output.buffer.clone();
+        let mut history = vec![[0; 2]; count];
+        for (frame, elapsed) in [0.0, 0.25, 0.5, 300.0, 300.25].into_iter().enumerate() {
+            let choose = |draw: &mut Draw| match draw.word() % 8 {
+                0 => Lod::HIDDEN,
+                1 => Lod::REFRESH,
+                _ => 0,
+            };
+            let lods: Vec<Lod> = (0..count)
+                .map(|_| Lod { flags: if frame == 0 { 0 } else { choose(&mut draw) }, ..Lod::FULL })
+                .collect();
+            for instance in &mut instances {
+                let start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
+                let clip = if draw.word().is_multiple_of(8) { draw.word() % 3 } else { instance.clip };
+                *instance =
+                    Instance { clip, start, rate: [1.0, -1.0, 0.5][draw.word() as usize % 3], ..*instance };
+            }
+            crowd.instances.write(gpu, &instances)?;
+            gating.lods.write(gpu, &lods)?;
+            let found = places(&set, &instances, elapsed);
+            crowd.places.write(gpu, &found)?;
+            output.poison(gpu)?;
+            let job = pass.prepare(gpu, &clips, &crowd, &gating)?;
+            job.set(gpu, elapsed)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let expected = phases(&set, &instances, &found, &lods, elapsed, &mut history);
+            let comparison = output.check(gpu, |actual| compare::exact(actual, &expected))?;
+            cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
+        }
+        let kept = compare::exact(&gating.history.read_blocking(gpu)?, &history);
+        cases.add(format!("{bones} bones × {count}, history"), kept);
+    }
+    Ok(())
+}
