@@ -1,6 +1,7 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
 //! to 14).
 
+pub mod budget;
 pub mod clip;
 pub mod clip_set;
 pub mod compact;

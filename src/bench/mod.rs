@@ -45,6 +45,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/place", run: animation::place::cases },
     Stem { name: "animation/phase", run: animation::phase::cases },
     Stem { name: "animation/gate", run: animation::gate::cases },
+    Stem { name: "animation/budget", run: animation::budget::cases },
     Stem { name: "animation/compact", run: animation::compact::cases },
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },

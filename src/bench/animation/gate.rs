@@ -10,6 +10,7 @@ use crate::animation::phase::{Phase, Verdict};
 use crate::animation::sample::RotationPath;
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
+use crate::gpu::Buffer;
 use crate::reference::animation::gate::gate;
 
 /// Each mode at half detail, where it looks at every bone.
@@ -48,11 +49,18 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
         _ => 4 * count,
     };
     let copied = copy_of(gpu, words.max(1))?;
-    let mut sampled = vec![0; pairs];
+    // Bones missed something every time.
+    let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
     let contenders = vec![
-        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::recorded(Backend::Gpu, |encoder| {
+            if mode == Gate::Bounded {
+                encoder.copy_buffer_to_buffer(before.raw(), 0, gating.sampled.raw(), 0, before.bytes());
+            }
+            job.record(encoder);
+        }),
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Twin, || {
+            sampled.fill(0);
             drop(std::hint::black_box(gate(&table, mode, &frame, &lods, &phases, &mut sampled)));
         }),
     ];

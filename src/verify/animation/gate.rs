@@ -96,7 +96,12 @@ fn add(
 }
 
 /// Levels and phases of a frame; all forced at first.
-fn random_state(draw: &mut Draw, set: &ClipSet, count: usize, is_first: bool) -> (Vec<Lod>, Vec<Phase>) {
+pub(super) fn random_state(
+    draw: &mut Draw,
+    set: &ClipSet,
+    count: usize,
+    is_first: bool,
+) -> (Vec<Lod>, Vec<Phase>) {
     let lod = |draw: &mut Draw| Lod {
         omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
         allowed: draw.word() >> (draw.word() % 32),

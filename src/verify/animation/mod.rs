@@ -1,5 +1,6 @@
 //! Parity of `kernels/animation/`.
 
+pub mod budget;
 pub mod compact;
 pub mod concat;
 pub mod gate;

@@ -1,0 +1,262 @@
+// Which bones are sampled when only so many may be: those whose stale transforms are expected to show most. Five
+// stages, a dispatch each. Equal ranks are served in the order of instances and slots, so every device decides alike.
+import package::wgsl::animation::gating::{Lod, PHASE_FORCED, PHASE_FREE, Phase, verdict_of};
+import package::wgsl::animation::motion::{motion_at, motion_between};
+
+// One of the constants below.
+override STAGE: u32 = 0;
+
+// A thread ranks up to 32 bones of one instance, and counts the ranks.
+const RANK = 0u;
+// One workgroup finds the lowest rank that is served.
+const CHOOSE = 1u;
+// A thread takes what is above it, and counts who has just this rank.
+const DECIDE = 2u;
+// One workgroup sums these over the instances.
+const SUM = 3u;
+// A thread serves them while there is room.
+const SETTLE = 4u;
+
+const WIDTH = 64u;
+const RANKS = 1024u;
+
+struct BudgetParams {
+    instances: u32,
+    bones: u32,
+    // Words of bits an instance.
+    words: u32,
+    // Entries of a row of the table.
+    stride: u32,
+    // Bones that may be sampled.
+    budget: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: BudgetParams;
+@group(0) @binding(1) var<storage, read> lods: array<Lod>;
+@group(0) @binding(2) var<storage, read> phases: array<Phase>;
+// Of each clip: its row of periods, then a bit for each bone that moves in it.
+@group(0) @binding(3) var<storage, read> movers: array<u32>;
+// For each bone the sum of motion and its rise.
+@group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
+// For each bone, the sum of motion when it was sampled last.
+@group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
+// A bit for each bone.
+@group(0) @binding(6) var<storage, read_write> bits: array<u32>;
+// Ranks, two a word and 16 words for each word of bits; then, bit by bit, those at the lowest rank that is served.
+@group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
+// How many have each rank; then as named below; then, for each instance, how many have the lowest rank.
+@group(0) @binding(8) var<storage, read_write> tally: array<atomic<u32>>;
+
+const FORCED = 1024u;
+const LOWEST = 1025u;
+const ROOM = 1026u;
+const TIES = 1027u;
+
+var<workgroup> sums: array<u32, WIDTH>;
+
+struct Place {
+    instance: u32,
+    // The first of its bones.
+    slot: u32,
+    candidates: u32,
+    forced: u32,
+    periods: u32,
+    phase: Phase,
+}
+
+fn place_of(index: u32) -> Place {
+    let instance = index / params.words;
+    let word = index - instance * params.words;
+    let phase = phases[instance];
+    let verdict = verdict_of(phase);
+    let record = phase.clip * (params.words + 1u);
+    let all = 0xffffffffu >> (32u - min(params.bones - 32u * word, 32u));
+    let candidates = select(movers[record + 1u + word], 0u, verdict != PHASE_FREE);
+    let forced = select(0u, all, verdict == PHASE_FORCED);
+    return Place(instance, 32u * word, candidates, forced, movers[record], phase);
+}
+
+fn is_unlimited() -> bool {
+    return params.budget >= params.instances * params.bones;
+}
+
+// 1 to 768, by the logarithm of missed * weight: sixteen an octave.
+fn rank_of(missed: u32, weight: u32) -> u32 {
+    let low = (missed & 0xffffu) * weight;
+    let high = (missed >> 16u) * weight + (low >> 16u);
+    if high > 0u {
+        let lead = firstLeadingBit(high);
+        var fine = high >> (max(lead, 4u) - 4u);
+        if lead < 4u {
+            fine = (high << (4u - lead)) | ((low & 0xffffu) >> (12u + lead));
+        }
+        return 1u + 16u * (16u + lead) + (fine & 15u);
+    }
+    if low == 0u {
+        return 1u;
+    }
+    let lead = firstLeadingBit(low);
+    let fine = select(low << (4u - min(lead, 4u)), low >> (max(lead, 4u) - 4u), lead >= 4u);
+    return 1u + 16u * lead + (fine & 15u);
+}
+
+fn motion_now(place: Place, bit: u32) -> u32 {
+    let slot = place.slot + bit;
+    let period = table[place.periods * params.stride + slot].x;
+    return motion_at(table[place.phase.row * params.stride + slot], period, place.phase);
+}
+
+fn rank(index: u32) {
+    let place = place_of(index);
+    if place.slot == 0u {
+        atomicStore(&tally[TIES + place.instance], 0u);
+    }
+    if place.forced != 0u {
+        atomicAdd(&tally[FORCED], countOneBits(place.forced));
+    }
+    if is_unlimited() {
+        return;
+    }
+    let weight = lods[place.instance].weight;
+    let own = place.instance * params.bones + place.slot;
+    for (var two = 0u; two < 16u; two++) {
+        var both = 0u;
+        for (var bit = 2u * two; bit < 2u * two + 2u; bit++) {
+            if (place.candidates & (1u << bit)) == 0u {
+                continue;
+            }
+            let missed = motion_between(motion_now(place, bit), sampled[own + bit]);
+            if missed > 0u {
+                let rank = rank_of(missed, weight);
+                both |= rank << (16u * (bit & 1u));
+                atomicAdd(&tally[rank], 1u);
+            }
+        }
+        ranks[16u * index + two] = both;
+    }
+}
+
+fn choose(lane: u32) {
+    let share = RANKS / WIDTH;
+    let first = share * lane;
+    var sum = 0u;
+    for (var at = first; at < first + share; at++) {
+        sum += atomicLoad(&tally[at]);
+    }
+    sums[lane] = sum;
+    workgroupBarrier();
+    if lane == 0u {
+        // What is left after those that are sampled in any case.
+        var room = params.budget - min(atomicExchange(&tally[FORCED], 0u), params.budget);
+        var block = WIDTH;
+        while block > 0u && sums[block - 1u] <= room {
+            block--;
+            room -= sums[block];
+        }
+        // Rank 0 stands for no motion, and is never served.
+        var lowest = 0u;
+        if block > 0u {
+            lowest = share * block - 1u;
+            var count = atomicLoad(&tally[lowest]);
+            while count <= room {
+                room -= count;
+                lowest--;
+                count = atomicLoad(&tally[lowest]);
+            }
+        }
+        atomicStore(&tally[LOWEST], lowest);
+        atomicStore(&tally[ROOM], select(room, 0u, lowest == 0u));
+    }
+    workgroupBarrier();
+    for (var at = first; at < first + share; at++) {
+        atomicStore(&tally[at], 0u);
+    }
+}
+
+fn decide(index: u32) {
+    let place = place_of(index);
+    let lowest = atomicLoad(&tally[LOWEST]);
+    var above = place.forced;
+    var equal = 0u;
+    if is_unlimited() {
+        above |= place.candidates;
+    } else {
+        for (var two = 0u; two < 16u; two++) {
+            let both = ranks[16u * index + two];
+            let pair = vec2<u32>(both & 0xffffu, both >> 16u);
+            above |= (u32(pair.x > lowest) | (u32(pair.y > lowest) << 1u)) << (2u * two);
+            equal |= (u32(pair.x == lowest) | (u32(pair.y == lowest) << 1u)) << (2u * two);
+        }
+        equal = select(equal, 0u, lowest == 0u);
+    }
+    bits[index] = above;
+    ranks[16u * params.instances * params.words + index] = equal;
+    if equal != 0u {
+        atomicAdd(&tally[TIES + place.instance], countOneBits(equal));
+    }
+}
+
+fn sum_ties(lane: u32) {
+    let share = (params.instances + WIDTH - 1u) / WIDTH;
+    let first = min(lane * share, params.instances);
+    let end = min(first + share, params.instances);
+    var sum = 0u;
+    for (var instance = first; instance < end; instance++) {
+        sum += atomicLoad(&tally[TIES + instance]);
+    }
+    sums[lane] = sum;
+    workgroupBarrier();
+    var before = 0u;
+    for (var other = 0u; other < lane; other++) {
+        before += sums[other];
+    }
+    for (var instance = first; instance < end; instance++) {
+        before += atomicExchange(&tally[TIES + instance], before);
+    }
+}
+
+fn settle(index: u32) {
+    let place = place_of(index);
+    let first_ties = 16u * params.instances * params.words;
+    var before = atomicLoad(&tally[TIES + place.instance]);
+    for (var word = index - place.slot / 32u; word < index; word++) {
+        before += countOneBits(ranks[first_ties + word]);
+    }
+    let room = atomicLoad(&tally[ROOM]);
+    var chosen = bits[index];
+    var waiting = ranks[first_ties + index];
+    while waiting != 0u && before < room {
+        chosen |= waiting & (~waiting + 1u);
+        waiting &= waiting - 1u;
+        before++;
+    }
+    bits[index] = chosen;
+    let own = place.instance * params.bones + place.slot;
+    while chosen != 0u {
+        let bit = firstTrailingBit(chosen);
+        chosen &= chosen - 1u;
+        sampled[own + bit] = motion_now(place, bit);
+    }
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = (group.y * groups.x + group.x) * WIDTH + lane;
+    if STAGE == CHOOSE {
+        choose(lane);
+    } else if STAGE == SUM {
+        sum_ties(lane);
+    } else if index < params.instances * params.words {
+        if STAGE == RANK {
+            rank(index);
+        } else if STAGE == DECIDE {
+            decide(index);
+        } else {
+            settle(index);
+        }
+    }
+}
