@@ -110,9 +110,10 @@ fn at_random(instance: u32, first: u32, candidates: u32) -> u32 {
     return chosen;
 }
 
-// `forced`: those that are sampled whatever they missed.
-fn by_motion(instance: u32, first: u32, candidates: u32, forced: u32, phase: Phase, periods: u32) -> u32 {
+// `asked`: those that are sampled whatever they missed. So are all where nothing may be missed.
+fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, phase: Phase, periods: u32) -> u32 {
     let allowed = lods[instance].allowed;
+    let forced = asked | select(0u, candidates, allowed == 0u);
     let row = phase.row * params.stride + first;
     let last = periods * params.stride + first;
     let own = instance * params.bones + first;

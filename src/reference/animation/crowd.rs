@@ -1,5 +1,6 @@
 //! Crowds without a device: the twins of a frame, one after another.
 
+use super::budget::budget;
 use super::compact::{Work, compact};
 use super::concat::concat_dirty;
 use super::gate::gate;
@@ -14,6 +15,15 @@ use crate::animation::lod::Lod;
 use crate::animation::place::Instance;
 use crate::animation::sample::RotationPath;
 use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
+
+/// Who decides which bones are sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// A gate.
+    Gate(Gate),
+    /// At most so many bones of the crowd.
+    Budget(u32),
+}
 
 /// Instances of one skeleton, and what they keep from frame to frame.
 #[derive(Debug, Clone)]
@@ -63,10 +73,13 @@ impl<'a> Crowd<'a> {
     }
 
     /// Brings the crowd to a time, and says what was done for it.
-    pub fn advance(&mut self, mode: Gate, frame: &Frame, elapsed: f32) -> Work {
+    pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let places = places(self.set, &self.instances, elapsed);
         let phases = phases(self.set, &self.instances, &places, &self.lods, elapsed, &mut self.history);
-        let bits = gate(self.table, mode, frame, &self.lods, &phases, &mut self.sampled);
+        let bits = match choice {
+            Choice::Gate(mode) => gate(self.table, mode, frame, &self.lods, &phases, &mut self.sampled),
+            Choice::Budget(most) => budget(self.table, most, &self.lods, &phases, &mut self.sampled),
+        };
         let work = compact(self.order, &bits);
         let (bones, timelines) = (self.set.bones(), self.set.timelines_a_clip());
         for pair in work.pairs.iter().map(|pair| *pair as usize) {

@@ -110,11 +110,13 @@ fn by_motion(
     at: &At,
     lod: &Lod,
     candidates: u32,
-    forced: u32,
+    asked: u32,
     phase: &Phase,
     periods: u32,
     sampled: &mut [u32],
 ) -> u32 {
+    // So are all where nothing may be missed.
+    let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let mut active = forced;
     for bit in bits_of(candidates | forced) {
         let [period, slack] = table.motion(periods, at.first + bit);

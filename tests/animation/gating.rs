@@ -1,0 +1,333 @@
+//! Gates: what they promise, on random clips and on the creature's.
+
+use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
+use relievo::animation::sample::{RotationPath, Wrap};
+use relievo::animation::transform::Affine;
+use relievo::animation::{
+    Clip, ClipSet, Frame, Gate, GateTable, Instance, Lod, Order, Skeleton, creature, lod::OMEGA_ONE,
+};
+use relievo::reference::animation::budget::rank_of;
+use relievo::reference::animation::compact::Work;
+use relievo::reference::animation::crowd::{Choice, Crowd};
+use relievo::reference::animation::gate::{gate, is_skipped, share_of};
+use relievo::verify::animation::{Draw, random_clips, random_skeleton};
+
+/// What a test plays.
+struct Stage {
+    skeleton: Skeleton,
+    clips: Vec<Clip>,
+    order: Order,
+    set: ClipSet,
+    reaches: Vec<f32>,
+}
+
+impl Stage {
+    fn new(skeleton: Skeleton, clips: Vec<Clip>) -> Self {
+        let set = ClipSet::new(&clips.iter().collect::<Vec<_>>()).expect("one skeleton");
+        let order = Order::new(&skeleton);
+        let reaches = (0..skeleton.len()).map(|bone| 0.05 + 0.1 * (bone % 4) as f32).collect();
+        Self { skeleton, clips, order, set, reaches }
+    }
+
+    fn random(case: u32, bones: usize) -> Self {
+        let skeleton = random_skeleton(case, bones).expect("valid");
+        let clips = random_clips(case, &skeleton, 3).expect("valid");
+        Self::new(skeleton, clips)
+    }
+
+    fn creature() -> Self {
+        let model = creature().expect("valid");
+        Self::new(model.skeleton, model.clips)
+    }
+
+    fn clips(&self) -> Vec<&Clip> {
+        self.clips.iter().collect()
+    }
+
+    fn bounds(&self, path: RotationPath) -> GateTable {
+        GateTable::of_bounds(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
+    }
+
+    fn movers(&self) -> GateTable {
+        GateTable::of_movers(&self.order, &self.set, &self.clips()).expect("fits")
+    }
+
+    fn crowd<'a>(&'a self, table: &'a GateTable, path: RotationPath, instances: &[Instance]) -> Crowd<'a> {
+        Crowd::new(&self.order, &self.set, table, path, instances.to_vec())
+    }
+
+    /// The farthest that a point which follows one bone alone is from where full evaluation puts it: the ends of the
+    /// bone's axes, as far out as its reach.
+    fn error(&self, stale: &[Affine], fresh: &[Affine]) -> f64 {
+        let mut worst = 0.0_f64;
+        for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
+            let reach = f64::from(self.reaches[pair % self.skeleton.len()]);
+            for (axis, side) in (0..3).flat_map(|axis| [(axis, -reach), (axis, reach)]) {
+                let off = |row: usize| {
+                    let minus = |column: usize| f64::from(stale[row][column]) - f64::from(fresh[row][column]);
+                    minus(3) + side * minus(axis)
+                };
+                worst = worst.max((off(0).powi(2) + off(1).powi(2) + off(2).powi(2)).sqrt());
+            }
+        }
+        worst
+    }
+}
+
+fn frame(number: u32) -> Frame {
+    Frame { ticks: number * 1092, frame_ticks: 1092, frame: number }
+}
+
+/// Plays a crowd that may miss `times` the allowed way, of of instances with changing clips, directions and rates at uneven frame times beside one that
+/// is evaluated in full; gives the largest share of the allowed error and the share of the bones that were sampled.
+fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case: u32) -> (f64, f64) {
+    let mut draw = Draw::new(case ^ 0xb0de);
+    let instance = |draw: &mut Draw| {
+        let wrap = if draw.word().is_multiple_of(4) { Wrap::Clamp } else { Wrap::Loop };
+        let clip = draw.word() % stage.clips.len() as u32;
+        Instance::new(clip, wrap, 2.0 * draw.signed(), [1.0, -1.0, 0.25, 2.5][draw.word() as usize % 4])
+    };
+    let instances: Vec<Instance> = (0..6).map(|_| instance(&mut draw)).collect();
+    let (bounds, movers) = (stage.bounds(path), stage.movers());
+    let mut lazy = stage.crowd(&bounds, path, &instances);
+    let mut full = stage.crowd(&movers, path, &instances);
+    lazy.lods.iter_mut().for_each(|lod| lod.allowed = times * bounds.units(allowed));
+    let (mut elapsed, mut worst, mut sampled) = (0.0, 0.0_f64, 0);
+    let frames = 150;
+    for number in 0..frames {
+        // 1 to 100 ms, and now and then many turns at once.
+        let leap = if draw.word().is_multiple_of(40) { 29.0 } else { 0.0 };
+        elapsed += leap + 0.001 + 0.099 * (draw.word() % 1000) as f32 / 1000.0;
+        if draw.word().is_multiple_of(8) {
+            let (at, new) = (draw.word() as usize % instances.len(), instance(&mut draw));
+            (lazy.instances[at], full.instances[at]) = (new, new);
+        }
+        sampled += lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed).pairs.len();
+        full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
+        worst = worst.max(stage.error(&lazy.models, &full.models));
+    }
+    let pairs = frames as usize * instances.len() * stage.skeleton.len();
+    (worst / f64::from(allowed), sampled as f64 / pairs as f64)
+}
+
+/// The promise of `bounded`: no point is further off than allowed. 1e-4 for rounding of matrices.
+#[test]
+fn no_point_is_further_off_than_bounded_allows() {
+    let (mut closest, mut least) = (0.0_f64, 1.0_f64);
+    let stages = (0..6).map(|case| (Stage::random(case, [1, 2, 7, 20, 40, 65][case as usize]), case));
+    for (stage, case) in stages.chain([(Stage::creature(), 9)]) {
+        for path in [RotationPath::Slerp, RotationPath::Nlerp] {
+            for allowed in [0.01, 0.05, 0.3, 2.0, 10.0] {
+                let (worst, sampled) = bounded_run(&stage, path, allowed, 1, case);
+                assert!(worst <= 1.0 + 1e-4 / f64::from(allowed), "{case} {path:?} {allowed}: {worst} of it");
+                (closest, least) = (closest.max(worst), least.min(sampled));
+            }
+        }
+    }
+    assert!(closest > 0.5 && least < 0.3, "far too careful: {closest} of what is allowed, {least} sampled");
+}
+
+/// The test above sees a gate that lets bones miss four times as much.
+#[test]
+fn a_gate_that_allows_too_much_is_seen() {
+    let stage = Stage::random(0, 1);
+    let found: Vec<f64> =
+        (0..8).map(|case| bounded_run(&stage, RotationPath::Slerp, 0.05, 4, case).0).collect();
+    assert!(found.iter().any(|worst| *worst > 1.01), "{found:?}");
+}
+
+/// Without anything that may be missed, bounded and full evaluation are equal to the bit.
+#[test]
+fn nothing_allowed_is_nothing_missed() {
+    let stage = Stage::creature();
+    let (bounds, movers) = (stage.bounds(RotationPath::Slerp), stage.movers());
+    let instances: Vec<_> =
+        (0..5).map(|at| Instance::new(at % 3, Wrap::Loop, 0.3 * at as f32, 1.0)).collect();
+    let mut lazy = stage.crowd(&bounds, RotationPath::Slerp, &instances);
+    let mut full = stage.crowd(&movers, RotationPath::Slerp, &instances);
+    for number in 0..90 {
+        let elapsed = number as f32 / 60.0;
+        lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed);
+        full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
+        assert!(lazy.models == full.models, "frame {number}");
+    }
+}
+
+/// Full evaluation of moving bones alone is full evaluation.
+#[test]
+fn bones_that_never_move_are_sampled_once() {
+    let stage = Stage::creature();
+    let movers = stage.movers();
+    let mut crowd = stage.crowd(&movers, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
+    let first = crowd.advance(Choice::Gate(Gate::Off), &frame(0), 0.0);
+    let next = crowd.advance(Choice::Gate(Gate::Off), &frame(1), 0.4);
+    assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
+    let locals = relievo::reference::animation::sample::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
+    assert_eq!(crowd.models, relievo::reference::animation::concat::concat(&stage.skeleton, &locals));
+}
+
+fn pairs_a_frame(stage: &Stage, table: &GateTable, choice: Choice, lod: Lod, frames: u32) -> Vec<Work> {
+    let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
+    let mut crowd = stage.crowd(table, RotationPath::Slerp, &instances);
+    crowd.lods.fill(lod);
+    (0..frames).map(|number| crowd.advance(choice, &frame(number), number as f32 / 60.0)).collect()
+}
+
+#[test]
+fn uniform_and_random_take_their_share_of_the_bones() {
+    let stage = Stage::creature();
+    let table = stage.movers();
+    let moving = pairs_a_frame(&stage, &table, Choice::Gate(Gate::Off), Lod::FULL, 2)[1].pairs.len();
+    for share in [0.0, 0.1, 0.33, 0.75, 1.0] {
+        let lod = Lod { omega: (share * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
+        for mode in [Gate::Uniform, Gate::Random] {
+            let done = pairs_a_frame(&stage, &table, Choice::Gate(mode), lod, 121);
+            assert_eq!(done[0].pairs.len(), 20 * 153, "a first frame is full");
+            let mean = done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / 120.0;
+            let found = mean / moving as f64;
+            assert!((found - share).abs() < 0.01, "{mode:?}: {found} of {share}");
+            // Together, or each for itself.
+            let is_whole = |work: &Work| work.pairs.len() == work.instances.len() * moving / 20;
+            let whole = done[1..].iter().all(is_whole);
+            assert_eq!(whole, mode == Gate::Uniform || share == 0.0 || share == 1.0, "{mode:?} {share}");
+        }
+    }
+}
+
+/// The specification's words: skipped iff p ≤ t − t_prev or t/p ≠ t_prev/p, in whole numbers.
+#[test]
+fn skip_period_is_the_specifications() {
+    let mut draw = Draw::new(1);
+    for _ in 0..20_000 {
+        let (period, passed) = (draw.word() >> (draw.word() % 32), draw.word() >> (16 + draw.word() % 16));
+        let last = draw.word() / 2;
+        let ticks = last + passed;
+        let expected = period <= passed || ticks / period != last / period;
+        assert_eq!(is_skipped(period, ticks, passed), expected, "{period} {last} {passed}");
+    }
+}
+
+/// A's rule skips a bone once a period, at Ω = 1 never, at Ω = 0 always; more where priorities are low.
+#[test]
+fn skip_period_skips_once_a_period() {
+    let stage = Stage::creature();
+    let user = vec![USER_DEFAULT; stage.skeleton.len()];
+    let of = |clip| Priorities::new(&stage.skeleton, clip, true, &Weights::default(), &user).expect("fits");
+    let priorities: Vec<_> = stage.clips.iter().map(of).collect();
+    let table =
+        GateTable::of_priorities(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
+    // A second, of 65,536 ticks.
+    let mode = Choice::Gate(Gate::SkipPeriod { period: 65536 });
+    let share = |omega: u32| {
+        let done = pairs_a_frame(&stage, &table, mode, Lod { omega, ..Lod::FULL }, 241);
+        done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
+    };
+    let moving = share(OMEGA_ONE);
+    // Priorities near ½ at Ω = ½: a skip each quarter of a second, of 15 frames.
+    let half = share(OMEGA_ONE / 2) / moving;
+    assert!((0.8..0.96).contains(&half), "{half}");
+    let tenth = share(OMEGA_ONE / 10) / moving;
+    assert!(tenth < half && tenth > 0.1, "{tenth}");
+    assert_eq!(share(0), 0.0);
+}
+
+#[test]
+fn hidden_instances_cost_nothing_and_come_back_whole() {
+    let stage = Stage::creature();
+    for (table, mode) in [(stage.movers(), Gate::Uniform), (stage.bounds(RotationPath::Slerp), Gate::Bounded)]
+    {
+        let instances = [Instance::new(0, Wrap::Loop, 0.0, 1.0); 2];
+        let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
+        crowd.lods.fill(Lod { omega: 1000, allowed: u32::MAX >> 1, ..Lod::FULL });
+        let done = |crowd: &mut Crowd<'_>, number: u32| {
+            crowd.advance(Choice::Gate(mode), &frame(number), number as f32 / 60.0).pairs.len()
+        };
+        assert_eq!(done(&mut crowd, 0), 2 * 153);
+        crowd.lods[0].flags = Lod::HIDDEN;
+        assert_eq!(done(&mut crowd, 1), 0);
+        crowd.lods[0].flags = 0;
+        assert_eq!(done(&mut crowd, 2), 153, "came back");
+        crowd.lods[1].flags = Lod::REFRESH;
+        assert_eq!(done(&mut crowd, 3), 153, "asked for");
+        crowd.lods[1].flags = 0;
+        crowd.instances[1].clip = 1;
+        assert_eq!(done(&mut crowd, 4), 153, "another clip");
+        assert_eq!(done(&mut crowd, 5), 0);
+    }
+}
+
+#[test]
+fn budgets_are_kept_and_spent_on_what_missed_most() {
+    let stage = Stage::creature();
+    let table = GateTable::of_expectations(
+        &stage.skeleton,
+        &stage.set,
+        &stage.clips(),
+        &stage.reaches,
+        RotationPath::Slerp,
+    )
+    .expect("fits");
+    let moving = pairs_a_frame(&stage, &table, Choice::Budget(u32::MAX), Lod::FULL, 2)[1].pairs.len();
+    for most in [0, 1, 500, 1500] {
+        let done = pairs_a_frame(&stage, &table, Choice::Budget(most), Lod::FULL, 60);
+        // Every bone that moves has missed something.
+        assert!(done[1..].iter().all(|work| work.pairs.len() == (most as usize).min(moving)), "{most}");
+    }
+    // Twice as large on screen is served more.
+    let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
+    let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
+    for (at, lod) in crowd.lods.iter_mut().enumerate() {
+        lod.weight = if at < 10 { 65535 } else { 20000 };
+    }
+    let mut near = [0; 2];
+    for number in 0..60 {
+        let work = crowd.advance(Choice::Budget(600), &frame(number), number as f32 / 60.0);
+        for pair in work.pairs.iter().filter(|_| number > 0) {
+            near[usize::from(*pair >= 10 * 153)] += 1;
+        }
+    }
+    assert!(near[0] as f64 > 1.4 * near[1] as f64, "{near:?}");
+}
+
+/// Ranks are in the order of the products, and within a sixteenth of an octave of each other.
+#[test]
+fn ranks_are_logarithms() {
+    let mut draw = Draw::new(2);
+    for _ in 0..20_000 {
+        let (missed, weight) =
+            (draw.word() >> (1 + draw.word() % 31), draw.word() >> (16 + draw.word() % 16));
+        let product = f64::from(missed) * f64::from(weight);
+        let octaves = if product > 0.0 { product.log2() } else { 0.0 };
+        let rank = f64::from(rank_of(missed, weight) - 1) / 16.0;
+        assert!((rank - octaves).abs() < 0.15 && rank_of(missed, weight) < 1024, "{missed} {weight}");
+        assert!(rank_of(missed, weight) <= rank_of(missed.saturating_add(1).min(u32::MAX >> 1), weight));
+    }
+}
+
+#[test]
+fn shares_of_words_are_floors() {
+    let mut draw = Draw::new(3);
+    for _ in 0..1000 {
+        let (value, fraction) = (draw.word(), draw.word() % 65537);
+        assert_eq!(share_of(value, fraction), (u128::from(value) * u128::from(fraction) / 65536) as u32);
+    }
+}
+
+/// A table of another clip, or reaches that are none, are refused by name.
+#[test]
+fn tables_refuse_what_does_not_fit() {
+    let stage = Stage::creature();
+    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
+    let (clips, path) = (stage.clips(), RotationPath::Slerp);
+    assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &clips[..1])), "clips.len");
+    assert_eq!(field(GateTable::of_priorities(&stage.order, &stage.set, &clips, &[])), "priorities.len");
+    let bounds = |reaches: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, reaches, path);
+    assert_eq!(field(bounds(&[])), "reaches.len");
+    let mut reaches = stage.reaches.clone();
+    reaches[3] = f32::NAN;
+    assert_eq!(field(bounds(&reaches)), "reaches[3]");
+    let other = Stage::random(0, 7);
+    assert_eq!(field(GateTable::of_movers(&other.order, &stage.set, &clips)), "skeleton.len");
+    // The twin alone, without phases, has nothing to decide.
+    assert!(gate(&stage.movers(), Gate::Off, &frame(0), &[], &[], &mut []).is_empty());
+}
