@@ -78,8 +78,9 @@ fn frame(number: u32) -> Frame {
     Frame { ticks: number * 1092, frame_ticks: 1092, frame: number }
 }
 
-/// Plays a crowd that may miss `times` the allowed way, of of instances with changing clips, directions and rates at uneven frame times beside one that
-/// is evaluated in full; gives the largest share of the allowed error and the share of the bones that were sampled.
+/// Plays instances with changing clips, directions and rates at uneven frame times, allowed to miss `times` the allowed
+/// way, beside ones that are evaluated in full; gives the largest share of the allowed error and the share of the bones
+/// that were sampled.
 fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case: u32) -> (f64, f64) {
     let mut draw = Draw::new(case ^ 0xb0de);
     let instance = |draw: &mut Draw| {
