@@ -8,6 +8,7 @@ pub mod creature;
 #[cfg(feature = "gpu")]
 pub mod crowd;
 pub mod gltf;
+pub mod layers;
 pub mod model;
 pub mod place;
 pub mod priority;
@@ -18,6 +19,7 @@ pub mod transform;
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use clip_set::ClipSet;
 pub use creature::creature;
+pub use layers::Layer;
 pub use model::Model;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};

@@ -1,7 +1,13 @@
 //! Skeletons, clips, their import and their sampling, against code of its own in double precision.
 
 mod concatenation;
+#[cfg(feature = "gpu")]
+mod crowds;
+#[cfg(feature = "gpu")]
+#[path = "../harness/mod.rs"]
+mod harness;
 mod import;
+mod layers;
 mod malformed;
 mod player;
 mod sampling;
