@@ -73,6 +73,8 @@ pub struct Crowd {
     pub locals: Buffer<Local>,
     /// Written by [`super::concat::ConcatPass`]: `instance · bones + bone`.
     pub models: Buffer<Affine>,
+    /// What `models` were before, for motion vectors, where it is kept: see [`Crowd::with_previous`].
+    pub previous: Option<Buffer<Affine>>,
     /// Bones of the skeleton.
     pub bones: usize,
     /// Layers, the base included: 1 where each instance plays one clip.
@@ -109,9 +111,29 @@ impl Crowd {
             shares: Buffer::from_slice(gpu, "shares", &all_shares(layers, bones))?,
             locals: Buffer::new(gpu, "locals", pairs)?,
             models: Buffer::new(gpu, "models", pairs)?,
+            previous: None,
             bones,
             layers: 1 + layers.len(),
         })
+    }
+
+    /// The same crowd, which keeps its palettes of the frame before in `previous`, 48 bytes a bone. They are zero until
+    /// [`Crowd::record_previous`] has run.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn with_previous(self, gpu: &Gpu) -> Result<Self, GpuError> {
+        let previous = Some(Buffer::new(gpu, "previous models", self.pairs())?);
+        Ok(Self { previous, ..self })
+    }
+
+    /// Records the copy of `models` into `previous`: before concatenation, so that it may change `models` in place and
+    /// in part. In the first frame, and where instances are teleported, after it too, so that nothing seems to move.
+    /// Nothing where `previous` is not kept.
+    pub fn record_previous(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(previous) = &self.previous {
+            encoder.copy_buffer_to_buffer(self.models.raw(), 0, previous.raw(), 0, previous.bytes());
+        }
     }
 
     /// Replaces how much a layer counts for each instance; layers above the base are numbered from 1.

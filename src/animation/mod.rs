@@ -1,6 +1,9 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
 //! to 14).
 
+pub mod bounds;
+#[cfg(feature = "gpu")]
+pub mod chosen;
 pub mod clip;
 pub mod clip_set;
 pub mod concat;
@@ -12,10 +15,12 @@ pub mod layers;
 pub mod model;
 pub mod place;
 pub mod priority;
+pub mod root_motion;
 pub mod sample;
 pub mod skeleton;
 pub mod transform;
 
+pub use bounds::Bounds;
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use clip_set::ClipSet;
 pub use creature::creature;
@@ -23,6 +28,7 @@ pub use layers::Layer;
 pub use model::Model;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};
+pub use root_motion::RootMotion;
 pub use sample::{RotationPath, Wrap};
 pub use skeleton::{Bone, Skeleton, Skin};
 pub use transform::{Affine, Transform};

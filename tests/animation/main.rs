@@ -1,5 +1,6 @@
 //! Skeletons, clips, their import and their sampling, against code of its own in double precision.
 
+mod bounds;
 mod concatenation;
 #[cfg(feature = "gpu")]
 mod crowds;
@@ -10,5 +11,6 @@ mod import;
 mod layers;
 mod malformed;
 mod player;
+mod root_motion;
 mod sampling;
 mod scene;

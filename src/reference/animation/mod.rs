@@ -1,5 +1,6 @@
 //! Twins of `kernels/animation/`.
 
+pub mod bounds;
 pub mod concat;
 pub mod place;
 pub mod sample;

@@ -33,7 +33,7 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
 
-fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
+pub(crate) fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
     let key = place.key as usize;
     match interpolation {
         Interpolation::CubicSpline => spline(values, place),
@@ -42,7 +42,7 @@ fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) ->
     }
 }
 
-fn rotation_at(
+pub(crate) fn rotation_at(
     values: &[[f32; 4]],
     interpolation: Interpolation,
     place: Place,
