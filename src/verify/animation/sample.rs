@@ -1,5 +1,6 @@
 //! Parity of `kernels/animation/sample.wgsl`.
 
+use super::edges::{ELAPSED, edges};
 use super::{Draw, SIZES, random_crowd, random_instances};
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
@@ -32,6 +33,20 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let path = [RotationPath::Slerp, RotationPath::Nlerp][case % 2];
         let name = format!("{bones} bones × {count}, {} layers", 1 + above);
         add(cases, name, &set, &instances, &layers, path)?;
+    }
+    at_edges(cases)
+}
+
+/// Poses that are known without a twin; and the same under a layer of their like, with the keys of rotations negated.
+fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let edges = edges()?;
+    let poses: Vec<Local> = edges.poses().iter().map(packed).collect();
+    let negated = edges.instances.iter().map(|instance| Instance { clip: instance.clip + 2, ..*instance });
+    let layer = Layer::new(negated.collect(), vec![0.5; edges.instances.len()]);
+    for (name, layers) in [("edges", vec![]), ("edges under their negatives", vec![layer])] {
+        let mut bench = Bench::new(cases.gpu, &edges.set, &edges.instances, &layers, RotationPath::Slerp)?;
+        bench.expected.clone_from(&poses);
+        cases.add(name, bench.all()?);
     }
     Ok(())
 }
@@ -116,7 +131,7 @@ impl<'a> Bench<'a> {
         layers: &[Layer],
         path: RotationPath,
     ) -> Result<Self, Error> {
-        let places: Vec<Place> = places(set, &all_instances(base, layers), 0.25);
+        let places: Vec<Place> = places(set, &all_instances(base, layers), ELAPSED);
         let mut crowd = Crowd::layered(gpu, set, base, layers)?;
         crowd.places.write(gpu, &places)?;
         let output = Poisoned::new(gpu, crowd.pairs())?;
