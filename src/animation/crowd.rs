@@ -61,8 +61,8 @@ impl ClipBuffers {
 /// Instances of one skeleton on the device. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
 pub struct Crowd {
-    /// What each plays, layer by layer: `layer · len + instance`. May be rewritten; clips must stay below the set's
-    /// number.
+    /// What each plays, layer by layer: `layer · len + instance`. May be rewritten, a layer by `write_at` from
+    /// `layer · len` on; clips must stay below the set's number.
     pub instances: Buffer<Instance>,
     /// Written by [`super::place::PlacePass`]: the set's [`ClipSet::timelines_a_clip`] for each of `instances`.
     pub places: Buffer<Place>,

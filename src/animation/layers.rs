@@ -12,6 +12,20 @@
 //!
 //! Two clips that fade into each other are one layer with a mask of ones; a wave of the arm over a walk is one with
 //! the mask of the arm ([`mask_below`]).
+//!
+//! ```
+//! use relievo::animation::{ClipSet, Instance, Layer, Wrap, creature, layers::mask_below};
+//!
+//! let model = creature()?;
+//! let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
+//! let walk = vec![Instance::new(0, Wrap::Loop, 0.0, 1.0); 100];
+//! let wave = Layer::new(vec![Instance::new(2, Wrap::Loop, 0.0, 1.0); 100], vec![1.0; 100]);
+//! let arm = model.skeleton.bones().iter().position(|bone| bone.name == "upper_arm_left").expect("there");
+//! let layers = [wave.masked(mask_below(&model.skeleton, arm)?)];
+//! // Crowd::layered(&gpu, &set, &walk, &layers)?, sampled by SamplePass::layered; later crowd.set_weights(&gpu, 1, …)?
+//! layers[0].validate("layers[0]", 100, set.clips().len(), set.bones())?;
+//! # Ok::<(), relievo::InputError>(())
+//! ```
 
 use super::place::Instance;
 use super::skeleton::Skeleton;

@@ -1,5 +1,5 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
-//! to 14).
+//! to 14); crowds of them on the device, with layers, bounds, and root motion for the host.
 
 pub mod bounds;
 #[cfg(feature = "gpu")]

@@ -149,7 +149,8 @@ fn check_times(from: f64, to: f64) -> Result<(), InputError> {
     Ok(())
 }
 
-/// [`RootMotion::delta`] of a whole crowd, without allocation. `motions` has one entry a clip of the set: `None` where
+/// [`RootMotion::delta`] of a whole crowd, without allocation: of one layer of it. Deltas of clips that are blended blend
+/// by the same weights ([`blend`](crate::reference::animation::sample::blend)). `motions` has one entry a clip of the set: `None` where
 /// nothing was taken out, which does not move.
 ///
 /// # Errors
