@@ -7,7 +7,8 @@
 //!   and, with the feature `gpu`, the passes of each operation, in one file (and `pass.rs`) a stem.
 //! - [`surface`]: height maps, the ray-height methods with measured error and cost, acceleration maps, tangent
 //!   frames.
-//! - [`animation`]: skeletons and clips, import of glTF, sampling and concatenation, priorities of bones and keys.
+//! - [`animation`]: skeletons and clips, import of glTF, sampling and concatenation, layers, bounds, root motion,
+//!   priorities of bones and keys.
 //! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
 //!   a GPU.
 //! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.

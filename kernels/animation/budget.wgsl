@@ -72,7 +72,7 @@ fn place_of(index: u32) -> Place {
     let record = phase.clip * (params.words + 1u);
     let all = 0xffffffffu >> (32u - min(params.bones - 32u * word, 32u));
     let candidates = select(movers[record + 1u + word], 0u, verdict != PHASE_FREE);
-    let forced = select(0u, all, verdict == PHASE_FORCED);
+    let forced = select(0u, all, verdict >= PHASE_FORCED);
     return Place(instance, 32u * word, candidates, forced, movers[record], phase);
 }
 

@@ -1,7 +1,7 @@
 // Which bones of which instances are sampled this frame. A thread decides on up to 32 bones of one instance, a bit each,
 // from whole numbers alone: every device decides alike.
 import package::wgsl::animation::gating::{
-    Lod, OMEGA_ONE, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of,
+    Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of,
 };
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
@@ -155,9 +155,10 @@ fn main(
         return;
     }
     let record = phase.clip * (params.words + 1u);
-    let candidates = movers[record + 1u + word];
     let all = 0xffffffffu >> (32u - min(params.bones - first, 32u));
-    let forced = select(0u, all, verdict == PHASE_FORCED);
+    let candidates = select(movers[record + 1u + word], all, verdict == PHASE_BLENDED);
+    // Sums of motion know of one clip alone.
+    let forced = select(0u, all, verdict >= PHASE_FORCED);
     var chosen = candidates;
     if MODE == BOUNDED {
         chosen = by_motion(instance, first, candidates, forced, phase, movers[record]);

@@ -3,7 +3,7 @@
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::clock;
 import package::wgsl::animation::instance::AnimationInstance;
-import package::wgsl::animation::gating::{Lod, Phase, LOD_HIDDEN, LOD_REFRESH, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN};
+import package::wgsl::animation::gating::{Lod, Phase, LOD_HIDDEN, LOD_REFRESH, PHASE_BLENDED, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN};
 
 struct PhaseParams {
     instances: u32,
@@ -11,6 +11,8 @@ struct PhaseParams {
     timelines: u32,
     // Seconds since the instances' starts.
     elapsed: f32,
+    // Layers above the base.
+    layers: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: PhaseParams;
@@ -19,12 +21,23 @@ struct PhaseParams {
 // Key and, as bits, fraction.
 @group(0) @binding(3) var<storage, read> places: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> lods: array<Lod>;
-// The last clip + 1, or 0 where no pose is stored; its turns.
-@group(0) @binding(5) var<storage, read_write> history: array<vec2<u32>>;
-@group(0) @binding(6) var<storage, read_write> phases: array<Phase>;
+// Weights of the layers above the base, layer by layer.
+@group(0) @binding(5) var<storage, read> shares: array<f32>;
+// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; its turns.
+@group(0) @binding(6) var<storage, read_write> history: array<vec2<u32>>;
+@group(0) @binding(7) var<storage, read_write> phases: array<Phase>;
 
 // After as many turns every bone is sampled again: sums of motion would overflow.
 const TURNS_SHIFT = 4u;
+const BLENDED = 0x80000000u;
+
+fn is_blended(instance: u32) -> bool {
+    var sum = 0.0;
+    for (var layer = 0u; layer < params.layers; layer++) {
+        sum += shares[layer * params.instances + instance];
+    }
+    return sum > 0.0;
+}
 
 @compute @workgroup_size(64)
 fn main(
@@ -41,7 +54,8 @@ fn main(
     let now = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
     let place = places[index * params.timelines];
     let flags = lods[index].flags;
-    let known = vec2<u32>(instance.clip + 1u, bitcast<u32>(now.turns >> TURNS_SHIFT));
+    let blended = is_blended(index);
+    let known = vec2<u32>((instance.clip + 1u) | select(0u, BLENDED, blended), bitcast<u32>(now.turns >> TURNS_SHIFT));
     let last = history[index];
     var verdict = PHASE_FREE;
     if (flags & LOD_HIDDEN) != 0u {
@@ -50,6 +64,8 @@ fn main(
     } else {
         if (flags & LOD_REFRESH) != 0u || last.x != known.x || last.y != known.y {
             verdict = PHASE_FORCED;
+        } else if blended {
+            verdict = PHASE_BLENDED;
         }
         history[index] = known;
     }

@@ -1,9 +1,11 @@
 // Transforms of bones in their parents' spaces at the places where instances stand in their clips (glTF 2.0, appendix
-// C). A thread samples one bone of one instance: every one, or with COMPACTED those of a list.
+// C). A thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it lays
+// what other layers play over it, as far as weight and mask let them.
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 
 override COMPACTED: bool = false;
+override LAYERED: bool = false;
 override NLERP: bool = false;
 
 struct SampleParams {
@@ -12,9 +14,13 @@ struct SampleParams {
     timelines: u32,
     // Bones of all instances.
     pairs: u32,
+    instances: u32,
+    // The base included.
+    layers: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: SampleParams;
+// Layer by layer, and so are places.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 // Three a bone and clip: timeline (30 bits) and interpolation, first value.
 @group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
@@ -27,6 +33,8 @@ struct SampleParams {
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
 // Translation and scale x; rotation; scale y and z.
 @group(0) @binding(7) var<storage, read_write> locals: array<vec4<f32>>;
+// For each layer above the base a weight an instance, then for each of them a mask of bones.
+@group(0) @binding(8) var<storage, read> shares: array<f32>;
 
 const CONSTANT = 0x3fffffffu;
 const STEP = 0u;
@@ -96,6 +104,34 @@ fn rotation(at: Between, is_spline: bool) -> vec4<f32> {
     return slerp(start, end, at.fraction);
 }
 
+struct Local {
+    moved: vec3<f32>,
+    turned: vec4<f32>,
+    scaled: vec3<f32>,
+}
+
+// `slot` is layer * instances + instance.
+fn local_at(slot: u32, bone: u32) -> Local {
+    let track = 3u * (instances[slot].clip * params.bones + bone);
+    let first_place = slot * params.timelines;
+    let turning = tracks[track + 1u];
+    let moved = vector(between(tracks[track], first_place));
+    let turned = rotation(between(turning, first_place), turning.x >> 30u > LINEAR);
+    let scaled = vector(between(tracks[track + 2u], first_place));
+    return Local(moved, turned, scaled);
+}
+
+// Rotations on the chord to the nearer of q and -q.
+fn blend(below: Local, over: Local, share: f32) -> Local {
+    let rest = 1.0 - share;
+    let nearer = select(share, -share, dot(below.turned, over.turned) < 0.0);
+    return Local(
+        below.moved * rest + over.moved * share,
+        unit_quaternion(below.turned * rest + over.turned * nearer),
+        below.scaled * rest + over.scaled * share,
+    );
+}
+
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -114,13 +150,17 @@ fn main(
     }
     let instance = pair / params.bones;
     let bone = pair - instance * params.bones;
-    let track = 3u * (instances[instance].clip * params.bones + bone);
-    let first_place = instance * params.timelines;
-    let turning = tracks[track + 1u];
-    let moved = vector(between(tracks[track], first_place));
-    let turned = rotation(between(turning, first_place), turning.x >> 30u > LINEAR);
-    let scaled = vector(between(tracks[track + 2u], first_place));
-    locals[3u * pair] = vec4<f32>(moved, scaled.x);
-    locals[3u * pair + 1u] = turned;
-    locals[3u * pair + 2u] = vec4<f32>(scaled.yz, 0.0, 0.0);
+    var local = local_at(instance, bone);
+    if LAYERED {
+        let masks = (params.layers - 1u) * params.instances;
+        for (var over = 0u; over + 1u < params.layers; over++) {
+            let share = shares[over * params.instances + instance] * shares[masks + over * params.bones + bone];
+            if share > 0.0 {
+                local = blend(local, local_at((over + 1u) * params.instances + instance, bone), share);
+            }
+        }
+    }
+    locals[3u * pair] = vec4<f32>(local.moved, local.scaled.x);
+    locals[3u * pair + 1u] = local.turned;
+    locals[3u * pair + 2u] = vec4<f32>(local.scaled.yz, 0.0, 0.0);
 }

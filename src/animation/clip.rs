@@ -21,6 +21,8 @@
 //!   the short one without looking. The tangents of cubic splines fit their values' signs: both stay as they are.
 //! - Times below 2⁻¹⁰⁰ s count as 0: devices may flush smaller differences to zero.
 
+mod replaced;
+
 use super::skeleton::Skeleton;
 use super::transform::{finite, unit};
 use crate::InputError;

@@ -24,7 +24,7 @@ pub struct Lod {
 impl Lod {
     /// Not in view: costs nothing, and is sampled in full when it comes back.
     pub const HIDDEN: u32 = 1;
-    /// Sampled in full this frame: set it when blend weights change.
+    /// Sampled in full this frame, whatever the gate says.
     pub const REFRESH: u32 = 2;
     /// Full detail.
     pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };

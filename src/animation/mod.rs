@@ -1,7 +1,10 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
-//! to 14).
+//! to 14); crowds of them on the device, with layers, bounds, and root motion for the host.
 
+pub mod bounds;
 pub mod budget;
+#[cfg(feature = "gpu")]
+pub mod chosen;
 pub mod clip;
 pub mod clip_set;
 pub mod compact;
@@ -12,26 +15,31 @@ pub mod crowd;
 pub mod gate;
 pub mod gate_table;
 pub mod gltf;
+pub mod layers;
 pub mod lod;
 pub mod model;
 pub mod motion;
 pub mod phase;
 pub mod place;
 pub mod priority;
+pub mod root_motion;
 pub mod sample;
 pub mod skeleton;
 pub mod transform;
 
+pub use bounds::Bounds;
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use clip_set::ClipSet;
 pub use concat::Order;
 pub use creature::creature;
 pub use gate::{Frame, Gate};
 pub use gate_table::GateTable;
+pub use layers::Layer;
 pub use lod::{Lens, Lod, Range};
 pub use model::Model;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};
+pub use root_motion::RootMotion;
 pub use sample::{RotationPath, Wrap};
 pub use skeleton::{Bone, Skeleton, Skin};
 pub use transform::{Affine, Transform};

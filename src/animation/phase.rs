@@ -1,7 +1,9 @@
 //! Where instances stand on the timeline that all bones of their clip share, in whole numbers: what gates decide by.
 //! Comes after `animation/place`, before `animation/gate`. Whether an instance has to be sampled in full is found here
 //! too: at its first frame, after it was hidden, when its clip changed, when the host asks for it
-//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and every 16 turns of a loop, before sums of motion overflow.
+//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), every 16 turns of a loop, before sums of motion overflow, and when
+//! layers above its clip begin or end to count. While they do, sums of motion, which know of one clip alone, mean
+//! nothing.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -11,6 +13,9 @@ pub use pass::{PhaseJob, PhasePass};
 
 /// After 2⁴ turns an instance is sampled in full.
 pub const TURNS_SHIFT: u32 = 4;
+
+/// In an instance's history: layers lay above its clip.
+pub const BLENDED: u32 = 1 << 31;
 
 /// What asks for a pose besides the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +27,8 @@ pub enum Verdict {
     Hidden = 1,
     /// Its stored pose means nothing: everything is sampled.
     Forced = 2,
+    /// Layers lie above its clip: gates that decide by motion sample everything, others decide on every bone.
+    Blended = 3,
 }
 
 /// Where an instance stands.
@@ -55,7 +62,8 @@ impl Phase {
         match self.fraction_and_verdict >> 20 {
             0 => Verdict::Free,
             1 => Verdict::Hidden,
-            _ => Verdict::Forced,
+            2 => Verdict::Forced,
+            _ => Verdict::Blended,
         }
     }
 }

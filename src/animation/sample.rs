@@ -23,6 +23,12 @@ pub const SLERP_BOUND: f32 = 1e-6;
 /// five terms adds 6ε, times at most 0.3: 16ε a weight, of two or three: 50ε. Normalizing adds 16ε. 160ε < 1e-5.
 pub const SAMPLE_BOUND: f32 = 1e-5;
 
+/// By what the bound grows with each layer above the base. A blend of two vectors that are off by e is off by e and 12ε
+/// of rounding (weight times mask 2ε, what is left of 1 4ε, both products and their sum 6ε). The blend of two unit
+/// quaternions less than 90° apart is at least √½ long, so normalizing enlarges that by at most √2, and adds 16ε:
+/// √2·e + 33ε, and 33ε = 2e-6 is a fifth of the least e.
+pub const LAYER_GROWTH: f32 = 1.65;
+
 /// Coefficients of Eberly's polynomial for cosines from √½ to 1: 1/(i(2i + 1)) for i from 1 to 5. The last makes up
 /// for the terms that are left out.
 pub const SLERP_U: [f32; 5] = [1.0 / 3.0, 1.0 / 10.0, 1.0 / 21.0, 1.0 / 36.0, REST / 55.0];

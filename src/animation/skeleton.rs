@@ -102,6 +102,24 @@ impl Skeleton {
         self.bones.iter().map(|bone| bone.rest).collect()
     }
 
+    /// How long each bone is at rest, in metres: as far as its farthest child, or as its parent where it has none.
+    pub fn lengths(&self) -> Vec<f64> {
+        let reach = |bone: &Bone| glam::DVec3::from(bone.rest.translation.map(f64::from)).length();
+        let mut lengths = vec![0.0_f64; self.bones.len()];
+        for bone in &self.bones {
+            if let Some(parent) = bone.parent {
+                let length = &mut lengths[parent as usize];
+                *length = length.max(reach(bone));
+            }
+        }
+        for (length, bone) in lengths.iter_mut().zip(&self.bones) {
+            if *length == 0.0 {
+                *length = reach(bone);
+            }
+        }
+        lengths
+    }
+
     /// For each of [`Skeleton::joints`], the place in that list of the nearest joint above it.
     pub fn joint_parents(&self) -> Vec<Option<u32>> {
         let mut place = vec![None; self.bones.len()];

@@ -49,6 +49,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/compact", run: animation::compact::cases },
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
+    Stem { name: "animation/bounds", run: animation::bounds::cases },
     // Draws pictures: last, for the sake of lavapipe's clock (see its cases).
     Stem { name: "surface/relief", run: surface::relief::cases },
 ];

@@ -65,6 +65,15 @@ impl<T: bytemuck::Pod> Buffer<T> {
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, bytemuck::cast_slice(data)))
     }
 
+    /// Replaces `data.len()` elements from `first` on.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] when they reach beyond the buffer's end.
+    pub fn write_at(&self, gpu: &Gpu, first: usize, data: &[T]) -> Result<(), GpuError> {
+        let offset = first.saturating_mul(size_of::<T>()) as u64;
+        gpu.scoped(|| gpu.queue().write_buffer(&self.raw, offset, bytemuck::cast_slice(data)))
+    }
+
     /// The elements, once everything that was submitted before the first poll has run.
     ///
     /// Never blocks: the future is woken when the device has answered. A browser's event loop hears the device

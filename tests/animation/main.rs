@@ -1,10 +1,18 @@
 //! Skeletons, clips, their import and their sampling, against code of its own in double precision.
 
+mod bounds;
 mod concatenation;
 #[cfg(feature = "gpu")]
+mod crowds;
+#[cfg(feature = "gpu")]
 mod gating;
+#[cfg(feature = "gpu")]
+#[path = "../harness/mod.rs"]
+mod harness;
 mod import;
+mod layers;
 mod malformed;
 mod player;
+mod root_motion;
 mod sampling;
 mod scene;

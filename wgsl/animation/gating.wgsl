@@ -27,6 +27,7 @@ struct Phase {
 const PHASE_FREE = 0u;
 const PHASE_HIDDEN = 1u;
 const PHASE_FORCED = 2u;
+const PHASE_BLENDED = 3u;
 
 fn verdict_of(phase: Phase) -> u32 {
     return phase.fraction_and_verdict >> 20u;

@@ -49,7 +49,7 @@ impl Active {
             let bound = format!("must be {}, as the skeleton's", order.slots.len());
             return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
         }
-        let instances = crowd.pairs() / crowd.bones;
+        let instances = crowd.len();
         let words = order.words();
         let chains = order.levels.windows(2).map(|level| [0, 1, 1, level[1] - level[0]]);
         let dispatches: Vec<[u32; 4]> = std::iter::once([0, 1, 1, 0]).chain(chains).collect();
@@ -92,7 +92,7 @@ impl CompactPass {
     /// [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, crowd: &Crowd, active: &Active) -> Result<CompactJob, Error> {
         let params = CompactParams {
-            instances: (crowd.pairs() / crowd.bones) as u32,
+            instances: crowd.len() as u32,
             bones: crowd.bones as u32,
             words: active.words,
             levels: active.levels,

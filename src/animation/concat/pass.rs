@@ -68,7 +68,7 @@ impl ConcatPass {
     pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<ConcatJob, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
         let nothing = Nothing::new(gpu)?;
-        let instances = (crowd.pairs() / crowd.bones) as u32;
+        let instances = crowd.len() as u32;
         let step = |level: &[u32]| {
             let threads = match self.walk {
                 Walk::Levels => instances * (level[1] - level[0]),
@@ -163,7 +163,7 @@ impl<'a> Binder<'a> {
     fn bind(&self, gpu: &Gpu, kernel: &Kernel, level: &[u32], lists: &Lists<'_>) -> Result<Group, GpuError> {
         let crowd = self.crowd;
         let params = ConcatParams {
-            instances: (crowd.pairs() / crowd.bones) as u32,
+            instances: crowd.len() as u32,
             bones: crowd.bones as u32,
             words: self.order.words() as u32,
             first_chain: level[0],

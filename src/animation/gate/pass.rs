@@ -31,7 +31,8 @@ pub struct Gating {
     pub lods: Buffer<Lod>,
     /// Written by [`crate::animation::phase::PhasePass`].
     pub phases: Buffer<Phase>,
-    /// Each instance's last clip + 1 and its last turns / 16. Zeros: no pose is stored.
+    /// Each instance's last clip + 1, with the highest bit where layers lay above it, and its last turns / 16. Zeros: no
+    /// pose is stored.
     pub history: Buffer<[u32; 2]>,
     /// For each slot of each instance, the sum of motion when it was sampled last.
     pub sampled: Buffer<u32>,
@@ -53,7 +54,7 @@ impl Gating {
             let bound = format!("must be {}, as the crowd's", crowd.bones);
             return Err(InputError::new("table.bones", table.bones(), bound).into());
         }
-        let instances = crowd.pairs() / crowd.bones;
+        let instances = crowd.len();
         Ok(Self {
             lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
             phases: Buffer::new(gpu, "phases", instances)?,

@@ -13,6 +13,7 @@ pub(crate) struct PhaseParams {
     pub instances: u32,
     pub timelines: u32,
     pub elapsed: f32,
+    pub layers: u32,
 }
 
 /// Finds phases.
@@ -45,6 +46,7 @@ impl PhasePass {
             instances: gating.lods.len() as u32,
             timelines: clips.timelines_a_clip as u32,
             elapsed: 0.0,
+            layers: crowd.layers as u32 - 1,
         };
         let uniform = Uniform::new(gpu, "phase", &params)?;
         let resources = [
@@ -53,6 +55,7 @@ impl PhasePass {
             clips.clips.raw().as_entire_binding(),
             crowd.places.raw().as_entire_binding(),
             gating.lods.raw().as_entire_binding(),
+            crowd.shares.raw().as_entire_binding(),
             gating.history.raw().as_entire_binding(),
             gating.phases.raw().as_entire_binding(),
         ];

@@ -2,10 +2,10 @@
 
 use encase::ShaderType;
 
-use super::{Instance, Place};
+use super::Instance;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `PlaceParams` of the kernel.
@@ -92,21 +92,7 @@ impl Crowd {
     /// # Errors
     /// [`InputError`] for no instances, or ones that play no clip of the set; [`GpuError`].
     pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
-        let pairs = instances.len().saturating_mul(set.bones());
-        // Shaders count vectors in u32.
-        if instances.is_empty() || pairs.saturating_mul(3) > 1 << 31 {
-            let bound = format!("must be at least 1 and at most {}", (1_u64 << 31) / 3 / set.bones() as u64);
-            return Err(InputError::new("instances.len", instances.len(), bound).into());
-        }
-        instances.iter().try_for_each(|instance| instance.validate(set.clips().len()))?;
-        let places: Buffer<Place> = Buffer::new(gpu, "places", instances.len() * set.timelines_a_clip())?;
-        Ok(Self {
-            instances: Buffer::from_slice(gpu, "instances", instances)?,
-            places,
-            locals: Buffer::new(gpu, "locals", pairs)?,
-            models: Buffer::new(gpu, "models", pairs)?,
-            bones: set.bones(),
-        })
+        Self::layered(gpu, set, instances, &[])
     }
 }
 

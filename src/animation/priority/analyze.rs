@@ -63,7 +63,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
     }
     // All probes of a moment share its pose.
     probes.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.key.cmp(&b.key)));
-    let lengths = lengths(skeleton);
+    let lengths = skeleton.lengths();
     let mut squares = vec![0.0; differences.keys.len()];
     for moment in probes.chunk_by(|a, b| a.time == b.time) {
         let locals = sample(clip, moment[0].time, RotationPath::Slerp);
@@ -113,24 +113,6 @@ pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
         squares.sum::<f64>().sqrt()
     };
     off(0).max(off(1)).max(off(2))
-}
-
-/// How long each bone is: as far as its farthest child, or as its parent where it has none.
-fn lengths(skeleton: &Skeleton) -> Vec<f64> {
-    let reach = |transform: &Transform| glam::DVec3::from(transform.translation.map(f64::from)).length();
-    let mut lengths = vec![0.0_f64; skeleton.len()];
-    for bone in skeleton.bones() {
-        if let Some(parent) = bone.parent {
-            let length = &mut lengths[parent as usize];
-            *length = length.max(reach(&bone.rest));
-        }
-    }
-    for (length, bone) in lengths.iter_mut().zip(skeleton.bones()) {
-        if *length == 0.0 {
-            *length = reach(&bone.rest);
-        }
-    }
-    lengths
 }
 
 /// The `x ≥ 0` that makes `|rows · x − targets|` least. With five unknowns, the solution is the best of those that

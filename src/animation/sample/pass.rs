@@ -3,9 +3,9 @@
 use encase::ShaderType;
 
 use super::RotationPath;
-use crate::Error;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
 
 /// `SampleParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -13,6 +13,8 @@ pub(crate) struct SampleParams {
     pub bones: u32,
     pub timelines: u32,
     pub pairs: u32,
+    pub instances: u32,
+    pub layers: u32,
 }
 
 /// The pairs of instance and bone that are to be sampled, in a buffer that kernels may fill.
@@ -51,27 +53,42 @@ impl ActivePairs {
 pub struct SamplePass {
     all: Kernel,
     compacted: Kernel,
+    is_layered: bool,
 }
 
 impl SamplePass {
-    /// Compiles the pipelines.
+    /// Compiles the pipelines for crowds of one layer.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
-        let nlerp = f64::from(path == RotationPath::Nlerp);
+        Self::compile(gpu, path, false)
+    }
+
+    /// Compiles the pipelines for crowds of any number of layers. `path` holds between keys; between layers rotations
+    /// always take the chord.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn layered(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
+        Self::compile(gpu, path, true)
+    }
+
+    fn compile(gpu: &Gpu, path: RotationPath, is_layered: bool) -> Result<Self, GpuError> {
+        let (nlerp, layered) = (f64::from(path == RotationPath::Nlerp), f64::from(is_layered));
         let kernel = |compacted| {
-            let overrides = [("COMPACTED", compacted), ("NLERP", nlerp)];
+            let overrides = [("COMPACTED", compacted), ("LAYERED", layered), ("NLERP", nlerp)];
             Kernel::new(gpu, &shaders::ANIMATION_SAMPLE, &overrides)
         };
-        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)? })
+        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)?, is_layered })
     }
 
     /// Prepares sampling of every bone of every instance, at the crowd's places.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`InputError`] for a crowd of several layers unless the pass is [`SamplePass::layered`]; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
+        self.check(crowd)?;
         let nothing = ActivePairs {
             pairs: Buffer::new(gpu, "no pairs", 0)?,
             dispatched: Buffer::from_slice(gpu, "no pairs", &[0; 4])?,
@@ -87,7 +104,7 @@ impl SamplePass {
     /// Prepares sampling of the active pairs alone; the other local transforms stay.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// As [`SamplePass::prepare`].
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -95,8 +112,16 @@ impl SamplePass {
         crowd: &Crowd,
         active: &ActivePairs,
     ) -> Result<SampleActiveJob, Error> {
+        self.check(crowd)?;
         let group = bind(&self.compacted, gpu, clips, crowd, active)?;
         Ok(SampleActiveJob { kernel: self.compacted.clone(), group, dispatched: active.dispatched.clone() })
+    }
+
+    fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
+        if self.is_layered || crowd.layers == 1 {
+            return Ok(());
+        }
+        Err(InputError::new("crowd.layers", crowd.layers, "must be 1, or the pass SamplePass::layered"))
     }
 }
 
@@ -111,6 +136,8 @@ fn bind(
         bones: crowd.bones as u32,
         timelines: clips.timelines_a_clip as u32,
         pairs: crowd.pairs() as u32,
+        instances: crowd.len() as u32,
+        layers: crowd.layers as u32,
     };
     let uniform = Uniform::new(gpu, "sample", &params)?;
     let resources = [
@@ -122,6 +149,7 @@ fn bind(
         active.pairs.raw().as_entire_binding(),
         active.dispatched.raw().as_entire_binding(),
         crowd.locals.raw().as_entire_binding(),
+        crowd.shares.raw().as_entire_binding(),
     ];
     kernel.bind(gpu, 0, &resources)
 }

@@ -1,6 +1,7 @@
 //! Benchmarks of `kernels/animation/`: crowds of the creature's 153 bones that play a clip with 60 keys for each
 //! part of each bone, every instance at a time of its own.
 
+pub mod bounds;
 pub mod budget;
 pub mod compact;
 pub mod concat;

@@ -2,13 +2,16 @@
 
 use super::{CROWDS, Scene};
 use crate::Error;
+use crate::animation::crowd::Crowd;
+use crate::animation::layers::{Layer, all_instances};
+use crate::animation::place::Instance;
 use crate::animation::sample::{ActivePairs, RotationPath, SamplePass};
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
 use crate::reference::animation::place::places;
-use crate::reference::animation::sample::sample_set;
+use crate::reference::animation::sample::{sample_layers, sample_set};
 
-/// All bones, and a list of every fourth.
+/// All bones, a list of every fourth, and two clips blended.
 ///
 /// # Errors
 /// What the device reports.
@@ -33,7 +36,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         ];
         bench.case(format!("{count} × 153, 60 keys"), (pairs, "bone"), 120 * pairs as u64, contenders)?;
     }
-    quarter(bench, &pass)
+    quarter(bench, &pass)?;
+    blended(bench)
 }
 
 fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
@@ -56,4 +60,29 @@ fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     ];
     let bytes = 120 * chosen.len() as u64;
     bench.case("a quarter of 1000 × 153", (chosen.len(), "bone"), bytes, contenders)
+}
+
+/// Two layers on all bones, the upper 0.3 s later and at half the weight.
+fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let (gpu, count) = (bench.gpu, CROWDS[1]);
+    let scene = Scene::new(gpu, count)?;
+    let later = |instance: &Instance| Instance { start: instance.start + 0.3, ..*instance };
+    let layers = [Layer::new(scene.instances.iter().map(later).collect(), vec![0.5; count])];
+    let found = places(&scene.set, &all_instances(&scene.instances, &layers), 0.4);
+    let crowd = Crowd::layered(gpu, &scene.set, &scene.instances, &layers)?;
+    crowd.places.write(gpu, &found)?;
+    let pairs = crowd.pairs();
+    let job = SamplePass::layered(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &crowd)?;
+    // Four keys of 10 words in, 10 words out.
+    let copied = copy_of(gpu, 25 * pairs)?;
+    let twin = || {
+        let (set, base) = (&scene.set, &scene.instances);
+        drop(std::hint::black_box(sample_layers(set, base, &layers, &found, RotationPath::Slerp)));
+    };
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, twin),
+    ];
+    bench.case("two clips blended, 1000 × 153", (pairs, "bone"), 200 * pairs as u64, contenders)
 }

@@ -1,4 +1,4 @@
-//! Crowds without a device: the twins of a frame, one after another.
+//! Crowds of one layer without a device: the twins of a frame, one after another.
 
 use super::budget::budget;
 use super::compact::{Work, compact};
@@ -75,7 +75,7 @@ impl<'a> Crowd<'a> {
     /// Brings the crowd to a time, and says what was done for it.
     pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let places = places(self.set, &self.instances, elapsed);
-        let phases = phases(self.set, &self.instances, &places, &self.lods, elapsed, &mut self.history);
+        let phases = phases(self.set, &self.instances, &[], &places, &self.lods, elapsed, &mut self.history);
         let bits = match choice {
             Choice::Gate(mode) => gate(self.table, mode, frame, &self.lods, &phases, &mut self.sampled),
             Choice::Budget(most) => budget(self.table, most, &self.lods, &phases, &mut self.sampled),

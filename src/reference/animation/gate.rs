@@ -21,24 +21,27 @@ pub fn gate(
     let mut bits = Vec::with_capacity(phases.len() * table.words());
     for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
         let (periods, movers) = table.record(phase.clip);
-        for (word, candidates) in movers.iter().enumerate() {
+        for (word, movers) in movers.iter().enumerate() {
             let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
             let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
+            let candidates = if phase.verdict() == Verdict::Blended { all } else { *movers };
             bits.push(match (phase.verdict(), gate) {
                 (Verdict::Hidden, _) => 0,
                 (verdict, Gate::Bounded) => {
-                    let forced = if verdict == Verdict::Forced { all } else { 0 };
+                    // Sums of motion know of one clip alone.
+                    let is_forced = matches!(verdict, Verdict::Forced | Verdict::Blended);
+                    let forced = if is_forced { all } else { 0 };
                     let sampled = &mut sampled[instance * table.bones() + at.first..];
-                    by_motion(table, &at, lod, *candidates, forced, phase, periods, sampled)
+                    by_motion(table, &at, lod, candidates, forced, phase, periods, sampled)
                 }
                 (Verdict::Forced, _) => all,
-                (_, Gate::Off) => *candidates,
-                _ if lod.omega >= OMEGA_ONE => *candidates,
+                (_, Gate::Off) => candidates,
+                _ if lod.omega >= OMEGA_ONE => candidates,
                 (_, Gate::SkipPeriod { period }) => {
-                    by_priority(table, &at, lod, *candidates, phase, frame, period)
+                    by_priority(table, &at, lod, candidates, phase, frame, period)
                 }
-                (_, Gate::Uniform) => all_or_none(&at, lod, *candidates, frame),
-                (_, Gate::Random) => at_random(&at, lod, *candidates, frame),
+                (_, Gate::Uniform) => all_or_none(&at, lod, candidates, frame),
+                (_, Gate::Random) => at_random(&at, lod, candidates, frame),
             });
         }
     }

@@ -1,5 +1,6 @@
 //! Twins of `kernels/animation/`.
 
+pub mod bounds;
 pub mod budget;
 pub mod compact;
 pub mod concat;

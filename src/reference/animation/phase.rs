@@ -2,18 +2,20 @@
 
 use super::place::clock;
 use crate::animation::clip_set::ClipSet;
+use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
-use crate::animation::phase::{Phase, TURNS_SHIFT, Verdict};
+use crate::animation::phase::{BLENDED, Phase, TURNS_SHIFT, Verdict};
 use crate::animation::place::{Instance, Place};
 
-/// The phase of each instance. `places` are those of [`super::place::places`]; `history` is kept from frame to frame,
-/// and zero at first.
+/// The phase of each instance. `layers` are those above the base; `places` are those of
+/// [`super::place::places`]; `history` is kept from frame to frame, and zero at first.
 ///
 /// # Panics
 /// With fewer places, levels or histories than instances.
 pub fn phases(
     set: &ClipSet,
     instances: &[Instance],
+    layers: &[Layer],
     places: &[Place],
     lods: &[Lod],
     elapsed: f32,
@@ -23,7 +25,9 @@ pub fn phases(
         let clip = &set.clips()[instance.clip as usize];
         let (_, turns) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
         let place = places[index * set.timelines_a_clip()];
-        let known = [instance.clip + 1, (turns >> TURNS_SHIFT) as u32];
+        let weight: f32 = layers.iter().map(|layer| layer.weights[index]).sum();
+        let blended = if weight > 0.0 { BLENDED } else { 0 };
+        let known = [(instance.clip + 1) | blended, (turns >> TURNS_SHIFT) as u32];
         let last = std::mem::replace(&mut history[index], known);
         let flags = lods[index].flags;
         let verdict = if flags & Lod::HIDDEN != 0 {
@@ -31,6 +35,8 @@ pub fn phases(
             Verdict::Hidden
         } else if flags & Lod::REFRESH != 0 || last != known {
             Verdict::Forced
+        } else if blended != 0 {
+            Verdict::Blended
         } else {
             Verdict::Free
         };

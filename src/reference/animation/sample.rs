@@ -2,6 +2,7 @@
 
 use crate::animation::clip::{Clip, Interpolation, Part, Track};
 use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
+use crate::animation::layers::{Layer, all_instances};
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V};
 use crate::animation::transform::Transform;
@@ -32,7 +33,7 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
 
-fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
+pub(crate) fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
     let key = place.key as usize;
     match interpolation {
         Interpolation::CubicSpline => spline(values, place),
@@ -41,7 +42,7 @@ fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) ->
     }
 }
 
-fn rotation_at(
+pub(crate) fn rotation_at(
     values: &[[f32; 4]],
     interpolation: Interpolation,
     place: Place,
@@ -148,6 +149,45 @@ pub fn sample_pair(
     });
     let (values, interpolation, place) = find(set, tracks[1], places);
     Transform { translation, rotation: rotation_at(values, interpolation, place, path), scale }
+}
+
+/// Every bone's transform of every instance with its layers, at the places of [`all_instances`]: what the kernel
+/// computes of a layered crowd.
+///
+/// # Panics
+/// With fewer places than the set needs, and with layers that do not fit.
+pub fn sample_layers(
+    set: &ClipSet,
+    base: &[Instance],
+    layers: &[Layer],
+    places: &[Place],
+    path: RotationPath,
+) -> Vec<Transform> {
+    let all = sample_set(set, &all_instances(base, layers), places, path);
+    let (below, above) = all.split_at(base.len() * set.bones());
+    let mut poses = below.to_vec();
+    for (layer, over) in layers.iter().zip(above.chunks(below.len())) {
+        for (pair, (pose, over)) in poses.iter_mut().zip(over).enumerate() {
+            let share = layer.share(pair / set.bones(), pair % set.bones());
+            if share > 0.0 {
+                *pose = blend(pose, over, share);
+            }
+        }
+    }
+    poses
+}
+
+/// The pose `share` of the way from one to another; rotations on the chord to the nearer of q and −q.
+pub fn blend(below: &Transform, over: &Transform, share: f32) -> Transform {
+    let rest = 1.0 - share;
+    let vector = |below: [f32; 3], over: [f32; 3]| std::array::from_fn(|i| below[i] * rest + over[i] * share);
+    let nearer = if dot(below.rotation, over.rotation) < 0.0 { -share } else { share };
+    let rotation = std::array::from_fn(|i| below.rotation[i] * rest + over.rotation[i] * nearer);
+    Transform {
+        translation: vector(below.translation, over.translation),
+        rotation: normalized(rotation),
+        scale: vector(below.scale, over.scale),
+    }
 }
 
 /// A track's values from its first on, how they are interpolated, and where.

@@ -56,7 +56,7 @@ fn add(cases: &mut Cases<'_>, name: &str, order: &Order, crowd: &Crowd, bits: &[
     active.bits.write(gpu, bits)?;
     let dirty = Poisoned::<u32>::new(gpu, bits.len())?;
     let pairs = Poisoned::<u32>::new(gpu, crowd.pairs())?;
-    let instances = Poisoned::<u32>::new(gpu, crowd.pairs() / crowd.bones)?;
+    let instances = Poisoned::<u32>::new(gpu, crowd.len())?;
     active.dirty = dirty.buffer.clone();
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
@@ -70,7 +70,7 @@ fn add(cases: &mut Cases<'_>, name: &str, order: &Order, crowd: &Crowd, bits: &[
     };
     let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
     let listed = padded(expected_pairs, crowd.pairs());
-    let shown = padded(expected_instances, crowd.pairs() / crowd.bones);
+    let shown = padded(expected_instances, crowd.len());
     cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
     cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
     cases.add(format!("{name}: dirty"), dirty.check(gpu, |actual| exact(actual, &expected.dirty))?);

@@ -65,7 +65,7 @@ fn add(
     table: &GateTable,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let count = crowd.pairs() / crowd.bones;
+    let count = crowd.len();
     let mut gating = Gating::new(gpu, table, crowd)?;
     let mut active = Active::new(gpu, order, crowd)?;
     let output = Poisoned::<u32>::new(gpu, count * table.words())?;
@@ -116,6 +116,7 @@ pub(super) fn random_state(
             _ if is_first => Verdict::Forced,
             0 => Verdict::Hidden,
             1 => Verdict::Forced,
+            2 => Verdict::Blended,
             _ => Verdict::Free,
         };
         Phase::new(row, fraction, verdict, draw.word() as i32 >> (draw.word() % 32), clip)

@@ -1,8 +1,10 @@
 //! Parity of `kernels/animation/`.
 
+pub mod bounds;
 pub mod budget;
 pub mod compact;
 pub mod concat;
+pub mod edges;
 pub mod gate;
 pub mod phase;
 pub mod place;
@@ -160,5 +162,21 @@ pub fn random_crowd(
 }
 
 /// Bones and instances around every workgroup boundary.
-pub const SIZES: [[usize; 2]; 10] =
-    [[1, 1], [1, 64], [1, 65], [2, 31], [7, 9], [63, 1], [64, 3], [65, 2], [153, 40], [1000, 3]];
+pub const SIZES: [[usize; 2]; 16] = [
+    [1, 1],
+    [1, 64],
+    [1, 65],
+    [2, 31],
+    [7, 9],
+    [63, 1],
+    [64, 3],
+    [65, 2],
+    [153, 40],
+    [1000, 3],
+    [3, 63],
+    [2, 64],
+    [3, 65],
+    [1, 127],
+    [2, 128],
+    [3, 129],
+];

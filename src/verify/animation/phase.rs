@@ -6,6 +6,7 @@ use crate::animation::concat::Order;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
 use crate::animation::gate_table::GateTable;
+use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::phase::{Phase, PhasePass};
 use crate::animation::place::Instance;
@@ -14,7 +15,7 @@ use crate::reference::animation::place::places;
 use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
-/// Frame after frame at the twin's places: the first, some hidden and some refreshed, others' clips changed, and a leap
+/// Frame after frame at the twin's places: the first, some hidden and some refreshed, others' clips and layers changed, and a leap
 /// of many turns. Times are whole 64ths of a second and clips too, so that all devices agree on every turn.
 ///
 /// # Errors
@@ -25,7 +26,13 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let mut draw = Draw::new(case as u32 ^ 0xfa5e);
         let (skeleton, set, mut instances) = random_crowd(case as u32, bones, count)?;
-        let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &instances)?);
+        // Every third case has layers.
+        let layer = |draw: &mut Draw| {
+            Layer::new(instances.clone(), (0..count).map(|_| (draw.word() % 3) as f32 / 2.0).collect())
+        };
+        let mut layers: Vec<Layer> = (0..case % 3).map(|_| layer(&mut draw)).collect();
+        let crowd = Crowd::layered(gpu, &set, &instances, &layers)?;
+        let clips = ClipBuffers::new(gpu, &set)?;
         let clips_of = super::random_clips(case as u32, &skeleton, 3)?;
         let table = GateTable::of_movers(&Order::new(&skeleton), &set, &clips_of.iter().collect::<Vec<_>>())?;
         let mut gating = Gating::new(gpu, &table, &crowd)?;
@@ -47,15 +54,19 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 *instance =
                     Instance { clip, start, rate: [1.0, -1.0, 0.5][draw.word() as usize % 3], ..*instance };
             }
-            crowd.instances.write(gpu, &instances)?;
+            for (at, layer) in layers.iter_mut().enumerate() {
+                layer.weights.iter_mut().for_each(|weight| *weight = (draw.word() % 4 / 3) as f32);
+                crowd.set_weights(gpu, at + 1, &layer.weights)?;
+            }
+            crowd.instances.write_at(gpu, 0, &instances)?;
             gating.lods.write(gpu, &lods)?;
             let found = places(&set, &instances, elapsed);
-            crowd.places.write(gpu, &found)?;
+            crowd.places.write_at(gpu, 0, &found)?;
             output.poison(gpu)?;
             let job = pass.prepare(gpu, &clips, &crowd, &gating)?;
             job.set(gpu, elapsed)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = phases(&set, &instances, &found, &lods, elapsed, &mut history);
+            let expected = phases(&set, &instances, &layers, &found, &lods, elapsed, &mut history);
             let comparison = output.check(gpu, |actual| compare::exact(actual, &expected))?;
             cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
         }

@@ -1,5 +1,6 @@
 //! Parity of `kernels/animation/place.wgsl`.
 
+use super::edges::{ELAPSED, edges};
 use super::{SIZES, random_crowd};
 use crate::Error;
 use crate::animation::crowd::{ClipBuffers, Crowd};
@@ -46,5 +47,23 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
         }
     }
+    at_edges(cases, &pass)
+}
+
+/// Places that are known without a twin.
+fn at_edges(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+    let (gpu, edges) = (cases.gpu, edges()?);
+    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &edges.instances)?);
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, ELAPSED)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let found = crowd.places.read_blocking(gpu)?;
+    let phase = |place: &Place| place.key as f32 + place.fraction;
+    let (mut actual, mut expected) = (Vec::new(), Vec::new());
+    for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.places()) {
+        actual.extend(found[..known.len()].iter().map(phase));
+        expected.extend(known.iter().map(phase));
+    }
+    cases.add("edges", compare::absolute(&actual, &expected, PLACE_BOUND));
     Ok(())
 }

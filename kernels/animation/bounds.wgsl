@@ -1,0 +1,84 @@
+// Axis-aligned bounds of instances in the model's space: of balls around their bones, each as large as the bone reaches
+// and as the palette makes it. With WHOLE, a thread takes all bones of one instance, otherwise a workgroup does.
+
+override WHOLE: bool = false;
+
+struct BoundsParams {
+    instances: u32,
+    bones: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: BoundsParams;
+// Three rows a bone.
+@group(0) @binding(1) var<storage, read> models: array<vec4<f32>>;
+// Of each bone, in its own space.
+@group(0) @binding(2) var<storage, read> reaches: array<f32>;
+// Lower and upper corner an instance.
+@group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
+
+const THREADS = 64u;
+// See BOUNDS_GROWTH of the host.
+const GROWTH = 1.0 + 1.0 / 524288.0;
+const OF_CENTRE = 1.0 / 2097152.0;
+// 2^-62
+const LEAST = 2.16840434e-19;
+const LARGEST = 3.40282347e38;
+
+struct Box {
+    low: vec3<f32>,
+    high: vec3<f32>,
+}
+
+var<workgroup> lows: array<vec3<f32>, THREADS>;
+var<workgroup> highs: array<vec3<f32>, THREADS>;
+
+// Around every `stride`-th bone.
+fn around(instance: u32, first: u32, stride: u32) -> Box {
+    var low = vec3<f32>(LARGEST);
+    var high = vec3<f32>(-LARGEST);
+    for (var bone = first; bone < params.bones; bone += stride) {
+        let at = 3u * (instance * params.bones + bone);
+        let x = models[at];
+        let y = models[at + 1u];
+        let z = models[at + 2u];
+        let centre = vec3<f32>(x.w, y.w, z.w);
+        let squares = vec3<f32>(dot(x.xyz, x.xyz), dot(y.xyz, y.xyz), dot(z.xyz, z.xyz));
+        let half = reaches[bone] * (sqrt(squares) + LEAST) * GROWTH + abs(centre) * OF_CENTRE;
+        low = min(low, centre - half);
+        high = max(high, centre + half);
+    }
+    return Box(low, high);
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let workgroup = group.y * groups.x + group.x;
+    if WHOLE {
+        let instance = workgroup * THREADS + lane;
+        if instance < params.instances {
+            let found = around(instance, 0u, 1u);
+            bounds[2u * instance] = vec4<f32>(found.low, 0.0);
+            bounds[2u * instance + 1u] = vec4<f32>(found.high, 0.0);
+        }
+    } else {
+        // Of workgroups beyond the last instance nothing is written.
+        let own = around(workgroup, lane, THREADS);
+        lows[lane] = own.low;
+        highs[lane] = own.high;
+        for (var half = THREADS / 2u; half > 0u; half /= 2u) {
+            workgroupBarrier();
+            if lane < half {
+                lows[lane] = min(lows[lane], lows[lane + half]);
+                highs[lane] = max(highs[lane], highs[lane + half]);
+            }
+        }
+        if lane == 0u && workgroup < params.instances {
+            bounds[2u * workgroup] = vec4<f32>(lows[0], 0.0);
+            bounds[2u * workgroup + 1u] = vec4<f32>(highs[0], 0.0);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! `kernels/animation/bounds.wgsl`.
+
+use encase::ShaderType;
+
+use super::{Bounds, check_reaches};
+use crate::animation::crowd::Crowd;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
+
+/// `BoundsParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct BoundsParams {
+    pub instances: u32,
+    pub bones: u32,
+}
+
+/// What takes the bones of an instance together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// A workgroup: enough threads for a real GPU.
+    Workgroup,
+    /// A thread: no barriers, which are slow where processors are few.
+    Whole,
+}
+
+impl Share {
+    /// The faster one on this kind of adapter.
+    pub fn of(gpu: &Gpu) -> Self {
+        if gpu.adapter().kind == "cpu" { Self::Whole } else { Self::Workgroup }
+    }
+}
+
+/// Finds the bounds of instances.
+#[derive(Debug, Clone)]
+pub struct BoundsPass {
+    kernel: Kernel,
+    share: Share,
+}
+
+impl BoundsPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
+        let whole = f64::from(share == Share::Whole);
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_BOUNDS, &[("WHOLE", whole)])?, share })
+    }
+
+    /// Prepares the bounds of a crowd's instances from its palettes, with a reach a bone in metres.
+    ///
+    /// # Errors
+    /// [`InputError`] for reaches that do not fit the crowd, 2²⁶ instances and more, and too few `bounds`, one an
+    /// instance; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        crowd: &Crowd,
+        reaches: &[f32],
+        bounds: &Buffer<Bounds>,
+    ) -> Result<Job, Error> {
+        check_reaches(reaches, crowd.bones)?;
+        bounds.check_holds("bounds", crowd.len())?;
+        if crowd.len() >= 1 << 26 {
+            return Err(InputError::new("crowd.len", crowd.len(), "must be below 2^26").into());
+        }
+        let params = BoundsParams { instances: crowd.len() as u32, bones: crowd.bones as u32 };
+        let uniform = Uniform::new(gpu, "bounds", &params)?;
+        let reaches = Buffer::from_slice(gpu, "reaches", reaches)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            crowd.models.raw().as_entire_binding(),
+            reaches.raw().as_entire_binding(),
+            bounds.raw().as_entire_binding(),
+        ];
+        let threads = match self.share {
+            Share::Workgroup => 64 * params.instances,
+            Share::Whole => params.instances,
+        };
+        let step = Step {
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: self.kernel.spread(gpu, threads),
+            kernel: self.kernel.clone(),
+        };
+        Ok(Job::new(gpu, "animation/bounds", vec![step])?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(bounds_params_layout: BoundsParams = ANIMATION_BOUNDS "BoundsParams");
+}

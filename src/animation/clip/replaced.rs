@@ -1,0 +1,38 @@
+//! Clips with other keys in some tracks.
+
+use super::{Clip, Interpolation, Keys, Layout, Part, Track};
+use crate::InputError;
+
+impl Clip {
+    /// The keys of a track as they are stored, tangents times the seconds of their stretch; none at rest, but a value.
+    pub(crate) fn stored_keys(&self, track: &Track) -> Keys {
+        let interpolation = track.interpolation();
+        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let values = &self.values[track.first_value as usize..][..each * track.keys.max(1) as usize];
+        Keys { times: self.times_of(track).to_vec(), values: values.to_vec(), interpolation }
+    }
+
+    /// The clip with other keys of translation and rotation for one bone, where there are any; tangents times the
+    /// seconds of their stretch.
+    ///
+    /// # Errors
+    /// [`InputError`] for rotations without a direction.
+    pub(crate) fn replaced(
+        &self,
+        bone: usize,
+        translation: Option<Keys>,
+        rotation: Option<Keys>,
+    ) -> Result<Self, InputError> {
+        let rotation = rotation.map(|keys| keys.stored("rotation", true)).transpose()?;
+        let mut changed = [(Part::Translation, translation), (Part::Rotation, rotation)];
+        let mut layout = Layout::default();
+        for (index, track) in self.tracks.iter().enumerate() {
+            let change = changed.iter_mut().find(|(part, _)| index == 3 * bone + *part as usize);
+            let change = change.and_then(|(_, keys)| keys.take());
+            let keys = change.unwrap_or_else(|| self.stored_keys(track));
+            let rest = keys.values[0];
+            layout.add(Some(keys).filter(|keys| !keys.times.is_empty()), rest);
+        }
+        layout.finish(self.name.clone(), self.duration)
+    }
+}

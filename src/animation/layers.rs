@@ -1,0 +1,156 @@
+//! Layers: several clips an instance at once, one over the other.
+//!
+//! Layer 0 is the base, what every instance plays on all its bones. Each layer above it plays a clip of its own with
+//! its own start, rate and wrap, counts by a *weight* an instance, and by a *mask* on each bone. From the base
+//! upwards, a bone's pose becomes
+//!
+//! `below + (layer − below) · weight · mask`
+//!
+//! part by part. Rotations go to the nearer of q and −q on the chord and are normalized (nlerp): at weights of 0 and 1
+//! they are exact, between them always on the shortest arc, but not at constant speed: up to 0.002 rad off for rotations
+//! 45° apart, 0.016 for 90°, 0.14 for 180°. A layer whose weight times mask is 0 on a bone is not fetched there.
+//!
+//! Two clips that fade into each other are one layer with a mask of ones; a wave of the arm over a walk is one with
+//! the mask of the arm ([`mask_below`]).
+//!
+//! ```
+//! use relievo::animation::{ClipSet, Instance, Layer, Wrap, creature, layers::mask_below};
+//!
+//! let model = creature()?;
+//! let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
+//! let walk = vec![Instance::new(0, Wrap::Loop, 0.0, 1.0); 100];
+//! let wave = Layer::new(vec![Instance::new(2, Wrap::Loop, 0.0, 1.0); 100], vec![1.0; 100]);
+//! let arm = model.skeleton.bones().iter().position(|bone| bone.name == "upper_arm_left").expect("there");
+//! let layers = [wave.masked(mask_below(&model.skeleton, arm)?)];
+//! // Crowd::layered(&gpu, &set, &walk, &layers)?, sampled by SamplePass::layered; later crowd.set_weights(&gpu, 1, …)?
+//! layers[0].validate("layers[0]", 100, set.clips().len(), set.bones())?;
+//! # Ok::<(), relievo::InputError>(())
+//! ```
+
+use super::place::Instance;
+use super::skeleton::Skeleton;
+use crate::InputError;
+
+/// The most layers of a crowd, the base included.
+pub const MOST_LAYERS: usize = 8;
+
+/// A layer above the base.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// What each instance plays.
+    pub instances: Vec<Instance>,
+    /// How much that counts for each instance: 0 not at all, 1 fully.
+    pub weights: Vec<f32>,
+    /// How much it counts on each bone: 0 not at all, 1 fully. `None`: fully on all.
+    pub mask: Option<Vec<f32>>,
+}
+
+impl Layer {
+    /// A layer on all bones.
+    pub fn new(instances: Vec<Instance>, weights: Vec<f32>) -> Self {
+        Self { instances, weights, mask: None }
+    }
+
+    /// The same on some bones.
+    #[must_use]
+    pub fn masked(self, mask: Vec<f32>) -> Self {
+        Self { mask: Some(mask), ..self }
+    }
+
+    /// How much it counts for an instance on a bone.
+    pub fn share(&self, instance: usize, bone: usize) -> f32 {
+        self.weights[instance] * self.mask.as_ref().map_or(1.0, |mask| mask[bone])
+    }
+
+    /// Checks that it fits a crowd of `count` instances that play `clips` clips on `bones` bones; `path` comes before
+    /// the field's name.
+    ///
+    /// # Errors
+    /// [`InputError`] for other than one instance and weight an instance, other than one mask value a bone, weights
+    /// and mask values outside 0..=1, and instances that play no clip.
+    pub fn validate(&self, path: &str, count: usize, clips: usize, bones: usize) -> Result<(), InputError> {
+        let each = |field: &str, len: usize, wanted: usize, item: &str| {
+            let bound = format!("must be {wanted}, one {item}");
+            if len == wanted {
+                Ok(())
+            } else {
+                Err(InputError::new(format!("{path}.{field}.len"), len, bound))
+            }
+        };
+        each("instances", self.instances.len(), count, "an instance of the base")?;
+        each("weights", self.weights.len(), count, "an instance of the base")?;
+        shares(&format!("{path}.weights"), &self.weights)?;
+        if let Some(mask) = &self.mask {
+            each("mask", mask.len(), bones, "a bone")?;
+            shares(&format!("{path}.mask"), mask)?;
+        }
+        self.instances.iter().try_for_each(|instance| instance.validate(clips))
+    }
+}
+
+/// Refuses values outside 0..=1; names the first with its index.
+pub(crate) fn shares(path: &str, values: &[f32]) -> Result<(), InputError> {
+    match values.iter().position(|value| !(0.0..=1.0).contains(value)) {
+        None => Ok(()),
+        Some(at) => Err(InputError::new(format!("{path}[{at}]"), values[at], "must be in 0..=1")),
+    }
+}
+
+/// The mask of a bone and all below it: 1 there, 0 elsewhere.
+///
+/// # Errors
+/// [`InputError`] for a bone that the skeleton lacks.
+pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputError> {
+    if bone >= skeleton.len() {
+        return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
+    }
+    let mut mask = vec![0.0; skeleton.len()];
+    mask[bone] = 1.0;
+    for (below, node) in skeleton.bones().iter().enumerate().skip(bone + 1) {
+        if let Some(parent) = node.parent {
+            mask[below] = mask[parent as usize];
+        }
+    }
+    Ok(mask)
+}
+
+/// What all layers play, the base first: the order of a crowd's buffers.
+pub fn all_instances(base: &[Instance], layers: &[Layer]) -> Vec<Instance> {
+    base.iter().chain(layers.iter().flat_map(|layer| &layer.instances)).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::sample::Wrap;
+
+    #[test]
+    fn layers_are_checked_field_by_field() {
+        let instance = Instance::new(1, Wrap::Loop, 0.0, 1.0);
+        let good = Layer::new(vec![instance; 2], vec![0.0, 1.0]).masked(vec![0.5; 3]);
+        assert_eq!(good.validate("layers[0]", 2, 2, 3), Ok(()));
+        assert_eq!(good.share(1, 2), 0.5);
+        let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").field;
+        assert_eq!(refused(Layer { instances: vec![instance], ..good.clone() }), "layers[0].instances.len");
+        assert_eq!(refused(Layer { weights: vec![1.0; 3], ..good.clone() }), "layers[0].weights.len");
+        for wrong in [f32::NAN, f32::INFINITY, -0.1, 1.1] {
+            assert_eq!(refused(Layer { weights: vec![0.0, wrong], ..good.clone() }), "layers[0].weights[1]");
+            assert_eq!(refused(good.clone().masked(vec![wrong, 0.0, 0.0])), "layers[0].mask[0]");
+        }
+        assert_eq!(refused(good.clone().masked(vec![1.0; 2])), "layers[0].mask.len");
+        let other = Instance { clip: 2, ..instance };
+        assert_eq!(refused(Layer { instances: vec![instance, other], ..good }), "instance.clip");
+    }
+
+    #[test]
+    fn masks_reach_down() {
+        let model = crate::animation::creature().expect("valid");
+        for bone in [0, 10, 152] {
+            let mask = mask_below(&model.skeleton, bone).expect("a bone");
+            let ones = mask.iter().filter(|value| **value == 1.0).count();
+            assert_eq!(ones, 1 + model.skeleton.descendants()[bone] as usize);
+            assert!(mask.iter().all(|value| [0.0, 1.0].contains(value)));
+        }
+        assert_eq!(mask_below(&model.skeleton, 153).expect_err("refused").field, "bone");
+    }
+}

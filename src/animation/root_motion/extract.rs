@@ -1,0 +1,197 @@
+//! Taking the motion out of a clip.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::{PIECE, RootMotion, SPLINE_PIECES, Taken, rigid::Rigid};
+use crate::InputError;
+use crate::animation::clip::{Clip, Interpolation, Keys, Part, Track};
+use crate::animation::place::Place;
+use crate::animation::sample::RotationPath;
+use crate::animation::skeleton::Skeleton;
+use crate::animation::transform::Transform;
+use crate::reference::animation::sample::{rotation_at, sample_bone};
+
+/// By how much scales above a yaw may differ, and be sheared.
+const UNEVEN: f64 = 1e-4;
+
+/// A quaternion with less about the vertical has no yaw; the one before counts.
+const UPSIDE_DOWN: f64 = 1e-12;
+
+pub(super) fn extract(
+    skeleton: &Skeleton,
+    clip: &Clip,
+    bone: usize,
+    taken: Taken,
+) -> Result<(Clip, RootMotion), InputError> {
+    if clip.bones() != skeleton.len() {
+        let bound = format!("must be {}, as the skeleton's", skeleton.len());
+        return Err(InputError::new("clip.bones", clip.bones(), bound));
+    }
+    if bone >= skeleton.len() {
+        return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
+    }
+    if !(taken.horizontal || taken.vertical && !taken.yaw) {
+        let bound = "must be horizontal or vertical, and horizontal where yaw is";
+        return Err(InputError::new("taken", format!("{taken:?}"), bound));
+    }
+    let above = above(skeleton, clip, bone)?;
+    let start = sample_bone(clip, bone, 0.0, RotationPath::Slerp);
+    let origin = DVec3::from(start.translation.map(f64::from));
+    let (path, translation) = split_path(clip, bone, origin, &above.matrix3, taken);
+    let turning = taken.yaw.then(|| split_turn(clip, bone, start.rotation, &above)).transpose()?.flatten();
+    let (turn_times, turns, rotation) = match turning {
+        None => (Vec::new(), Vec::new(), None),
+        Some((turns, keys)) => (keys.times.clone(), turns, Some(keys)),
+    };
+    let (pivot, duration) = (above.transform_point3(origin).to_array(), f64::from(clip.duration()));
+    let whole = Rigid::about(pivot, 0.0, [0.0; 3]);
+    let mut motion = RootMotion { duration, path, turn_times, turns, pivot, whole };
+    motion.whole = motion.since_start(duration);
+    Ok((clip.replaced(bone, translation, rotation)?, motion))
+}
+
+/// From the bone's parent's space into the model's.
+fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, InputError> {
+    let mut above = DAffine3::IDENTITY;
+    let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
+    for ancestor in std::iter::successors(parent(bone as u32), |bone| parent(*bone)) {
+        let ancestor = ancestor as usize;
+        if Part::ALL.iter().any(|part| moves(clip, clip.track(ancestor, *part))) {
+            let bound = format!("must not move: it is above bone {bone}, whose motion is taken");
+            return Err(InputError::new(
+                format!("clip.bones[{ancestor}]"),
+                &skeleton.bones()[ancestor].name,
+                bound,
+            ));
+        }
+        above = wide(&sample_bone(clip, ancestor, 0.0, RotationPath::Slerp)) * above;
+    }
+    let matrix = above.matrix3;
+    // Zero also where rounding alone keeps it from being so.
+    let size = matrix.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    if matrix.determinant().abs() <= 1e-9 * size.powi(3) {
+        return Err(InputError::new("bones above", "scale 0", "must not be flat"));
+    }
+    Ok(above)
+}
+
+fn wide(transform: &Transform) -> DAffine3 {
+    let [scale, translation] =
+        [transform.scale, transform.translation].map(|v| DVec3::from(v.map(f64::from)));
+    let rotation = DQuat::from_array(transform.rotation.map(f64::from)).normalize();
+    DAffine3::from_scale_rotation_translation(scale, rotation, translation)
+}
+
+fn moves(clip: &Clip, track: &Track) -> bool {
+    let keys = clip.stored_keys(track);
+    let each = keys.values.len() / (track.keys.max(1) as usize);
+    let is_spline = keys.interpolation == Interpolation::CubicSpline;
+    let bends = is_spline
+        && keys.values.chunks(each).any(|key| [key[0], key[2]].as_flattened().iter().any(|x| *x != 0.0));
+    let differ = (1..track.keys as usize).any(|key| clip.key(track, key) != clip.key(track, 0));
+    track.keys > 1 && (bends || differ)
+}
+
+/// The part of the translation that is taken, in the model's space from the start on, and the keys of the rest. Both
+/// are linear in the values, so every interpolation between keys stays what it was.
+fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Taken) -> (Keys, Option<Keys>) {
+    let part = |is_taken: bool| f64::from(u8::from(is_taken));
+    let (horizontal, vertical) = (part(taken.horizontal), part(taken.vertical));
+    let into_model = DMat3::from_diagonal(DVec3::new(horizontal, vertical, horizontal)) * *above;
+    let into_parent = above.inverse() * into_model;
+    let keys = clip.stored_keys(clip.track(bone, Part::Translation));
+    let is_spline = keys.interpolation == Interpolation::CubicSpline;
+    let (mut path, mut rest) = (keys.clone(), keys.clone());
+    for (at, [x, y, z, _]) in keys.values.into_iter().enumerate() {
+        let value = DVec3::new(x.into(), y.into(), z.into());
+        let is_tangent = is_spline && at % 3 != 1;
+        let moved = if is_tangent { value } else { value - origin };
+        let store = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32, 0.0];
+        path.values[at] = store(into_model * moved);
+        rest.values[at] = store(value - into_parent * moved);
+    }
+    let moves = path.times.len() > 1;
+    (path, moves.then_some(rest))
+}
+
+/// Radians about the vertical from the start on, and the keys of what is left of the rotation; `None` where it never
+/// changes.
+fn split_turn(
+    clip: &Clip,
+    bone: usize,
+    start: [f32; 4],
+    above: &DAffine3,
+) -> Result<Option<(Vec<f64>, Keys)>, InputError> {
+    let matrix = above.matrix3;
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let size = x.length_squared();
+    let off = [y.length_squared() - size, z.length_squared() - size, x.dot(y), y.dot(z), z.dot(x)];
+    if matrix.determinant() <= 0.0 || off.into_iter().any(|off| off.abs() > UNEVEN * size) {
+        let scales = format!("{:?}", [x, y, z].map(|axis| axis.length()));
+        return Err(InputError::new("bones above", scales, "must scale evenly and not mirror for a yaw"));
+    }
+    let up = (matrix.inverse() * DVec3::Y).normalize();
+    let samples = samples(&clip.stored_keys(clip.track(bone, Part::Rotation)));
+    if samples.is_empty() {
+        return Ok(None);
+    }
+    let quaternion = |q: [f32; 4]| DQuat::from_array(q.map(f64::from)).normalize();
+    let back = quaternion(start).inverse();
+    let (mut turns, mut times, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut last = 0.0_f64;
+    for (time, value) in samples {
+        let since = quaternion(value) * back;
+        let about = DVec3::new(since.x, since.y, since.z).dot(up);
+        if about * about + since.w * since.w > UPSIDE_DOWN {
+            let turn = 2.0 * about.atan2(since.w);
+            last = turn + std::f64::consts::TAU * ((last - turn) / std::f64::consts::TAU).round();
+        }
+        let left = DQuat::from_axis_angle(up, -last) * quaternion(value);
+        turns.push(last);
+        times.push(time);
+        values.push(left.to_array().map(|component| component as f32));
+    }
+    Ok(Some((turns, Keys { times, values, interpolation: Interpolation::Linear })))
+}
+
+/// Rotations at all keys, on both sides of jumps, and between them; none where there is nothing between keys.
+fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
+    let is_spline = keys.interpolation == Interpolation::CubicSpline;
+    let mut samples: Vec<(f32, [f32; 4])> = Vec::new();
+    let mut add = |time, key: usize, fraction| {
+        let place = Place { key: key as u32, fraction };
+        let value = rotation_at(&keys.values, keys.interpolation, place, RotationPath::Slerp);
+        if samples.last() != Some(&(time, value)) {
+            samples.push((time, value));
+        }
+    };
+    let Some(last) = keys.times.len().checked_sub(1).filter(|last| keys.times[*last] > keys.times[0]) else {
+        return samples;
+    };
+    add(keys.times[0], 0, 0.0);
+    for (key, pair) in keys.times.windows(2).enumerate() {
+        let seconds = pair[1] - pair[0];
+        if seconds <= 0.0 {
+            add(pair[1], key + 1, 0.0);
+        } else if keys.interpolation == Interpolation::Step {
+            add(pair[0], key, 0.0);
+            add(pair[1], key, 0.0);
+        } else {
+            let pieces =
+                if is_spline { SPLINE_PIECES } else { pieces(keys.values[key], keys.values[key + 1]) };
+            for piece in 0..pieces {
+                let fraction = piece as f32 / pieces as f32;
+                add((pair[0] + seconds * fraction).min(pair[1]), key, fraction);
+            }
+            add(pair[1], key + 1, 0.0);
+        }
+    }
+    add(keys.times[last], last, 0.0);
+    samples
+}
+
+/// How many, so that none turns by more than [`PIECE`].
+fn pieces(before: [f32; 4], after: [f32; 4]) -> u32 {
+    let cosine: f64 = before.iter().zip(after).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
+    ((2.0 * cosine.abs().min(1.0).acos() / PIECE).ceil() as u32).max(1)
+}

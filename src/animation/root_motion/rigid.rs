@@ -1,0 +1,55 @@
+//! Turns about the vertical and translations, in double precision: after an hour of loops, positions still hold.
+
+use glam::{DQuat, DVec3};
+
+use crate::animation::transform::Transform;
+
+/// Turns about +Y, then moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rigid {
+    turn: f64,
+    translation: DVec3,
+}
+
+impl Rigid {
+    const IDENTITY: Self = Self { turn: 0.0, translation: DVec3::ZERO };
+
+    /// Turns about the vertical through a pivot, then moves.
+    pub fn about(pivot: [f64; 3], turn: f64, translation: [f64; 3]) -> Self {
+        let [pivot, translation] = [pivot, translation].map(DVec3::from);
+        Self { turn, translation: pivot + translation - DQuat::from_rotation_y(turn) * pivot }
+    }
+
+    /// This, then `next` in the space that this has made.
+    pub fn then(self, next: Self) -> Self {
+        let turned = DQuat::from_rotation_y(self.turn) * next.translation;
+        Self { turn: self.turn + next.turn, translation: self.translation + turned }
+    }
+
+    pub fn inverse(self) -> Self {
+        let back = DQuat::from_rotation_y(-self.turn) * -self.translation;
+        Self { turn: -self.turn, translation: back }
+    }
+
+    /// As many in a row; negative: of the inverse.
+    pub fn power(self, count: i64) -> Self {
+        let mut square = if count < 0 { self.inverse() } else { self };
+        let (mut left, mut product) = (count.unsigned_abs(), Self::IDENTITY);
+        while left > 0 {
+            if left % 2 == 1 {
+                product = product.then(square);
+            }
+            square = square.then(square);
+            left /= 2;
+        }
+        product
+    }
+
+    pub fn transform(self) -> Transform {
+        Transform {
+            translation: self.translation.as_vec3().to_array(),
+            rotation: DQuat::from_rotation_y(self.turn).as_quat().to_array(),
+            ..Transform::IDENTITY
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! A crowd at the edges of what clips may be, with poses that are known without a twin: a bone without tracks, tracks of
+//! one key, times that repeat, q and −q, keys that begin late and end early, and a clip that lasts no time.
+
+use std::f32::consts::{FRAC_1_SQRT_2, PI};
+
+use crate::InputError;
+use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::animation::clip_set::ClipSet;
+use crate::animation::place::{Instance, Place};
+use crate::animation::sample::Wrap;
+use crate::animation::skeleton::{Bone, Skeleton};
+use crate::animation::transform::Transform;
+
+/// The crowd, and for each instance its time in the first clip, or `None` where it plays the second.
+pub struct Edges {
+    /// The clips.
+    pub set: ClipSet,
+    /// What is played.
+    pub instances: Vec<Instance>,
+    /// Where that is, in seconds, inside the clip.
+    pub times: Vec<Option<f32>>,
+}
+
+const REST: Transform =
+    Transform { translation: [1.0, 2.0, 3.0], rotation: [0.0, 0.6, 0.0, 0.8], scale: [1.0, -2.0, 0.0] };
+
+fn along(times: &[f32], x: &[f32]) -> Option<Keys> {
+    let values = x.iter().map(|x| [*x, 0.0, 0.0, 0.0]).collect();
+    Some(Keys { times: times.to_vec(), values, interpolation: Interpolation::Linear })
+}
+
+fn turning(last: [f32; 4]) -> Option<Keys> {
+    let values = vec![[0.0, 0.0, 0.0, 1.0], last];
+    Some(Keys { times: vec![0.0, 1.0], values, interpolation: Interpolation::Linear })
+}
+
+/// When the poses are what [`Edges::poses`] says: seconds since the instances' starts.
+pub const ELAPSED: f32 = 0.25;
+
+/// Six bones for a second, and no time; and both again with all rotations' keys negated, which are the same rotations.
+fn clips(skeleton: &Skeleton) -> Result<[Clip; 4], InputError> {
+    let one = |values: Vec<[f32; 4]>, interpolation| Some(Keys { times: vec![0.25], values, interpolation });
+    let tangent = [9.0; 4];
+    let only = BoneKeys {
+        translation: one(vec![[7.0, 0.0, 0.0, 0.0]], Interpolation::Step),
+        rotation: one(vec![[0.0, 2.0, 0.0, 0.0]], Interpolation::Linear),
+        scale: one(vec![tangent, [4.0, 5.0, 6.0, 0.0], tangent], Interpolation::CubicSpline),
+    };
+    let moves = |translation| BoneKeys { translation, ..BoneKeys::default() };
+    let turns = |rotation| BoneKeys { rotation, ..BoneKeys::default() };
+    let second = [
+        BoneKeys::default(),
+        only.clone(),
+        moves(along(&[0.0, 0.5, 0.5, 1.0], &[0.0, 4.0, 8.0, 12.0])),
+        turns(turning([0.0, 0.0, 0.0, -1.0])),
+        turns(turning([0.0, 0.0, -FRAC_1_SQRT_2, -FRAC_1_SQRT_2])),
+        moves(along(&[0.25, 0.75], &[1.0, 3.0])),
+    ];
+    let at_once = |mut keys: BoneKeys| {
+        for keys in [&mut keys.translation, &mut keys.rotation, &mut keys.scale].into_iter().flatten() {
+            keys.times.fill(0.0);
+        }
+        keys
+    };
+    let no_time: Vec<_> = second.iter().cloned().map(at_once).collect();
+    let negated = |bones: &[BoneKeys]| {
+        let mut bones = bones.to_vec();
+        for keys in bones.iter_mut().filter_map(|bone| bone.rotation.as_mut()) {
+            keys.values.iter_mut().flatten().for_each(|component| *component = -*component);
+        }
+        bones
+    };
+    let clip = |name, bones: &[BoneKeys]| Clip::new(name, skeleton, bones, 0.0);
+    let (second_negated, no_time_negated) = (negated(&second), negated(&no_time));
+    Ok([
+        clip("a second", &second)?,
+        clip("no time", &no_time)?,
+        clip("a second, negated", &second_negated)?,
+        clip("no time, negated", &no_time_negated)?,
+    ])
+}
+
+/// Every edge.
+///
+/// # Errors
+/// None: it is checked like any other.
+pub fn edges() -> Result<Edges, InputError> {
+    let bone = |at: u32| Bone { name: format!("bone {at}"), parent: at.checked_sub(1), rest: REST };
+    let skeleton = Skeleton::of_joints((0..6).map(bone).collect())?;
+    let clips = clips(&skeleton)?;
+    let set = ClipSet::new(&clips.iter().collect::<Vec<_>>())?;
+    let mut edges = Edges { set, instances: vec![], times: vec![] };
+    let mut add = |instance, time| {
+        edges.instances.push(instance);
+        edges.times.push(time);
+    };
+    for (start, looped, clamped) in [
+        (0.0, 0.0, 0.0),
+        (0.125, 0.125, 0.125),
+        (0.25, 0.25, 0.25),
+        (0.5, 0.5, 0.5),
+        (0.625, 0.625, 0.625),
+        (0.75, 0.75, 0.75),
+        (1.0, 0.0, 1.0),
+        (1.5, 0.5, 1.0),
+        (-0.25, 0.75, 0.0),
+        (-1.0, 0.0, 0.0),
+        (64.375, 0.375, 1.0),
+    ] {
+        add(Instance::new(0, Wrap::Loop, start - ELAPSED, 1.0), Some(looped));
+        add(Instance::new(0, Wrap::Clamp, start + ELAPSED, -1.0), Some(clamped));
+        add(Instance::new(1, [Wrap::Loop, Wrap::Clamp][usize::from(start > 0.5)], start, 1.0), None);
+    }
+    Ok(edges)
+}
+
+impl Edges {
+    /// Each instance's places, as far as its clip has timelines.
+    pub fn places(&self) -> Vec<Vec<Place>> {
+        let place = |key, fraction| Place { key, fraction };
+        let of = |time: &Option<f32>| match *time {
+            // Repeated, whole, and late times.
+            Some(t) => vec![
+                if t >= 1.0 { place(3, 0.0) } else { place(2 * u32::from(t >= 0.5), 2.0 * (t % 0.5)) },
+                if t >= 1.0 { place(1, 0.0) } else { place(0, t) },
+                if t >= 0.75 { place(1, 0.0) } else { place(0, 2.0 * (t - 0.25).max(0.0)) },
+            ],
+            // The last of four, of two.
+            None => vec![place(3, 0.0), place(1, 0.0)],
+        };
+        self.times.iter().map(of).collect()
+    }
+
+    /// Each instance's bones.
+    pub fn poses(&self) -> Vec<Transform> {
+        let at = |x: f32| Transform { translation: [x, 0.0, 0.0], ..REST };
+        let turned =
+            |angle: f32| Transform { rotation: [0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()], ..REST };
+        let only = Transform {
+            translation: [7.0, 0.0, 0.0],
+            rotation: [0.0, 1.0, 0.0, 0.0],
+            scale: [4.0, 5.0, 6.0],
+        };
+        let of = |time: &Option<f32>| {
+            let t = time.unwrap_or(1.0);
+            let jumping = if t < 0.5 { 8.0 * t } else { 4.0 + 8.0 * t };
+            let late = 1.0 + 4.0 * (t.clamp(0.25, 0.75) - 0.25);
+            [REST, only, at(jumping), turned(0.0), turned(PI / 2.0 * t), at(late)]
+        };
+        self.times.iter().flat_map(of).collect()
+    }
+}

@@ -1,0 +1,173 @@
+//! Crowds on the device at hand.
+
+use relievo::Error;
+use relievo::animation::bounds::{BoundsPass, Share, bone_reaches};
+use relievo::animation::chosen::ChosenBones;
+use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
+use relievo::animation::layers::{MOST_LAYERS, all_instances};
+use relievo::animation::place::PlacePass;
+use relievo::animation::sample::{RotationPath, SAMPLE_BOUND, SamplePass, Wrap};
+use relievo::animation::{Affine, ClipSet, Instance, Layer, Model, Transform, creature};
+use relievo::gpu::{Buffer, Gpu};
+use relievo::reference::animation::place::places;
+use relievo::reference::animation::sample::sample_layers;
+
+use crate::harness::gpu;
+
+fn scene() -> (Model, ClipSet) {
+    let model = creature().expect("valid");
+    let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>()).expect("one skeleton");
+    (model, set)
+}
+
+/// Each at a time and a rate of its own.
+fn plays(clip: u32, count: usize) -> Vec<Instance> {
+    (0..count).map(|at| Instance::new(clip, Wrap::Loop, at as f32 / 16.0, 1.0 + at as f32 / 8.0)).collect()
+}
+
+fn field(error: Error) -> String {
+    match error {
+        Error::Input(error) => error.field,
+        other => panic!("{other}"),
+    }
+}
+
+fn sampled(gpu: &Gpu, set: &ClipSet, crowd: &Crowd, elapsed: f32) -> Vec<Transform> {
+    let clips = ClipBuffers::new(gpu, set).expect("uploaded");
+    let place = PlacePass::new(gpu).expect("compiled").prepare(gpu, &clips, crowd).expect("prepared");
+    let sample = SamplePass::layered(gpu, RotationPath::Slerp).expect("compiled");
+    let sample = sample.prepare(gpu, &clips, crowd).expect("prepared");
+    place.set(gpu, elapsed).expect("set");
+    gpu.run("test", |encoder| {
+        place.record(encoder);
+        sample.record(encoder);
+    })
+    .expect("run");
+    crowd.locals.read_blocking(gpu).expect("read").iter().map(unpacked).collect()
+}
+
+/// What an engine does: places of all layers, poses, other weights the next frame.
+#[test]
+fn layers_play_from_places_to_poses() {
+    let (gpu, (_, set)) = (gpu(), scene());
+    let base = plays(0, 5);
+    let weights = |shift: usize| (0..5).map(|at| ((at + shift) % 5) as f32 / 4.0).collect::<Vec<_>>();
+    let mut layers = [Layer::new(plays(1, 5), weights(0)), Layer::new(plays(2, 5), weights(2))];
+    let crowd = Crowd::layered(&gpu, &set, &base, &layers).expect("fits");
+    assert_eq!((crowd.len(), crowd.layers, crowd.pairs()), (5, 3, 5 * 153));
+    for frame in 0..2 {
+        let elapsed = 0.3 + frame as f32;
+        let found = places(&set, &all_instances(&base, &layers), elapsed);
+        let expected = sample_layers(&set, &base, &layers, &found, RotationPath::Slerp);
+        // Places may be off by 1e-3 of a key, and move bones so much.
+        for (actual, expected) in sampled(&gpu, &set, &crowd, elapsed).iter().zip(&expected) {
+            let off = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            let errors = [
+                off(&actual.translation, &expected.translation),
+                off(&actual.rotation, &expected.rotation),
+                off(&actual.scale, &expected.scale),
+            ];
+            assert!(errors.into_iter().fold(0.0, f32::max) < 1e-3 + SAMPLE_BOUND, "{errors:?}");
+        }
+        layers[1].weights = weights(4);
+        crowd.set_weights(&gpu, 2, &layers[1].weights).expect("set");
+    }
+}
+
+#[test]
+fn layers_that_do_not_fit_are_refused() {
+    let (gpu, (_, set)) = (gpu(), scene());
+    let layer = Layer::new(plays(1, 2), vec![1.0; 2]);
+    let crowd = Crowd::layered(&gpu, &set, &plays(0, 2), std::slice::from_ref(&layer)).expect("fits");
+    let refused =
+        |layers: &[Layer]| field(Crowd::layered(&gpu, &set, &plays(0, 2), layers).expect_err("refused"));
+    assert_eq!(refused(&vec![layer.clone(); MOST_LAYERS]), "layers.len");
+    assert_eq!(refused(&[layer.clone(), Layer { weights: vec![0.0, 2.0], ..layer }]), "layers[1].weights[1]");
+    let refused =
+        |layer, weights: &[f32]| field(crowd.set_weights(&gpu, layer, weights).expect_err("refused"));
+    assert_eq!((refused(0, &[1.0; 2]), refused(2, &[1.0; 2])), ("layer".to_owned(), "layer".to_owned()));
+    assert_eq!(
+        (refused(1, &[1.0]), refused(1, &[0.0, f32::NAN])),
+        ("weights.len".into(), "weights[1]".into())
+    );
+    let clips = ClipBuffers::new(&gpu, &set).expect("uploaded");
+    let plain = SamplePass::new(&gpu, RotationPath::Slerp).expect("compiled");
+    assert_eq!(field(plain.prepare(&gpu, &clips, &crowd).expect_err("refused")), "crowd.layers");
+}
+
+/// A matrix that tells where it stands.
+fn numbered(count: usize, frame: usize) -> Vec<Affine> {
+    (0..count).map(|at| [[at as f32, frame as f32, 0.0, 1.0]; 3]).collect()
+}
+
+#[test]
+fn the_palettes_of_the_frame_before_are_kept() {
+    let (gpu, (_, set)) = (gpu(), scene());
+    let crowd = Crowd::new(&gpu, &set, &plays(0, 3)).expect("fits");
+    assert!(crowd.previous.is_none());
+    gpu.run("test", |encoder| crowd.record_previous(encoder)).expect("nothing is recorded");
+    let crowd = crowd.with_previous(&gpu).expect("allocated");
+    for frame in 1..4 {
+        gpu.run("test", |encoder| crowd.record_previous(encoder)).expect("run");
+        // Concatenation of a part: what it leaves alone is the same in both.
+        crowd.models.write(&gpu, &numbered(100, frame)).expect("written");
+        let previous = crowd.previous.as_ref().expect("kept").read_blocking(&gpu).expect("read");
+        let before = if frame == 1 { vec![[[0.0; 4]; 3]; 100] } else { numbered(100, frame - 1) };
+        assert_eq!((previous.len(), &previous[..100]), (3 * 153, &before[..]));
+        assert!(previous[100..].iter().all(|model| *model == [[0.0; 4]; 3]));
+        assert_eq!(crowd.models.read_blocking(&gpu).expect("read")[..100], numbered(100, frame));
+    }
+}
+
+#[test]
+fn chosen_bones_are_those_of_the_whole() {
+    let (gpu, (_, set)) = (gpu(), scene());
+    let crowd = Crowd::new(&gpu, &set, &plays(0, 4)).expect("fits");
+    let all = numbered(4 * 153, 7);
+    crowd.models.write(&gpu, &all).expect("written");
+    let at = |[instance, bone]: &[u32; 2]| all[(instance * 153 + bone) as usize];
+    // In a row, across instances, backwards, twice, the first and the last.
+    let first = [[0, 0], [1, 4], [1, 5], [1, 6], [1, 152], [2, 0], [3, 9], [3, 8], [3, 8], [3, 152]];
+    let mut chosen = ChosenBones::new(&gpu, &crowd, &first).expect("they are there");
+    let read = |chosen: &ChosenBones| {
+        gpu.run("test", |encoder| chosen.record(encoder)).expect("run");
+        let found = chosen.read_blocking(&gpu).expect("read");
+        // The asynchronous way gives the same.
+        let mut reading = std::pin::pin!(chosen.read(&gpu));
+        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+        let again = loop {
+            match reading.as_mut().poll(&mut context) {
+                std::task::Poll::Ready(found) => break found.expect("read"),
+                std::task::Poll::Pending => gpu.wait().expect("the device works"),
+            }
+        };
+        assert_eq!(found, again);
+        found
+    };
+    assert_eq!(read(&chosen), first.iter().map(at).collect::<Vec<_>>());
+    let other = [[2, 100], [0, 3]];
+    chosen.choose(&other).expect("fewer");
+    assert_eq!(read(&chosen), other.iter().map(at).collect::<Vec<_>>());
+    // What is refused changes nothing.
+    let refused = |error: relievo::InputError| error.field;
+    assert_eq!(refused(chosen.choose(&[[0, 0], [4, 0]]).expect_err("refused")), "chosen[1].instance");
+    assert_eq!(refused(chosen.choose(&[[0, 153]]).expect_err("refused")), "chosen[0].bone");
+    assert_eq!(refused(chosen.choose(&[[0, 0]; 11]).expect_err("refused")), "chosen.len");
+    assert_eq!(read(&chosen), other.iter().map(at).collect::<Vec<_>>());
+    assert_eq!(field(ChosenBones::new(&gpu, &crowd, &[[9, 9]]).expect_err("refused")), "chosen[0].instance");
+    assert!(read(&ChosenBones::new(&gpu, &crowd, &[]).expect("none")).is_empty());
+}
+
+#[test]
+fn bounds_that_do_not_fit_are_refused() {
+    let (gpu, (model, set)) = (gpu(), scene());
+    let crowd = Crowd::new(&gpu, &set, &plays(0, 3)).expect("fits");
+    let pass = BoundsPass::new(&gpu, Share::of(&gpu)).expect("compiled");
+    let refused = |reaches: &[f32], room| {
+        let bounds = Buffer::new(&gpu, "bounds", room).expect("allocated");
+        field(pass.prepare(&gpu, &crowd, reaches, &bounds).expect_err("refused"))
+    };
+    let reaches = bone_reaches(&model.skeleton);
+    assert_eq!((refused(&reaches[1..], 3), refused(&reaches, 2)), ("reaches.len".into(), "bounds".into()));
+    assert_eq!(refused(&[&reaches[..152], &[f32::NAN]].concat(), 3), "reaches[152]");
+}
