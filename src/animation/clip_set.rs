@@ -121,6 +121,11 @@ impl ClipSet {
         });
     }
 
+    /// Whether any track is a cubic spline. Sampling without them is faster.
+    pub fn has_splines(&self) -> bool {
+        self.tracks.iter().any(|track| track.timeline_and_code >> 30 == 2)
+    }
+
     /// Bones of every clip.
     pub fn bones(&self) -> usize {
         self.bones
@@ -168,6 +173,7 @@ mod tests {
         let clips: Vec<&Clip> = model.clips.iter().collect();
         let set = ClipSet::new(&clips).expect("one skeleton");
         assert_eq!((set.bones(), set.clips().len(), set.tracks().len()), (153, 3, 3 * 153 * 3));
+        assert!(!set.has_splines(), "`verify` relies on it");
         for (entry, (clip, tracks)) in set.clips().iter().zip(clips.iter().zip(set.tracks().chunks(3 * 153)))
         {
             assert_eq!(entry.duration, clip.duration());

@@ -2,9 +2,8 @@
 
 use encase::ShaderType;
 
-use crate::animation::crowd::Local;
-use crate::animation::place::Place;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `GatherParams` of the kernel.
@@ -15,11 +14,22 @@ pub(crate) struct GatherParams {
     pub keys: u32,
 }
 
+/// What a copy of sampling's bytes reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reads {
+    /// What sampling reads: 20 words of keys a bone, and the 9 that tell where they lie (the instance's clip, three
+    /// tracks, a place).
+    Everything,
+    /// The keys, and the place: tracks lie evenly, this many values each.
+    Keys(u32),
+}
+
 /// Moves the bytes of sampling: of each bone of each instance the two keys of three tracks around the instance's
-/// place (20 words, tracks shared by all instances), and a local transform (12 words).
+/// place, tracks shared by instances as a clip's are, and a local transform (12 words).
 #[derive(Debug, Clone)]
 pub struct GatherPass {
     kernel: Kernel,
+    reads: Reads,
 }
 
 impl GatherPass {
@@ -27,37 +37,32 @@ impl GatherPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_GATHER, &[])? })
+    pub fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
+        let overrides = [("TABLES", f64::from(reads == Reads::Everything))];
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_GATHER, &overrides)?, reads })
     }
 
-    /// Prepares a crowd: a place an instance, whose key lies below the last; three tracks a bone, each of `keys` values.
+    /// Prepares a crowd that stands at its places, before the last keys. Overwrites its local transforms.
     ///
     /// # Errors
-    /// [`InputError`] for less than a bone or two keys, and for buffers that are too short; [`GpuError`].
-    pub fn prepare(
-        &self,
-        gpu: &Gpu,
-        [bones, keys]: [usize; 2],
-        places: &Buffer<Place>,
-        values: &Buffer<[f32; 4]>,
-        gathered: &Buffer<Local>,
-    ) -> Result<Job, Error> {
-        for (field, value, least) in [("bones", bones, 1), ("keys", keys, 2)] {
-            if value < least {
-                return Err(InputError::new(field, value, format!("must be at least {least}")).into());
-            }
+    /// [`InputError`] for a set whose clips have more than one timeline, and for fewer values than
+    /// [`Reads::Keys`] needs; [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
+        if clips.timelines_a_clip != 1 {
+            let bound = "must be 1: a place an instance";
+            return Err(InputError::new("clips.timelines_a_clip", clips.timelines_a_clip, bound).into());
         }
-        let pairs = places.len().saturating_mul(bones);
-        values.check_holds("values", 3_usize.saturating_mul(bones).saturating_mul(keys))?;
-        gathered.check_holds("gathered", pairs)?;
-        let params = GatherParams { pairs: pairs as u32, bones: bones as u32, keys: keys as u32 };
+        let keys = if let Reads::Keys(keys) = self.reads { keys } else { 0 };
+        clips.values.check_holds("clips.values", 3 * crowd.bones * keys as usize)?;
+        let params = GatherParams { pairs: crowd.pairs() as u32, bones: crowd.bones as u32, keys };
         let uniform = Uniform::new(gpu, "gather", &params)?;
         let resources = [
             uniform.raw().as_entire_binding(),
-            places.raw().as_entire_binding(),
-            values.raw().as_entire_binding(),
-            gathered.raw().as_entire_binding(),
+            crowd.instances.raw().as_entire_binding(),
+            clips.tracks.raw().as_entire_binding(),
+            crowd.places.raw().as_entire_binding(),
+            clips.values.raw().as_entire_binding(),
+            crowd.locals.raw().as_entire_binding(),
         ];
         let step = Step {
             groups: vec![self.kernel.bind(gpu, 0, &resources)?],

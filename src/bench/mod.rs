@@ -64,7 +64,7 @@ pub enum Backend {
     PlainSoa,
     /// A kernel that moves the same bytes.
     Copy,
-    /// The arithmetic that cannot be avoided.
+    /// What cannot be avoided: see the benchmark.
     Limit,
 }
 

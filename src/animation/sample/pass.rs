@@ -49,8 +49,9 @@ impl ActivePairs {
 /// Samples bones.
 #[derive(Debug, Clone)]
 pub struct SamplePass {
-    all: Kernel,
-    compacted: Kernel,
+    // For sets without splines, and with them.
+    all: [Kernel; 2],
+    compacted: [Kernel; 2],
 }
 
 impl SamplePass {
@@ -60,11 +61,12 @@ impl SamplePass {
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
         let nlerp = f64::from(path == RotationPath::Nlerp);
-        let kernel = |compacted| {
-            let overrides = [("COMPACTED", compacted), ("NLERP", nlerp)];
+        let kernel = |compacted, splines| {
+            let overrides = [("COMPACTED", compacted), ("NLERP", nlerp), ("SPLINES", splines)];
             Kernel::new(gpu, &shaders::ANIMATION_SAMPLE, &overrides)
         };
-        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)? })
+        let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, 0.0)?, kernel(compacted, 1.0)?]);
+        Ok(Self { all: kernels(0.0)?, compacted: kernels(1.0)? })
     }
 
     /// Prepares sampling of every bone of every instance, at the crowd's places.
@@ -76,10 +78,11 @@ impl SamplePass {
             pairs: Buffer::new(gpu, "no pairs", 0)?,
             dispatched: Buffer::from_slice(gpu, "no pairs", &[0; 4])?,
         };
+        let kernel = &self.all[usize::from(clips.has_splines)];
         let step = Step {
-            groups: vec![bind(&self.all, gpu, clips, crowd, &nothing)?],
-            workgroups: self.all.spread(gpu, crowd.pairs() as u32),
-            kernel: self.all.clone(),
+            groups: vec![bind(kernel, gpu, clips, crowd, &nothing)?],
+            workgroups: kernel.spread(gpu, crowd.pairs() as u32),
+            kernel: kernel.clone(),
         };
         Ok(Job::new(gpu, "animation/sample", vec![step])?)
     }
@@ -95,8 +98,9 @@ impl SamplePass {
         crowd: &Crowd,
         active: &ActivePairs,
     ) -> Result<SampleActiveJob, Error> {
-        let group = bind(&self.compacted, gpu, clips, crowd, active)?;
-        Ok(SampleActiveJob { kernel: self.compacted.clone(), group, dispatched: active.dispatched.clone() })
+        let kernel = &self.compacted[usize::from(clips.has_splines)];
+        let group = bind(kernel, gpu, clips, crowd, active)?;
+        Ok(SampleActiveJob { kernel: kernel.clone(), group, dispatched: active.dispatched.clone() })
     }
 }
 

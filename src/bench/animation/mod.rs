@@ -2,6 +2,8 @@
 //! part of each bone, every instance at a time of its own.
 
 pub mod concat;
+mod frame;
+mod host;
 pub mod place;
 mod plain_soa;
 pub mod sample;
@@ -14,7 +16,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::{RotationPath, Wrap};
 use crate::animation::skeleton::Skeleton;
-use crate::baseline::gather::GatherPass;
+use crate::baseline::gather::{GatherPass, Reads};
 use crate::bench::terrain::copy_of;
 use crate::gpu::{Gpu, Job};
 use crate::reference::animation::place::places;
@@ -53,10 +55,9 @@ impl Scene {
         self.crowd.pairs()
     }
 
-    /// A copy of the keys that sampling reads and of as many words as it writes.
-    pub fn gathered(&self, gpu: &Gpu) -> Result<Job, Error> {
-        let Crowd { places, locals, .. } = &self.crowd;
-        GatherPass::new(gpu)?.prepare(gpu, [self.set.bones(), KEYS], places, &self.clips.values, locals)
+    /// A copy of what sampling reads, and of as many words as it writes.
+    pub fn gathered(&self, gpu: &Gpu, reads: Reads) -> Result<Job, Error> {
+        GatherPass::new(gpu, reads)?.prepare(gpu, &self.clips, &self.crowd)
     }
 
     /// A copy of the words of concatenation: 10 in, 12 out.

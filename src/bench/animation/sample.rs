@@ -3,16 +3,18 @@
 use std::hint::black_box;
 
 use super::plain_soa::PlainSoa;
-use super::{CROWDS, Scene};
+use super::{CROWDS, KEYS, Scene};
 use crate::Error;
 use crate::animation::place::Place;
 use crate::animation::sample::{ActivePairs, RotationPath, SamplePass};
 use crate::animation::transform::Transform;
+use crate::baseline::gather::Reads;
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
 use crate::reference::animation::sample::sample_set_into;
 
-/// All bones, and a list of every fourth.
+/// All bones, and a list of every fourth. `copy` reads and writes the same words, `limit` the same keys without looking
+/// tracks up.
 ///
 /// # Errors
 /// What the device reports.
@@ -23,13 +25,15 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let scene = Scene::new(gpu, count)?;
         let pairs = scene.pairs();
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
-        let copied = scene.gathered(gpu)?;
+        let copied = scene.gathered(gpu, Reads::Everything)?;
+        let keys = scene.gathered(gpu, Reads::Keys(KEYS as u32))?;
         let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
         let mut soa = vec![plain.locals(); count];
         let mut locals = vec![Transform::IDENTITY; pairs];
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
+            Contender::job(Backend::Limit, &keys),
             Contender::host(Backend::Twin, || twin(&scene, &scene.places, black_box(&mut locals))),
             Contender::host(Backend::PlainSoa, || {
                 for (place, soa) in scene.places.iter().zip(black_box(&mut soa)) {

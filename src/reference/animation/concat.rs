@@ -43,8 +43,9 @@ pub fn affine(transform: &Transform) -> Affine {
 /// `a · b`: b first.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
     a.map(|row| {
-        // Adding −0 changes no number, so that all four are computed alike.
-        let moved = [-0.0, -0.0, -0.0, row[3]];
-        std::array::from_fn(|i| row[0] * b[0][i] + row[1] * b[1][i] + row[2] * b[2][i] + moved[i])
+        std::array::from_fn(|i| {
+            let linear = row[0] * b[0][i] + row[1] * b[1][i] + row[2] * b[2][i];
+            if i == 3 { linear + row[3] } else { linear }
+        })
     })
 }

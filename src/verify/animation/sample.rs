@@ -1,8 +1,9 @@
 //! Parity of `kernels/animation/sample.wgsl`.
 
-use super::{SIZES, random_crowd};
+use super::{SIZES, random_crowd, random_instances};
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
+use crate::animation::creature;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local, packed};
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::{ActivePairs, RotationPath, SAMPLE_BOUND, SamplePass};
@@ -20,15 +21,22 @@ use crate::verify::{Cases, compare};
 pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
-        for path in [RotationPath::Slerp, RotationPath::Nlerp] {
-            let bench = Bench::new(cases.gpu, &set, &instances, path)?;
-            let name = format!("{bones} bones × {count}, {path:?}");
-            cases.add(format!("{name}, all"), bench.all()?);
-            let pairs = (bones * count) as u32;
-            for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
-                let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
-                cases.add(format!("{name}, {list}"), bench.some(&chosen)?);
-            }
+        add(cases, &format!("{bones} bones × {count}"), &set, &instances)?;
+    }
+    // Sets without splines have kernels of their own.
+    let model = creature()?;
+    let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
+    add(cases, "creature × 40", &set, &random_instances(0, &set, 40))
+}
+
+fn add(cases: &mut Cases<'_>, name: &str, set: &ClipSet, instances: &[Instance]) -> Result<(), Error> {
+    for path in [RotationPath::Slerp, RotationPath::Nlerp] {
+        let bench = Bench::new(cases.gpu, set, instances, path)?;
+        cases.add(format!("{name}, {path:?}, all"), bench.all()?);
+        let pairs = (set.bones() * instances.len()) as u32;
+        for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
+            let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
+            cases.add(format!("{name}, {path:?}, {list}"), bench.some(&chosen)?);
         }
     }
     Ok(())

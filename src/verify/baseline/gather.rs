@@ -1,38 +1,62 @@
 //! Parity of `kernels/baseline/gather.wgsl`.
 
 use crate::Error;
-use crate::animation::crowd::Local;
-use crate::animation::place::Place;
-use crate::baseline::gather::GatherPass;
-use crate::gpu::Buffer;
-use crate::reference::baseline::{gather::gather, words::words};
-use crate::verify::animation::SIZES;
+use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::animation::clip_set::ClipSet;
+use crate::animation::crowd::{ClipBuffers, Crowd, Local};
+use crate::animation::place::{Instance, Place};
+use crate::animation::sample::Wrap;
+use crate::baseline::gather::{GatherPass, Reads};
+use crate::reference::baseline::gather::{gather, gather_keys};
+use crate::verify::animation::{Draw, SIZES, random_skeleton};
 use crate::verify::{Cases, compare::exact, poison::Poisoned};
 
-/// Bones and instances around workgroup boundaries, few keys and many, every bit pattern.
+/// Bones and instances around workgroup boundaries, few keys and many; two clips, and the keys of the first alone.
 ///
 /// # Errors
 /// What the device reports.
 pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = GatherPass::new(gpu)?;
-    for ([bones, count], keys) in SIZES.into_iter().zip([2, 3, 60].into_iter().cycle()) {
-        let places: Vec<Place> = (words([3, 4], count as u32, 1).iter())
-            .map(|word| Place { key: word % (keys as u32 - 1), fraction: 0.5 })
-            .collect();
-        let data = words([5, 6], (12 * bones * keys) as u32, 1);
-        let values: Vec<[u32; 4]> = bytemuck::cast_slice(&data).to_vec();
-        let place_buffer = Buffer::from_slice(gpu, "places", &places)?;
-        let value_buffer = Buffer::<[f32; 4]>::from_slice(gpu, "values", bytemuck::cast_slice(&data))?;
-        let output = Poisoned::<Local>::new(gpu, bones * count)?;
-        let job = pass.prepare(gpu, [bones, keys], &place_buffer, &value_buffer, &output.buffer)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
-        let mut expected = vec![[[0; 4]; 3]; bones * count];
-        gather([bones, keys], &places, &values, &mut expected);
-        let comparison = output.check(gpu, |actual| {
-            exact(bytemuck::cast_slice::<_, u32>(actual), expected.as_flattened().as_flattened())
-        })?;
-        cases.add(format!("{bones} bones × {count}, {keys} keys"), comparison);
+    for (case, ([bones, count], keys)) in SIZES.into_iter().zip([2, 3, 60].into_iter().cycle()).enumerate() {
+        let mut draw = Draw::new(case as u32);
+        let set = evenly_keyed(&mut draw, bones, keys)?;
+        let mut place = || Place { key: draw.word() % (keys - 1), fraction: draw.signed().abs() };
+        let places: Vec<Place> = (0..count).map(|_| place()).collect();
+        let instances: Vec<_> =
+            (0..count as u32).map(|i| Instance::new(i % 2, Wrap::Loop, 0.0, 1.0)).collect();
+        let clips = ClipBuffers::new(gpu, &set)?;
+        for reads in [Reads::Everything, Reads::Keys(keys)] {
+            let mut crowd = Crowd::new(gpu, &set, &instances)?;
+            crowd.places.write(gpu, &places)?;
+            let output = Poisoned::<Local>::new(gpu, bones * count)?;
+            crowd.locals = output.buffer.clone();
+            let job = GatherPass::new(gpu, reads)?.prepare(gpu, &clips, &crowd)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let mut expected = vec![[[0; 4]; 3]; bones * count];
+            match reads {
+                Reads::Everything => gather(&set, &instances, &places, &mut expected),
+                Reads::Keys(keys) => gather_keys(&set, keys, &places, &mut expected),
+            }
+            let comparison = output.check(gpu, |actual| {
+                exact(bytemuck::cast_slice::<_, u32>(actual), expected.as_flattened().as_flattened())
+            })?;
+            cases.add(format!("{bones} bones × {count}, {keys} keys, {reads:?}"), comparison);
+        }
     }
     Ok(())
+}
+
+/// Two clips with as many keys on every track, all at the same times.
+fn evenly_keyed(draw: &mut Draw, bones: usize, keys: u32) -> Result<ClipSet, Error> {
+    let skeleton = random_skeleton(0, bones)?;
+    let mut track = || {
+        let values = (0..keys).map(|_| draw.rotation()).collect();
+        let times = (0..keys).map(|key| key as f32).collect();
+        Some(Keys { times, values, interpolation: Interpolation::Linear })
+    };
+    let mut clip = |name| {
+        let bone = |_| BoneKeys { translation: track(), rotation: track(), scale: track() };
+        Clip::new(name, &skeleton, &(0..bones).map(bone).collect::<Vec<_>>(), 0.0)
+    };
+    Ok(ClipSet::new(&[&clip("first")?, &clip("second")?])?)
 }
