@@ -8,8 +8,8 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::place::Place;
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::{AFFINE_IDENTITY, Affine};
-use crate::reference::animation::concat::product;
+use crate::animation::transform::{Affine, Transform};
+use crate::reference::animation::concat::{affine, product};
 
 /// Bones of a block.
 const LANES: usize = 8;
@@ -88,19 +88,17 @@ impl PlainSoa {
         }
     }
 
-    /// An instance's palette.
+    /// An instance's palette. Bones wait for their parents, so one after another.
     pub fn concat(&self, locals: &[Lanes], models: &mut [Affine]) {
         let blocks = self.blocks();
-        for block in 0..blocks {
-            let numbers = std::array::from_fn(|number| locals[number * blocks + block]);
-            let matrices = affines(&numbers);
-            let first = block * LANES;
-            let here = self.parents[first..].iter().take(LANES).enumerate();
-            for (lane, parent) in here {
-                let local = matrices[lane];
-                models[first + lane] =
-                    parent.map_or(local, |parent| product(&models[parent as usize], &local));
-            }
+        for (bone, parent) in self.parents.iter().enumerate() {
+            let of = |number: usize| locals[number * blocks + bone / LANES][bone % LANES];
+            let local = affine(&Transform {
+                translation: [of(0), of(1), of(2)],
+                rotation: [of(3), of(4), of(5), of(6)],
+                scale: [of(7), of(8), of(9)],
+            });
+            models[bone] = parent.map_or(local, |parent| product(&models[parent as usize], &local));
         }
     }
 }
@@ -131,40 +129,12 @@ fn weights(t: f32, less_one: &Lanes) -> Lanes {
     sums.map(|sum| t * sum)
 }
 
-/// Translation · rotation · scale of a block's bones.
-fn affines([tx, ty, tz, x, y, z, w, sx, sy, sz]: &[Lanes; NUMBERS]) -> [Affine; LANES] {
-    let rows = [
-        [
-            each(|l| (1.0 - 2.0 * (y[l] * y[l] + z[l] * z[l])) * sx[l]),
-            each(|l| 2.0 * (x[l] * y[l] - w[l] * z[l]) * sy[l]),
-            each(|l| 2.0 * (x[l] * z[l] + w[l] * y[l]) * sz[l]),
-            *tx,
-        ],
-        [
-            each(|l| 2.0 * (x[l] * y[l] + w[l] * z[l]) * sx[l]),
-            each(|l| (1.0 - 2.0 * (x[l] * x[l] + z[l] * z[l])) * sy[l]),
-            each(|l| 2.0 * (y[l] * z[l] - w[l] * x[l]) * sz[l]),
-            *ty,
-        ],
-        [
-            each(|l| 2.0 * (x[l] * z[l] - w[l] * y[l]) * sx[l]),
-            each(|l| 2.0 * (y[l] * z[l] + w[l] * x[l]) * sy[l]),
-            each(|l| (1.0 - 2.0 * (x[l] * x[l] + y[l] * y[l])) * sz[l]),
-            *tz,
-        ],
-    ];
-    let mut matrices = [AFFINE_IDENTITY; LANES];
-    for (lane, matrix) in matrices.iter_mut().enumerate() {
-        *matrix = rows.map(|row| row.map(|numbers| numbers[lane]));
-    }
-    matrices
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::animation::concat::CONCAT_BOUND;
     use crate::animation::sample::{RotationPath, SAMPLE_BOUND};
+    use crate::animation::transform::AFFINE_IDENTITY;
     use crate::bench::animation::{crowd, dense_creature};
     use crate::reference::animation::concat::concat;
     use crate::reference::animation::place::places;

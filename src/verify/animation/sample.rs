@@ -1,15 +1,15 @@
 //! Parity of `kernels/animation/sample.wgsl`.
 
-use super::{SIZES, random_crowd, random_instances};
+use super::{Draw, SIZES, random_crowd, random_instances};
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::creature;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local, packed};
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::{ActivePairs, RotationPath, SAMPLE_BOUND, SamplePass};
 use crate::gpu::Gpu;
 use crate::reference::animation::place::places;
 use crate::reference::animation::sample::sample_set;
+use crate::verify::baseline::gather::evenly_keyed;
 use crate::verify::poison::{POISON, Poisoned};
 use crate::verify::{Cases, compare};
 
@@ -24,9 +24,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         add(cases, &format!("{bones} bones × {count}"), &set, &instances)?;
     }
     // Sets without splines have kernels of their own.
-    let model = creature()?;
-    let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
-    add(cases, "creature × 40", &set, &random_instances(0, &set, 40))
+    let set = evenly_keyed(&mut Draw::new(1), 153, 60)?;
+    add(cases, "153 bones × 40 without splines", &set, &random_instances(0, &set, 40))
 }
 
 fn add(cases: &mut Cases<'_>, name: &str, set: &ClipSet, instances: &[Instance]) -> Result<(), Error> {

@@ -46,8 +46,11 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Two clips with as many keys on every track, all at the same times.
-fn evenly_keyed(draw: &mut Draw, bones: usize, keys: u32) -> Result<ClipSet, Error> {
+/// Two clips with as many linear keys on every track, all at the same times.
+///
+/// # Errors
+/// None: they are checked like any others.
+pub fn evenly_keyed(draw: &mut Draw, bones: usize, keys: u32) -> Result<ClipSet, Error> {
     let skeleton = random_skeleton(0, bones)?;
     let mut track = || {
         let values = (0..keys).map(|_| draw.rotation()).collect();
