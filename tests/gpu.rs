@@ -8,6 +8,11 @@ use std::pin::pin;
 use std::task::{Context, Poll, Wake};
 
 use harness::gpu;
+use relievo::animation::concat::{ConcatPass, Walk};
+use relievo::animation::crowd::{ClipBuffers, Crowd};
+use relievo::animation::place::{Instance, PlacePass};
+use relievo::animation::sample::{ActivePairs, SamplePass};
+use relievo::animation::{ClipSet, RotationPath, Wrap};
 use relievo::gpu::{
     Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION, Options, Step, TimedBy, Timer, adapters,
 };
@@ -21,13 +26,20 @@ use relievo::verify::terrain::random_heights;
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
 fn foreign() -> (wgpu::Device, wgpu::Queue) {
+    let (_, device, queue) = foreign_with_instance();
+    (device, queue)
+}
+
+fn foreign_with_instance() -> (wgpu::Instance, wgpu::Device, wgpu::Queue) {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     let instance = wgpu::Instance::new(descriptor);
     let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     let name = gpu().adapter().name.clone();
     let adapter =
         all.into_iter().find(|adapter| adapter.get_info().name == name).expect("the suite's adapter");
-    pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device")
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
+    (instance, device, queue)
 }
 
 fn heights_equal_the_twin(gpu: &Gpu) {
@@ -196,4 +208,52 @@ fn long_jobs_go_to_the_device_in_pieces() {
 fn out_of_memory_is_an_error_with_what_to_do() {
     let error = GpuError::from(wgpu::Error::OutOfMemory { source: "test".into() });
     assert!(error.to_string().contains("smaller batch"), "{error}");
+}
+
+/// Buffers, bind groups and pipelines that somebody holds; live pieces of device memory, which recorded work holds too.
+fn census(instance: &wgpu::Instance, gpu: &Gpu) -> ([usize; 3], Option<usize>) {
+    let hub = instance.generate_report().expect("not a browser").hub;
+    let held = [hub.buffers, hub.bind_groups, hub.compute_pipelines].map(|report| report.num_kept_from_user);
+    (held, gpu.device().generate_allocator_report().map(|report| report.allocations.len()))
+}
+
+#[test]
+fn a_frame_of_a_crowd_allocates_nothing() {
+    let (instance, device, queue) = foreign_with_instance();
+    let gpu = Gpu::from_wgpu(device, queue);
+    let model = relievo::animation::creature().expect("valid");
+    let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>()).expect("one skeleton");
+    let instances: Vec<_> = (0..100).map(|i| Instance::new(i % 3, Wrap::Loop, i as f32, 1.0)).collect();
+    let clips = ClipBuffers::new(&gpu, &set).expect("allocated");
+    let crowd = Crowd::new(&gpu, &set, &instances).expect("allocated");
+    let active = ActivePairs::new(&gpu, &crowd).expect("allocated");
+    let sampling = SamplePass::new(&gpu, RotationPath::Slerp).expect("compiled");
+    let place = PlacePass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("prepared");
+    let sample = sampling.prepare(&gpu, &clips, &crowd).expect("prepared");
+    let some = sampling.prepare_active(&gpu, &clips, &crowd, &active).expect("prepared");
+    let concat = ConcatPass::new(&gpu, Walk::Levels).expect("compiled");
+    let concat = concat.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
+    for frame in 0..4 {
+        let (known, _) = census(&instance, &gpu);
+        place.set(&gpu, frame as f32 / 60.0).expect("set");
+        // wgpu's own staging of the write is not relievo's to avoid.
+        let (_, memory) = census(&instance, &gpu);
+        let mut encoder = gpu.encoder("frame");
+        place.record(&mut encoder);
+        sample.record(&mut encoder);
+        some.record(&mut encoder);
+        concat.record(&mut encoder);
+        assert_eq!(census(&instance, &gpu), (known, memory), "frame {frame}");
+        gpu.queue().submit([encoder.finish()]);
+    }
+    // A buffer is seen, also when recorded work alone holds it.
+    let (known, memory) = census(&instance, &gpu);
+    let buffer = Buffer::<u32>::new(&gpu, "seen", 1024).expect("allocated");
+    assert_eq!(census(&instance, &gpu).0[0], known[0] + 1);
+    let mut encoder = gpu.encoder("holds");
+    encoder.clear_buffer(buffer.raw(), 0, None);
+    drop(buffer);
+    assert!(memory.is_none() || census(&instance, &gpu).1 > memory);
+    gpu.queue().submit([encoder.finish()]);
+    gpu.wait().expect("done");
 }

@@ -7,6 +7,8 @@ import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 override COMPACTED: bool = false;
 override LAYERED: bool = false;
 override NLERP: bool = false;
+// Whether any track is a spline: lanes that need none would wait for the loads of its branches.
+override SPLINES: bool = true;
 
 struct SampleParams {
     bones: u32,
@@ -48,15 +50,27 @@ struct Between {
     fraction: f32,
 }
 
-fn between(track: vec2<u32>, first_place: u32) -> Between {
+fn place_of(track: vec2<u32>, first_place: u32) -> vec2<u32> {
+    let timeline = track.x & CONSTANT;
+    if timeline == CONSTANT {
+        return vec2<u32>(0u);
+    }
+    return places[first_place + timeline];
+}
+
+// Tracks of a bone mostly share a timeline: its place is loaded once.
+fn is_elsewhere(track: vec2<u32>, before: vec2<u32>) -> bool {
+    return ((track.x ^ before.x) & CONSTANT) != 0u;
+}
+
+fn between(track: vec2<u32>, place: vec2<u32>) -> Between {
     let timeline = track.x & CONSTANT;
     if timeline == CONSTANT {
         return Between(track.y, STEP, 0.0);
     }
-    let place = places[first_place + timeline];
     let fraction = bitcast<f32>(place.y);
     let code = track.x >> 30u;
-    if code > LINEAR {
+    if SPLINES && code > LINEAR {
         // Three values a key.
         return Between(track.y + 3u * place.x + 1u, select(STEP, code, fraction > 0.0), fraction);
     }
@@ -78,7 +92,7 @@ fn vector(at: Between) -> vec3<f32> {
     if at.code == STEP {
         return start.xyz;
     }
-    if at.code == LINEAR {
+    if !SPLINES || at.code == LINEAR {
         return start.xyz + (values[at.value + 1u].xyz - start.xyz) * at.fraction;
     }
     return spline(start, at.value, at.fraction).xyz;
@@ -86,7 +100,7 @@ fn vector(at: Between) -> vec3<f32> {
 
 fn rotation(at: Between, is_spline: bool) -> vec4<f32> {
     let start = values[at.value];
-    if is_spline {
+    if SPLINES && is_spline {
         var q = start;
         if at.code != STEP {
             q = spline(start, at.value, at.fraction);
@@ -114,10 +128,19 @@ struct Local {
 fn local_at(slot: u32, bone: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
     let first_place = slot * params.timelines;
+    let moving = tracks[track];
     let turning = tracks[track + 1u];
-    let moved = vector(between(tracks[track], first_place));
-    let turned = rotation(between(turning, first_place), turning.x >> 30u > LINEAR);
-    let scaled = vector(between(tracks[track + 2u], first_place));
+    let scaling = tracks[track + 2u];
+    var place = place_of(moving, first_place);
+    let moved = vector(between(moving, place));
+    if is_elsewhere(turning, moving) {
+        place = place_of(turning, first_place);
+    }
+    let turned = rotation(between(turning, place), turning.x >> 30u > LINEAR);
+    if is_elsewhere(scaling, turning) {
+        place = place_of(scaling, first_place);
+    }
+    let scaled = vector(between(scaling, place));
     return Local(moved, turned, scaled);
 }
 

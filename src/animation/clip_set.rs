@@ -162,6 +162,11 @@ impl ClipSet {
         self.timelines[clip.first_timeline as usize].keys + 1
     }
 
+    /// Whether any track is a cubic spline. Sampling without them is faster.
+    pub fn has_splines(&self) -> bool {
+        self.tracks.iter().any(|track| track.timeline_and_code >> 30 == 2)
+    }
+
     /// Bones of every clip.
     pub fn bones(&self) -> usize {
         self.bones
@@ -209,6 +214,11 @@ mod tests {
         let clips: Vec<&Clip> = model.clips.iter().collect();
         let set = ClipSet::new(&clips).expect("one skeleton");
         assert_eq!((set.bones(), set.clips().len(), set.tracks().len()), (153, 3, 3 * 153 * 3));
+        let is_spline = |clip: &Clip| clip.tracks().iter().any(|track| track.code == 2);
+        for clip in &clips {
+            assert_eq!(ClipSet::new(&[clip]).expect("valid").has_splines(), is_spline(clip));
+        }
+        assert_eq!(set.has_splines(), clips.iter().any(|clip| is_spline(clip)));
         for (entry, (clip, tracks)) in set.clips().iter().zip(clips.iter().zip(set.tracks().chunks(3 * 153)))
         {
             assert_eq!(entry.duration, clip.duration());

@@ -39,6 +39,8 @@ pub struct ClipBuffers {
     pub values: Buffer<[f32; 4]>,
     /// Room that an instance needs for its places.
     pub timelines_a_clip: usize,
+    /// Whether any track is a cubic spline.
+    pub has_splines: bool,
 }
 
 impl ClipBuffers {
@@ -54,6 +56,7 @@ impl ClipBuffers {
             times: Buffer::from_slice(gpu, "times", set.times())?,
             values: Buffer::from_slice(gpu, "values", set.values())?,
             timelines_a_clip: set.timelines_a_clip(),
+            has_splines: set.has_splines(),
         })
     }
 }

@@ -2,5 +2,6 @@
 //! cannot be avoided. Every speed figure of relievo is a ratio to one of them in the same run.
 
 pub mod copy;
+pub mod gather;
 pub mod loads;
 pub mod words;

@@ -24,6 +24,7 @@ pub struct Contender<'a> {
 enum Work<'a> {
     Device(Box<dyn Fn(&mut wgpu::CommandEncoder) + 'a>),
     Host(Box<dyn FnMut() + 'a>),
+    Both(Box<dyn FnMut() -> Result<(), Error> + 'a>),
 }
 
 impl<'a> Contender<'a> {
@@ -42,6 +43,11 @@ impl<'a> Contender<'a> {
         Self { backend, work: Work::Host(Box::new(work)) }
     }
 
+    /// Work on host and device, by the host's clock.
+    pub fn both(backend: Backend, work: impl FnMut() -> Result<(), Error> + 'a) -> Self {
+        Self { backend, work: Work::Both(Box::new(work)) }
+    }
+
     fn once(&mut self, gpu: &Gpu, timer: &Timer) -> Result<(f64, TimedBy), Error> {
         match &mut self.work {
             Work::Device(record) => {
@@ -51,6 +57,11 @@ impl<'a> Contender<'a> {
             Work::Host(work) => {
                 let start = Instant::now();
                 work();
+                Ok((start.elapsed().as_nanos() as f64, TimedBy::Wall))
+            }
+            Work::Both(work) => {
+                let start = Instant::now();
+                work()?;
                 Ok((start.elapsed().as_nanos() as f64, TimedBy::Wall))
             }
         }

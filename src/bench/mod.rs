@@ -28,6 +28,7 @@ pub struct Stem {
 /// Every kernel with its benchmark cases.
 pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::cases },
+    Stem { name: "baseline/gather", run: baseline::gather::cases },
     Stem { name: "baseline/loads", run: baseline::loads::cases },
     Stem { name: "baseline/words", run: baseline::words::cases },
     Stem { name: "terrain/height", run: terrain::height::cases },
@@ -64,9 +65,11 @@ pub enum Backend {
     Twin,
     /// Its twin on all threads.
     TwinParallel,
+    /// Straightforward structure-of-arrays code for the processor, on one thread.
+    PlainSoa,
     /// A kernel that moves the same bytes.
     Copy,
-    /// The arithmetic that cannot be avoided.
+    /// What cannot be avoided: see the benchmark.
     Limit,
 }
 
@@ -77,6 +80,7 @@ impl Backend {
             Self::Gpu => "gpu",
             Self::Twin => "twin",
             Self::TwinParallel => "twin-parallel",
+            Self::PlainSoa => "plain-soa",
             Self::Copy => "copy",
             Self::Limit => "limit",
         }

@@ -26,6 +26,7 @@ pub struct Stem {
 /// Every kernel with its parity cases.
 pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::cases },
+    Stem { name: "baseline/gather", run: baseline::gather::cases },
     Stem { name: "baseline/loads", run: baseline::loads::cases },
     Stem { name: "baseline/words", run: baseline::words::cases },
     Stem { name: "terrain/height", run: terrain::height::cases },

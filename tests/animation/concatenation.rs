@@ -2,7 +2,7 @@
 
 use relievo::animation::transform::{AFFINE_IDENTITY, column_major};
 use relievo::animation::{Bone, Skeleton, Transform};
-use relievo::reference::animation::concat::{affine, concat};
+use relievo::reference::animation::concat::{affine, concat, concat_into};
 
 use crate::player::{Matrix, matrix, product, unit, wide};
 use crate::sampling::{noise, skeleton};
@@ -59,4 +59,19 @@ fn the_parents_scale_reaches_the_child() {
     let parent = Transform { scale: [2.0, 2.0, -2.0], ..Transform::IDENTITY };
     let models = concat(&skeleton, &[parent, Transform::from_translation([1.0, 2.0, 3.0])]);
     assert_eq!(models[1].map(|row| row[3]), [2.0, 4.0, -6.0]);
+}
+
+#[test]
+fn crowds_are_concatenated_instance_by_instance() {
+    let skeleton = skeleton(5);
+    let words = noise(8, 3 * 5 * 4);
+    let locals: Vec<Transform> = words
+        .chunks_exact(3)
+        .map(|w| Transform { translation: [w[0], w[1], w[2]], ..Transform::IDENTITY })
+        .collect();
+    let mut models = vec![AFFINE_IDENTITY; 20];
+    concat_into(&skeleton, &locals, &mut models);
+    let expected: Vec<_> = locals.chunks(5).flat_map(|locals| concat(&skeleton, locals)).collect();
+    assert_eq!(models, expected);
+    assert_ne!(models[..5], models[5..10]);
 }

@@ -3,14 +3,18 @@
 use relievo::Error;
 use relievo::animation::bounds::{BoundsPass, Share, bone_reaches};
 use relievo::animation::chosen::ChosenBones;
+use relievo::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::layers::{MOST_LAYERS, all_instances};
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::{RotationPath, SAMPLE_BOUND, SamplePass, Wrap};
 use relievo::animation::{Affine, ClipSet, Instance, Layer, Model, Transform, creature};
 use relievo::gpu::{Buffer, Gpu};
+use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::place::places;
 use relievo::reference::animation::sample::sample_layers;
+use relievo::verify::compare::absolute;
+use relievo::verify::poison::Poisoned;
 
 use crate::harness::gpu;
 
@@ -93,6 +97,25 @@ fn layers_that_do_not_fit_are_refused() {
     let clips = ClipBuffers::new(&gpu, &set).expect("uploaded");
     let plain = SamplePass::new(&gpu, RotationPath::Slerp).expect("compiled");
     assert_eq!(field(plain.prepare(&gpu, &clips, &crowd).expect_err("refused")), "crowd.layers");
+}
+
+/// Layers end in sampling: concatenation serves each instance once, whatever the layers.
+#[test]
+fn layered_crowds_are_concatenated() {
+    let (gpu, (model, set)) = (gpu(), scene());
+    let layers = [Layer::new(plays(1, 5), vec![0.5; 5]), Layer::new(plays(2, 5), vec![0.25; 5])];
+    let mut crowd = Crowd::layered(&gpu, &set, &plays(0, 5), &layers).expect("fits");
+    let output = Poisoned::<Affine>::new(&gpu, crowd.pairs()).expect("allocated");
+    crowd.models = output.buffer.clone();
+    let locals = sampled(&gpu, &set, &crowd, 0.3);
+    let expected: Vec<f32> =
+        locals.chunks(153).flat_map(|locals| concat(&model.skeleton, locals)).flatten().flatten().collect();
+    let pass = ConcatPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
+    let job = pass.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
+    gpu.run("test", |encoder| job.record(encoder)).expect("run");
+    let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
+    let found = output.check(&gpu, |actual| absolute(&flat(actual), &expected, 20.0 * CONCAT_BOUND * 3.0));
+    assert!(found.as_ref().is_ok_and(|found| found.holds), "{found:?}");
 }
 
 /// A matrix that tells where it stands.

@@ -1,11 +1,11 @@
 //! The sampling twin against glTF's own formulas in double precision.
 
 use relievo::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
-use relievo::animation::place::Place;
+use relievo::animation::place::{Instance, Place};
 use relievo::animation::sample::{RotationPath, SLERP_BOUND, Wrap};
-use relievo::animation::{Bone, Skeleton, Transform};
-use relievo::reference::animation::place::{clock, place};
-use relievo::reference::animation::sample::{sample, sample_bone, slerp};
+use relievo::animation::{Bone, ClipSet, Skeleton, Transform};
+use relievo::reference::animation::place::{clock, place, places};
+use relievo::reference::animation::sample::{sample, sample_bone, sample_set_into, slerp};
 use relievo::reference::hash::{LANES, threefry2x32};
 
 use crate::player::{self, wide};
@@ -274,6 +274,45 @@ fn times_wrap_in_float_as_in_double() {
                 },
                 "{wrap:?} {duration} {time}: {turns} turns"
             );
+        }
+    }
+}
+
+/// Linear, step and spline, with and without keys, each on one of two timelines.
+fn mixed(bones: usize) -> Clip {
+    let keys = |case: usize, is_rotation: bool| {
+        let interpolation =
+            [Interpolation::Linear, Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline]
+                [case % 4];
+        let times = if case.is_multiple_of(3) { vec![0.0, 0.25, 1.0] } else { vec![0.0, 0.5, 0.75, 2.0] };
+        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let words = noise(case as u32, 4 * each * times.len());
+        let w = if is_rotation { 1.5 } else { 0.0 };
+        let values = words.chunks_exact(4).map(|x| [x[0], x[1], x[2], (x[3] + 1.0) * w]).collect();
+        (!case.is_multiple_of(7)).then_some(Keys { times, values, interpolation })
+    };
+    let bone = |bone| BoneKeys {
+        translation: keys(3 * bone, false),
+        rotation: keys(3 * bone + 1, true),
+        scale: keys(3 * bone + 2, false),
+    };
+    Clip::new("mixed", &skeleton(bones), &(0..bones).map(bone).collect::<Vec<_>>(), 0.0).expect("valid")
+}
+
+#[test]
+fn crowds_are_sampled_as_bones_are_one_by_one() {
+    for bones in [1, 7, 8, 9, 153] {
+        let clip = mixed(bones);
+        let set = ClipSet::new(&[&clip]).expect("one skeleton");
+        let starts = [0.0, 0.1, 0.25, 0.6, 0.75, 1.3, 1.9, 2.0];
+        let instances = starts.map(|start| Instance::new(0, Wrap::Clamp, start, 1.0));
+        let places = places(&set, &instances, 0.0);
+        for path in [RotationPath::Slerp, RotationPath::Nlerp] {
+            // Whatever lay there before is overwritten.
+            let mut transforms = vec![Transform { rotation: [9.0; 4], ..Transform::IDENTITY }; 8 * bones];
+            sample_set_into(&set, &instances, &places, path, &mut transforms);
+            let expected: Vec<_> = starts.iter().flat_map(|time| sample(&clip, *time, path)).collect();
+            assert_eq!(transforms, expected, "{bones} bones, {path:?}");
         }
     }
 }

@@ -51,8 +51,9 @@ impl ActivePairs {
 /// Samples bones.
 #[derive(Debug, Clone)]
 pub struct SamplePass {
-    all: Kernel,
-    compacted: Kernel,
+    // For sets without splines, and with them.
+    all: [Kernel; 2],
+    compacted: [Kernel; 2],
     is_layered: bool,
 }
 
@@ -76,11 +77,13 @@ impl SamplePass {
 
     fn compile(gpu: &Gpu, path: RotationPath, is_layered: bool) -> Result<Self, GpuError> {
         let (nlerp, layered) = (f64::from(path == RotationPath::Nlerp), f64::from(is_layered));
-        let kernel = |compacted| {
-            let overrides = [("COMPACTED", compacted), ("LAYERED", layered), ("NLERP", nlerp)];
+        let kernel = |compacted, splines| {
+            let overrides =
+                [("COMPACTED", compacted), ("LAYERED", layered), ("NLERP", nlerp), ("SPLINES", splines)];
             Kernel::new(gpu, &shaders::ANIMATION_SAMPLE, &overrides)
         };
-        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)?, is_layered })
+        let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, 0.0)?, kernel(compacted, 1.0)?]);
+        Ok(Self { all: kernels(0.0)?, compacted: kernels(1.0)?, is_layered })
     }
 
     /// Prepares sampling of every bone of every instance, at the crowd's places.
@@ -93,10 +96,11 @@ impl SamplePass {
             pairs: Buffer::new(gpu, "no pairs", 0)?,
             dispatched: Buffer::from_slice(gpu, "no pairs", &[0; 4])?,
         };
+        let kernel = &self.all[usize::from(clips.has_splines)];
         let step = Step {
-            groups: vec![bind(&self.all, gpu, clips, crowd, &nothing)?],
-            workgroups: self.all.spread(gpu, crowd.pairs() as u32),
-            kernel: self.all.clone(),
+            groups: vec![bind(kernel, gpu, clips, crowd, &nothing)?],
+            workgroups: kernel.spread(gpu, crowd.pairs() as u32),
+            kernel: kernel.clone(),
         };
         Ok(Job::new(gpu, "animation/sample", vec![step])?)
     }
@@ -113,8 +117,9 @@ impl SamplePass {
         active: &ActivePairs,
     ) -> Result<SampleActiveJob, Error> {
         self.check(crowd)?;
-        let group = bind(&self.compacted, gpu, clips, crowd, active)?;
-        Ok(SampleActiveJob { kernel: self.compacted.clone(), group, dispatched: active.dispatched.clone() })
+        let kernel = &self.compacted[usize::from(clips.has_splines)];
+        let group = bind(kernel, gpu, clips, crowd, active)?;
+        Ok(SampleActiveJob { kernel: kernel.clone(), group, dispatched: active.dispatched.clone() })
     }
 
     fn check(&self, crowd: &Crowd) -> Result<(), InputError> {

@@ -1,43 +1,71 @@
-//! Concatenation of crowds.
+//! Concatenation of crowds, whole frames, and what the host adds.
 
-use super::{CROWDS, Scene};
+use std::hint::black_box;
+
+use super::frame::{DeviceFrame, PlainFrame, TwinFrame};
+use super::plain_soa::PlainSoa;
+use super::{CROWDS, Scene, host};
 use crate::Error;
 use crate::animation::concat::{ConcatPass, Walk};
 use crate::animation::crowd::packed;
 use crate::animation::sample::RotationPath;
-use crate::bench::terrain::copy_of;
+use crate::animation::transform::AFFINE_IDENTITY;
 use crate::bench::{Backend, Bench, Contender};
-use crate::reference::animation::concat::concat;
-use crate::reference::animation::place::places;
+use crate::reference::animation::concat::concat_into;
 use crate::reference::animation::sample::sample_set;
 
-/// All bones of all instances.
+/// All bones of all instances: concatenation, then sampling and concatenation; then a frame's parts on the host's clock.
 ///
 /// # Errors
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
-    let gpu = bench.gpu;
-    let pass = ConcatPass::new(gpu, Walk::of(gpu))?;
     for count in CROWDS {
-        let scene = Scene::new(gpu, count)?;
-        let found = places(&scene.set, &scene.instances, 0.4);
-        let locals = sample_set(&scene.set, &scene.instances, &found, RotationPath::Slerp);
-        scene.crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
-        let pairs = scene.pairs();
-        let job = pass.prepare(gpu, &scene.skeleton, &scene.crowd)?;
-        // 10 words in, 12 out.
-        let copied = copy_of(gpu, 11 * pairs)?;
-        let twin = || {
-            for locals in locals.chunks(scene.skeleton.len()) {
-                drop(std::hint::black_box(concat(&scene.skeleton, locals)));
-            }
-        };
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, twin),
-        ];
-        bench.case(format!("{count} × 153"), (pairs, "bone"), 88 * pairs as u64, contenders)?;
+        let scene = Scene::new(bench.gpu, count)?;
+        alone(bench, &scene)?;
+        both(bench, &scene)?;
     }
-    Ok(())
+    host::cases(bench, &Scene::new(bench.gpu, CROWDS[1])?)
+}
+
+fn alone(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let (pairs, bones) = (scene.pairs(), scene.skeleton.len());
+    let locals = sample_set(&scene.set, &scene.instances, &scene.places, RotationPath::Slerp);
+    scene.crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
+    let job = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &scene.skeleton, &scene.crowd)?;
+    let copied = scene.copied(gpu)?;
+    let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
+    let soa = scene.places.iter().map(|place| {
+        let mut locals = plain.locals();
+        plain.sample(*place, &mut locals);
+        locals
+    });
+    let soa: Vec<_> = soa.collect();
+    let mut models = [vec![AFFINE_IDENTITY; pairs], vec![AFFINE_IDENTITY; pairs]];
+    let [of_twin, of_plain] = &mut models;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || concat_into(&scene.skeleton, &locals, black_box(of_twin))),
+        Contender::host(Backend::PlainSoa, || {
+            for (locals, models) in soa.iter().zip(black_box(&mut *of_plain).chunks_mut(bones)) {
+                plain.concat(locals, models);
+            }
+        }),
+    ];
+    bench.case(format!("{} × 153", scene.instances.len()), (pairs, "bone"), 88 * pairs as u64, contenders)
+}
+
+/// A frame: places, sampling and concatenation in one submission. On the host, one instance after another.
+fn both(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
+    let frame = DeviceFrame::new(bench.gpu, scene)?;
+    let (mut twin, mut plain) = (TwinFrame::new(scene), PlainFrame::new(scene)?);
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| frame.record(encoder)),
+        Contender::recorded(Backend::Copy, |encoder| frame.record_copies(encoder)),
+        Contender::host(Backend::Twin, || twin.compute(scene)),
+        Contender::host(Backend::PlainSoa, || plain.compute(scene)),
+    ];
+    let (case, pairs) = (format!("{} × 153, both with sampling", scene.instances.len()), scene.pairs());
+    bench.case(case, (pairs, "bone"), 216 * pairs as u64, contenders)
 }

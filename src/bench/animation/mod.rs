@@ -5,9 +5,12 @@ pub mod bounds;
 pub mod budget;
 pub mod compact;
 pub mod concat;
+mod frame;
 pub mod gate;
+mod host;
 pub mod phase;
 pub mod place;
+mod plain_soa;
 pub mod sample;
 
 use crate::Error;
@@ -16,42 +19,47 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::concat::Order;
 use crate::animation::creature;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::place::Instance;
+use crate::animation::place::{Instance, Place};
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::sample::{RotationPath, Wrap};
 use crate::animation::skeleton::Skeleton;
-use crate::gpu::Gpu;
+use crate::baseline::gather::{GatherPass, Reads};
+use crate::bench::terrain::copy_of;
+use crate::gpu::{Gpu, Job};
+use crate::reference::animation::place::places;
 use crate::reference::animation::sample::sample;
 
 /// Instances of the cases.
 const CROWDS: [usize; 3] = [100, 1000, 10_000];
 
 /// Keys of each part.
-const KEYS: usize = 60;
+pub(in crate::bench) const KEYS: usize = 60;
 
-/// A crowd, on the host and the device.
-struct Scene {
-    skeleton: Skeleton,
-    clip: Clip,
-    set: ClipSet,
-    instances: Vec<Instance>,
-    clips: ClipBuffers,
-    crowd: Crowd,
+/// When they are looked at, in seconds.
+const ELAPSED: f32 = 0.4;
+
+/// A crowd, on the host and the device, and its places.
+pub(in crate::bench) struct Scene {
+    pub skeleton: Skeleton,
+    pub clip: Clip,
+    pub set: ClipSet,
+    pub instances: Vec<Instance>,
+    pub places: Vec<Place>,
+    pub clips: ClipBuffers,
+    pub crowd: Crowd,
 }
 
 impl Scene {
-    fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
-        let model = creature()?;
-        let clip = dense(&model.skeleton, &model.clips[0])?;
-        let set = ClipSet::new(&[&clip])?;
-        // Fractions of the golden ratio: never two the same.
-        let start = |index: usize| (index as f32 * 0.618_034).fract();
-        let instances: Vec<_> = (0..count).map(|i| Instance::new(0, Wrap::Loop, start(i), 1.0)).collect();
+    pub fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
+        let (skeleton, clip, set) = dense_creature()?;
+        let instances = crowd(count);
+        let places = places(&set, &instances, ELAPSED);
         let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &instances)?);
-        Ok(Self { skeleton: model.skeleton, clip, set, instances, clips, crowd })
+        crowd.places.write(gpu, &places)?;
+        Ok(Self { skeleton, clip, set, instances, places, clips, crowd })
     }
 
-    fn pairs(&self) -> usize {
+    pub fn pairs(&self) -> usize {
         self.crowd.pairs()
     }
 
@@ -63,6 +71,30 @@ impl Scene {
         let user = vec![USER_DEFAULT; self.skeleton.len()];
         Ok(Priorities::new(&self.skeleton, &self.clip, true, &Weights::default(), &user)?)
     }
+
+    /// A copy of what sampling reads, and of as many words as it writes.
+    pub fn gathered(&self, gpu: &Gpu, reads: Reads) -> Result<Job, Error> {
+        GatherPass::new(gpu, reads)?.prepare(gpu, &self.clips, &self.crowd)
+    }
+
+    /// A copy of the words of concatenation: 10 in, 12 out.
+    pub fn copied(&self, gpu: &Gpu) -> Result<Job, Error> {
+        copy_of(gpu, 11 * self.pairs())
+    }
+}
+
+/// Instances that play the first clip, never two at the same moment: fractions of the golden ratio.
+fn crowd(count: usize) -> Vec<Instance> {
+    let start = |index: usize| (index as f32 * 0.618_034).fract();
+    (0..count).map(|i| Instance::new(0, Wrap::Loop, start(i), 1.0)).collect()
+}
+
+/// The creature, its first clip with keys everywhere, and a set of it.
+fn dense_creature() -> Result<(Skeleton, Clip, ClipSet), Error> {
+    let model = creature()?;
+    let clip = dense(&model.skeleton, &model.clips[0])?;
+    let set = ClipSet::new(&[&clip])?;
+    Ok((model.skeleton, clip, set))
 }
 
 /// The clip with keys on every part of every bone.

@@ -1,11 +1,13 @@
 //! Where instances stand in their clips.
 
-use super::{CROWDS, Scene};
+use std::hint::black_box;
+
+use super::{CROWDS, ELAPSED, Scene};
 use crate::Error;
-use crate::animation::place::PlacePass;
+use crate::animation::place::{Place, PlacePass};
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
-use crate::reference::animation::place::places;
+use crate::reference::animation::place::places_into;
 
 /// One timeline an instance: all tracks share it.
 ///
@@ -17,14 +19,15 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
-        job.set(gpu, 0.4)?;
+        job.set(gpu, ELAPSED)?;
         // An instance and four times in, a place out: 10 words.
         let copied = copy_of(gpu, 5 * count)?;
+        let mut places = vec![Place::default(); count];
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Twin, || {
-                drop(std::hint::black_box(places(&scene.set, &scene.instances, 0.4)));
+                places_into(&scene.set, &scene.instances, ELAPSED, black_box(&mut places));
             }),
         ];
         bench.case(format!("{count} instances"), (count, "instance"), 40 * count as u64, contenders)?;

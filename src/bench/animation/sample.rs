@@ -1,17 +1,23 @@
 //! Sampling of crowds.
 
-use super::{CROWDS, Scene};
+use std::hint::black_box;
+
+use super::plain_soa::PlainSoa;
+use super::{CROWDS, KEYS, Scene};
 use crate::Error;
 use crate::animation::crowd::Crowd;
 use crate::animation::layers::{Layer, all_instances};
-use crate::animation::place::Instance;
+use crate::animation::place::{Instance, Place};
 use crate::animation::sample::{ActivePairs, RotationPath, SamplePass};
+use crate::animation::transform::Transform;
+use crate::baseline::gather::Reads;
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
 use crate::reference::animation::place::places;
-use crate::reference::animation::sample::{sample_layers, sample_set};
+use crate::reference::animation::sample::{sample_layers, sample_set_into};
 
-/// All bones, a list of every fourth, and two clips blended.
+/// All bones, a list of every fourth, and two clips blended. `copy` reads and writes the same words, `limit` the same
+/// keys without looking tracks up.
 ///
 /// # Errors
 /// What the device reports.
@@ -20,45 +26,50 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = SamplePass::new(gpu, RotationPath::Slerp)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
-        let found = places(&scene.set, &scene.instances, 0.4);
-        scene.crowd.places.write(gpu, &found)?;
         let pairs = scene.pairs();
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
-        // Two keys of 10 words in, 10 words out: one and a half copies of 10.
-        let copied = copy_of(gpu, 15 * pairs)?;
-        let twin = || {
-            drop(std::hint::black_box(sample_set(&scene.set, &scene.instances, &found, RotationPath::Slerp)));
-        };
+        let copied = scene.gathered(gpu, Reads::Everything)?;
+        let keys = scene.gathered(gpu, Reads::Keys(KEYS as u32))?;
+        let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
+        let mut soa = vec![plain.locals(); count];
+        let mut locals = vec![Transform::IDENTITY; pairs];
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, twin),
+            Contender::job(Backend::Limit, &keys),
+            Contender::host(Backend::Twin, || twin(&scene, &scene.places, black_box(&mut locals))),
+            Contender::host(Backend::PlainSoa, || {
+                for (place, soa) in scene.places.iter().zip(black_box(&mut soa)) {
+                    plain.sample(*place, soa);
+                }
+            }),
         ];
-        bench.case(format!("{count} × 153, 60 keys"), (pairs, "bone"), 120 * pairs as u64, contenders)?;
+        bench.case(format!("{count} × 153, 60 keys"), (pairs, "bone"), 128 * pairs as u64, contenders)?;
     }
     quarter(bench, &pass)?;
     blended(bench)
 }
 
+fn twin(scene: &Scene, places: &[Place], locals: &mut [Transform]) {
+    sample_set_into(&scene.set, &scene.instances[..places.len()], places, RotationPath::Slerp, locals);
+}
+
 fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, CROWDS[1])?;
-    let found = places(&scene.set, &scene.instances, 0.4);
-    scene.crowd.places.write(gpu, &found)?;
     let active = ActivePairs::new(gpu, &scene.crowd)?;
     let chosen: Vec<u32> = (0..scene.pairs() as u32).step_by(4).collect();
     active.write(gpu, &chosen)?;
     let job = pass.prepare_active(gpu, &scene.clips, &scene.crowd, &active)?;
-    let copied = copy_of(gpu, 15 * chosen.len())?;
+    let copied = copy_of(gpu, 16 * chosen.len())?;
+    let places = &scene.places[..scene.places.len() / 4];
+    let mut locals = vec![Transform::IDENTITY; places.len() * scene.set.bones()];
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
-            let quarter = &scene.instances[..scene.instances.len() / 4];
-            drop(std::hint::black_box(sample_set(&scene.set, quarter, &found, RotationPath::Slerp)));
-        }),
+        Contender::host(Backend::Twin, || twin(&scene, places, black_box(&mut locals))),
     ];
-    let bytes = 120 * chosen.len() as u64;
+    let bytes = 128 * chosen.len() as u64;
     bench.case("a quarter of 1000 × 153", (chosen.len(), "bone"), bytes, contenders)
 }
 

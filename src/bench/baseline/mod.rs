@@ -1,5 +1,6 @@
 //! Benchmarks of `kernels/baseline/`.
 
 pub mod copy;
+pub mod gather;
 pub mod loads;
 pub mod words;

@@ -2,19 +2,30 @@
 
 use crate::animation::concat::{CONTINUES, NO_PARENT, Order};
 use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::{Affine, Transform};
+use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
 
 /// Each bone's transform in the model's space, from those in the parents' spaces.
 ///
 /// # Panics
 /// With fewer locals than bones.
 pub fn concat(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> {
-    let mut models: Vec<Affine> = Vec::with_capacity(skeleton.len());
-    for (bone, local) in skeleton.bones().iter().zip(locals) {
-        let local = affine(local);
-        models.push(bone.parent.map_or(local, |parent| product(&models[parent as usize], &local)));
-    }
+    let mut models = vec![AFFINE_IDENTITY; skeleton.len()];
+    concat_into(skeleton, locals, &mut models);
     models
+}
+
+/// [`concat()`] of one instance after another without allocation: as many locals and models an instance as bones.
+///
+/// # Panics
+/// Where the last instance's locals or models are not whole.
+pub fn concat_into(skeleton: &Skeleton, locals: &[Transform], models: &mut [Affine]) {
+    let bones = skeleton.len();
+    for (locals, models) in locals.chunks(bones).zip(models.chunks_mut(bones)) {
+        for (bone, node) in skeleton.bones().iter().enumerate() {
+            let local = affine(&locals[bone]);
+            models[bone] = node.parent.map_or(local, |parent| product(&models[parent as usize], &local));
+        }
+    }
 }
 
 /// Translation · rotation · scale.
@@ -32,12 +43,15 @@ pub fn affine(transform: &Transform) -> Affine {
 
 /// `a · b`: b first.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
-    a.map(|row| {
-        std::array::from_fn(|i| {
-            let linear = row[0] * b[0][i] + row[1] * b[1][i] + row[2] * b[2][i];
-            if i == 3 { linear + row[3] } else { linear }
-        })
-    })
+    // Loops over whole rows, so that compilers use vectors: closures took twice as long.
+    let mut product = [[0.0; 4]; 3];
+    for (row, [x, y, z, moved]) in product.iter_mut().zip(a) {
+        for (column, entry) in row.iter_mut().enumerate() {
+            *entry = x * b[0][column] + y * b[1][column] + z * b[2][column];
+        }
+        row[3] += moved;
+    }
+    product
 }
 
 /// One instance's transforms in the model's space, of the dirty slots alone: `dirty` holds a bit for each slot, with a

@@ -57,13 +57,23 @@ pub fn place(times: &[f32], time: f32) -> Place {
 /// has fewer, the rest is left as it is by the kernel, and at the start here.
 pub fn places(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<Place> {
     let mut places = vec![Place::default(); instances.len() * set.timelines_a_clip()];
+    places_into(set, instances, elapsed, &mut places);
+    places
+}
+
+/// [`places`] without allocation, for one frame after another.
+///
+/// # Panics
+/// For an instance of no clip of the set.
+pub fn places_into(set: &ClipSet, instances: &[Instance], elapsed: f32, places: &mut [Place]) {
     for (instance, places) in instances.iter().zip(places.chunks_mut(set.timelines_a_clip())) {
         let clip = &set.clips()[instance.clip as usize];
         let (time, _) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
         let timelines = &set.timelines()[clip.first_timeline as usize..][..clip.timelines as usize];
-        for (timeline, found) in timelines.iter().zip(places) {
+        let (used, rest) = places.split_at_mut(timelines.len());
+        for (timeline, found) in timelines.iter().zip(used) {
             *found = place(&set.times()[timeline.first_time as usize..][..timeline.keys as usize], time);
         }
+        rest.fill(Place::default());
     }
-    places
 }

@@ -8,6 +8,10 @@ use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V};
 use crate::animation::transform::Transform;
 use crate::reference::animation::place::place;
 
+mod arcs;
+
+use arcs::Arcs;
+
 /// A spline of rotations that passes this close to zero keeps the key before: nothing has a direction there.
 const VANISHING: f32 = 1e-12;
 
@@ -123,11 +127,47 @@ pub fn sample_set(
     places: &[Place],
     path: RotationPath,
 ) -> Vec<Transform> {
-    let mut transforms = Vec::with_capacity(instances.len() * set.bones());
-    for (instance, places) in instances.iter().zip(places.chunks(set.timelines_a_clip())) {
-        transforms.extend((0..set.bones()).map(|bone| sample_pair(set, instance, places, bone, path)));
-    }
+    let mut transforms = vec![Transform::IDENTITY; instances.len() * set.bones()];
+    sample_set_into(set, instances, places, path, &mut transforms);
     transforms
+}
+
+/// [`sample_set`] without allocation, for one frame after another.
+///
+/// # Panics
+/// With fewer places or transforms than the instances need.
+pub fn sample_set_into(
+    set: &ClipSet,
+    instances: &[Instance],
+    places: &[Place],
+    path: RotationPath,
+    transforms: &mut [Transform],
+) {
+    let (bones, room) = (set.bones(), set.timelines_a_clip());
+    for (index, instance) in instances.iter().enumerate() {
+        let tracks = &set.tracks()[3 * bones * instance.clip as usize..][..3 * bones];
+        let places = &places[index * room..][..room];
+        let transforms = &mut transforms[index * bones..][..bones];
+        let mut arcs = Arcs::default();
+        for (bone, tracks) in tracks.chunks_exact(3).enumerate() {
+            let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
+                let (values, interpolation, place) = find(set, track, places);
+                let [x, y, z, _] = vector_at(values, interpolation, place);
+                [x, y, z]
+            });
+            transforms[bone].translation = translation;
+            transforms[bone].scale = scale;
+            let (values, interpolation, place) = find(set, tracks[1], places);
+            let is_between = interpolation == Interpolation::Linear && place.fraction > 0.0;
+            if is_between && path == RotationPath::Slerp {
+                let key = place.key as usize;
+                arcs.push(bone, [values[key], values[key + 1]], place.fraction, transforms);
+            } else {
+                transforms[bone].rotation = rotation_at(values, interpolation, place, path);
+            }
+        }
+        arcs.finish(transforms);
+    }
 }
 
 /// One bone's transform of one instance, at the instance's places.

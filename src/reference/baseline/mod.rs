@@ -1,5 +1,6 @@
 //! Twins of `kernels/baseline/`.
 
 pub mod copy;
+pub mod gather;
 pub mod loads;
 pub mod words;

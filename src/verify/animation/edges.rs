@@ -119,14 +119,15 @@ impl Edges {
     pub fn places(&self) -> Vec<Vec<Place>> {
         let place = |key, fraction| Place { key, fraction };
         let of = |time: &Option<f32>| match *time {
-            // Repeated, whole, and late times.
+            // The quarters that all tracks' times are together; repeated, whole, and late times.
             Some(t) => vec![
+                place((4.0 * t) as u32, (4.0 * t).fract()),
                 if t >= 1.0 { place(3, 0.0) } else { place(2 * u32::from(t >= 0.5), 2.0 * (t % 0.5)) },
                 if t >= 1.0 { place(1, 0.0) } else { place(0, t) },
                 if t >= 0.75 { place(1, 0.0) } else { place(0, 2.0 * (t - 0.25).max(0.0)) },
             ],
-            // The last of four, of two.
-            None => vec![place(3, 0.0), place(1, 0.0)],
+            // The one time; the last of four, of two.
+            None => vec![place(0, 0.0), place(3, 0.0), place(1, 0.0)],
         };
         self.times.iter().map(of).collect()
     }

@@ -11,6 +11,7 @@ use crate::animation::sample::{ActivePairs, LAYER_GROWTH, RotationPath, SAMPLE_B
 use crate::gpu::Gpu;
 use crate::reference::animation::place::places;
 use crate::reference::animation::sample::{blend, sample_layers, sample_set};
+use crate::verify::baseline::gather::evenly_keyed;
 use crate::verify::poison::{POISON, Poisoned};
 use crate::verify::{Cases, compare};
 
@@ -33,6 +34,12 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let path = [RotationPath::Slerp, RotationPath::Nlerp][case % 2];
         let name = format!("{bones} bones × {count}, {} layers", 1 + above);
         add(cases, name, &set, &instances, &layers, path)?;
+    }
+    // Sets without splines have kernels of their own.
+    let set = evenly_keyed(&mut Draw::new(1), 153, 60)?;
+    let instances = random_instances(0, &set, 40);
+    for path in [RotationPath::Slerp, RotationPath::Nlerp] {
+        add(cases, format!("153 bones × 40 without splines, {path:?}"), &set, &instances, &[], path)?;
     }
     at_edges(cases)
 }

@@ -1,5 +1,6 @@
 //! Parity of `kernels/baseline/`.
 
 pub mod copy;
+pub mod gather;
 pub mod loads;
 pub mod words;

@@ -1,0 +1,57 @@
+// Moves what sampling moves and computes nothing: a thread reads the two keys around a place of three tracks of a bone,
+// shared by instances as a clip's are, and writes a local transform's words, each the exclusive or of its two.
+import package::wgsl::animation::instance::AnimationInstance;
+
+// Whether tracks are looked up as sampling looks them up, or lie evenly: the keys alone.
+override TABLES: bool = true;
+
+struct GatherParams {
+    // Bones of all instances.
+    pairs: u32,
+    bones: u32,
+    // Of each track.
+    keys: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: GatherParams;
+@group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
+// Three a bone and clip: timeline, first value.
+@group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
+// One an instance: key and, as bits, fraction.
+@group(0) @binding(3) var<storage, read> places: array<vec2<u32>>;
+@group(0) @binding(4) var<storage, read> values: array<vec4<u32>>;
+// Three a pair.
+@group(0) @binding(5) var<storage, read_write> gathered: array<vec4<u32>>;
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pair = (group.y * groups.x + group.x) * 64u + lane;
+    if pair >= params.pairs {
+        return;
+    }
+    let instance = pair / params.bones;
+    let bone = pair - instance * params.bones;
+    let place = places[instance];
+    var first = vec3<u32>(0u, 1u, 2u) + 3u * bone;
+    // All words that are read count.
+    var unused = 0u;
+    if TABLES {
+        let track = 3u * (instances[instance].clip * params.bones + bone);
+        let found = array(tracks[track], tracks[track + 1u], tracks[track + 2u]);
+        first = vec3<u32>(found[0].y, found[1].y, found[2].y);
+        unused = found[0].x ^ found[1].x ^ found[2].x ^ place.y;
+    } else {
+        first *= params.keys;
+    }
+    first += place.x;
+    let moved = values[first.x].xyz ^ values[first.x + 1u].xyz;
+    let turned = values[first.y] ^ values[first.y + 1u];
+    let scaled = values[first.z].xyz ^ values[first.z + 1u].xyz;
+    gathered[3u * pair] = vec4<u32>(moved, scaled.x);
+    gathered[3u * pair + 1u] = turned;
+    gathered[3u * pair + 2u] = vec4<u32>(scaled.yz, unused, 0u);
+}
