@@ -1,6 +1,6 @@
 // From bits to lists: the pairs of instance and bone that are active, the slots that are dirty since a bone above them is
 // active, the instances with any, and the arguments of the dispatches that serve them. Lists keep the order of the
-// instances and, within one, of its slots, on every device. Three stages, a dispatch each.
+// instances and, within one, of its slots, on every device. Three stages, a dispatch each, or all in one.
 
 // One of the constants below.
 override STAGE: u32 = 0;
@@ -11,6 +11,8 @@ const SPREAD = 0u;
 const SCAN = 1u;
 // A thread lists the pairs of one word.
 const SCATTER = 2u;
+// One workgroup does all of it: for small crowds where a dispatch costs more than a second processor gains.
+const ALL = 3u;
 
 const WIDTH = 64u;
 
@@ -19,7 +21,8 @@ struct CompactParams {
     bones: u32,
     // Words of bits an instance.
     words: u32,
-    levels: u32,
+    // Dispatches beyond the first that serve dirty instances.
+    served: u32,
     // Most workgroups along x.
     most_groups: u32,
 }
@@ -37,8 +40,7 @@ struct CompactParams {
 // Workgroups along x, y, z for a thread a pair; how many.
 @group(0) @binding(6) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
 @group(0) @binding(7) var<storage, read_write> dirty_instances: array<u32>;
-// Likewise for a thread a dirty instance; then, for each level of chains, for a thread a chain of a dirty instance,
-// where w holds the level's chains.
+// Likewise for a thread a dirty instance; then, where w says how many, for as many threads a dirty instance.
 @group(0) @binding(8) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
 var<workgroup> sums: array<vec2<u32>, WIDTH>;
@@ -83,12 +85,17 @@ fn dispatch_of(threads: u32) -> vec3<u32> {
     return vec3<u32>(x, (groups + x - 1u) / x, 1u);
 }
 
-fn scan(lane: u32) {
+// The instances of a lane of one workgroup, from x to below y.
+fn share_of(lane: u32) -> vec2<u32> {
     let share = (params.instances + WIDTH - 1u) / WIDTH;
     let first = min(lane * share, params.instances);
-    let end = min(first + share, params.instances);
+    return vec2<u32>(first, min(first + share, params.instances));
+}
+
+fn scan(lane: u32) {
+    let own = share_of(lane);
     var sum = vec2<u32>(0u);
-    for (var instance = first; instance < end; instance++) {
+    for (var instance = own.x; instance < own.y; instance++) {
         let count = counts[instance];
         sum += vec2<u32>(count, u32(count > 0u));
     }
@@ -98,7 +105,7 @@ fn scan(lane: u32) {
     for (var other = 0u; other < lane; other++) {
         before += sums[other];
     }
-    for (var instance = first; instance < end; instance++) {
+    for (var instance = own.x; instance < own.y; instance++) {
         let count = counts[instance];
         counts[instance] = before.x;
         if count > 0u {
@@ -109,9 +116,9 @@ fn scan(lane: u32) {
     if lane == WIDTH - 1u {
         pair_dispatch[0] = vec4<u32>(dispatch_of(before.x), before.x);
         instance_dispatches[0] = vec4<u32>(dispatch_of(before.y), before.y);
-        for (var level = 1u; level <= params.levels; level++) {
-            let chains = instance_dispatches[level].w;
-            instance_dispatches[level] = vec4<u32>(dispatch_of(before.y * chains), chains);
+        for (var at = 1u; at <= params.served; at++) {
+            let each = instance_dispatches[at].w;
+            instance_dispatches[at] = vec4<u32>(dispatch_of(before.y * each), each);
         }
     }
 }
@@ -146,6 +153,15 @@ fn main(
         spread(index);
     } else if STAGE == SCAN {
         scan(lane);
+    } else if STAGE == ALL {
+        let own = share_of(lane);
+        for (var instance = own.x; instance < own.y; instance++) {
+            spread(instance);
+        }
+        scan(lane);
+        for (var word = own.x * params.words; word < own.y * params.words; word++) {
+            scatter(word);
+        }
     } else {
         scatter(index);
     }

@@ -1,14 +1,13 @@
-// Where instances stand on the timeline that all bones of their clip share, in whole numbers, and whether anything but
+// Where instances stand on the common timeline of their clip, in whole numbers, and whether anything but
 // the time asks for a new pose: what gates decide by. A thread looks at one instance.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::clock;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::gating::{Lod, Phase, LOD_HIDDEN, LOD_REFRESH, PHASE_BLENDED, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN};
+import package::wgsl::animation::timeline::place;
 
 struct PhaseParams {
     instances: u32,
-    // Room of an instance for its places.
-    timelines: u32,
     // Seconds since the instances' starts.
     elapsed: f32,
     // Layers above the base.
@@ -18,14 +17,16 @@ struct PhaseParams {
 @group(0) @binding(0) var<uniform> params: PhaseParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
-// Key and, as bits, fraction.
-@group(0) @binding(3) var<storage, read> places: array<vec2<u32>>;
-@group(0) @binding(4) var<storage, read> lods: array<Lod>;
+// First time and number of keys.
+@group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
+// Binding 4: the times.
+@group(0) @binding(5) var<storage, read> lods: array<Lod>;
 // Weights of the layers above the base, layer by layer.
-@group(0) @binding(5) var<storage, read> shares: array<f32>;
-// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; its turns.
-@group(0) @binding(6) var<storage, read_write> history: array<vec2<u32>>;
-@group(0) @binding(7) var<storage, read_write> phases: array<Phase>;
+@group(0) @binding(6) var<storage, read> shares: array<f32>;
+// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; its turns; as bits, the time
+// inside the clip.
+@group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
+@group(0) @binding(8) var<storage, read_write> phases: array<Phase>;
 
 // After as many turns every bone is sampled again: sums of motion would overflow.
 const TURNS_SHIFT = 4u;
@@ -52,15 +53,18 @@ fn main(
     let instance = instances[index];
     let clip = clips[instance.clip];
     let now = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
-    let place = places[index * params.timelines];
+    let timeline = timelines[clip.first_timeline];
+    let place = place(timeline.x, timeline.y, now.inside);
     let flags = lods[index].flags;
     let blended = is_blended(index);
-    let known = vec2<u32>((instance.clip + 1u) | select(0u, BLENDED, blended), bitcast<u32>(now.turns >> TURNS_SHIFT));
+    let clip_layers = (instance.clip + 1u) | select(0u, BLENDED, blended);
+    let known = vec4<u32>(
+        clip_layers, bitcast<u32>(now.turns >> TURNS_SHIFT), bitcast<u32>(now.inside), 0u);
     let last = history[index];
     var verdict = PHASE_FREE;
     if (flags & LOD_HIDDEN) != 0u {
         verdict = PHASE_HIDDEN;
-        history[index] = vec2<u32>(0u);
+        history[index] = vec4<u32>(0u);
     } else {
         if (flags & LOD_REFRESH) != 0u || last.x != known.x || last.y != known.y {
             verdict = PHASE_FORCED;

@@ -1,10 +1,15 @@
 // Where instances stand in their clips: for each instance and timeline of its clip the key before, and the way to the
-// next. A thread finds one of them.
+// next. A thread finds one of them. With COMPACTED, only for instances of a list, all their layers included.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::clock;
 import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::timeline::place;
+
+override COMPACTED: bool = false;
 
 struct PlaceParams {
+    // Of all layers; and of one.
+    entries: u32,
     instances: u32,
     // Room of an instance for its places.
     timelines: u32,
@@ -17,41 +22,14 @@ struct PlaceParams {
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // First time and number of keys.
 @group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
-@group(0) @binding(4) var<storage, read> times: array<f32>;
+// Binding 4: the times.
 // Key and, as bits, fraction.
 @group(0) @binding(5) var<storage, read_write> places: array<vec2<u32>>;
-
-fn place(first: u32, keys: u32, time: f32) -> vec2<u32> {
-    let last = keys - 1u;
-    let start = times[first];
-    if time < start {
-        return vec2<u32>(0u);
-    }
-    let end_time = times[first + last];
-    if time >= end_time {
-        return vec2<u32>(last, 0u);
-    }
-    // Most clips are sampled evenly: a guess hits.
-    let evenly = (time - start) / (end_time - start) * f32(last);
-    var key = min(u32(evenly), last - 1u);
-    var before = times[first + key];
-    var after = times[first + key + 1u];
-    if before > time || after <= time {
-        var end = last;
-        key = 0u;
-        while end - key > 1u {
-            let middle = (key + end) / 2u;
-            if times[first + middle] <= time {
-                key = middle;
-            } else {
-                end = middle;
-            }
-        }
-        before = times[first + key];
-        after = times[first + key + 1u];
-    }
-    return vec2<u32>(key, bitcast<u32>((time - before) / (after - before)));
-}
+@group(0) @binding(6) var<storage, read> dirty_instances: array<u32>;
+// Of the first, w: how many instances are listed.
+@group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
+// Of each instance of the base what gates saw; z: its time inside the clip, as bits.
+@group(0) @binding(8) var<storage, read> history: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
 fn main(
@@ -60,17 +38,31 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + lane;
-    let instance_index = index / params.timelines;
-    if instance_index >= params.instances {
+    let at = index / params.timelines;
+    var entry = at;
+    if COMPACTED {
+        // Layer by layer of one instance after another.
+        let layers = params.entries / params.instances;
+        let listed = at / layers;
+        if listed >= dispatches[0].w {
+            return;
+        }
+        entry = dirty_instances[listed] + (at - listed * layers) * params.instances;
+    }
+    if entry >= params.entries {
         return;
     }
-    let instance = instances[instance_index];
+    let instance = instances[entry];
     let clip = clips[instance.clip];
-    let timeline_index = index - instance_index * params.timelines;
+    let timeline_index = index - at * params.timelines;
     if timeline_index >= clip.timelines {
         return;
     }
     let timeline = timelines[clip.first_timeline + timeline_index];
-    let now = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
-    places[index] = place(timeline.x, timeline.y, now.inside);
+    var time = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed).inside;
+    if COMPACTED && entry < params.instances {
+        // To the bit what the gate decided by: a key is passed for both or for neither.
+        time = bitcast<f32>(history[entry].z);
+    }
+    places[entry * params.timelines + timeline_index] = place(timeline.x, timeline.y, time);
 }

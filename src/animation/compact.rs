@@ -6,4 +6,4 @@
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub use pass::{Active, CompactJob, CompactPass};
+pub use pass::{Active, CompactJob, CompactPass, Stages};

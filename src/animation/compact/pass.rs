@@ -14,7 +14,7 @@ pub(crate) struct CompactParams {
     pub instances: u32,
     pub bones: u32,
     pub words: u32,
-    pub levels: u32,
+    pub served: u32,
     pub most_groups: u32,
 }
 
@@ -31,12 +31,12 @@ pub struct Active {
     /// Instances with an active bone.
     pub instances: Buffer<u32>,
     /// Workgroups of 64 along x, y, z for a thread an instance of the list, and how many these are; then, for each
-    /// level of chains, workgroups for a thread a chain of each of them, and the level's chains.
+    /// level of chains, workgroups for a thread a chain of each of them, and the level's chains; last, workgroups for a
+    /// thread a place of each of them, and an instance's places.
     pub dispatches: Buffer<[u32; 4]>,
     pub(crate) slots: Buffer<super::super::concat::Slot>,
     pub(crate) counts: Buffer<u32>,
     pub(crate) words: u32,
-    pub(crate) levels: u32,
 }
 
 impl Active {
@@ -52,7 +52,9 @@ impl Active {
         let instances = crowd.len();
         let words = order.words();
         let chains = order.levels.windows(2).map(|level| [0, 1, 1, level[1] - level[0]]);
-        let dispatches: Vec<[u32; 4]> = std::iter::once([0, 1, 1, 0]).chain(chains).collect();
+        let places = [0, 1, 1, (crowd.places.len() / crowd.len()) as u32];
+        let dispatches: Vec<[u32; 4]> =
+            std::iter::once([0, 1, 1, 0]).chain(chains).chain(std::iter::once(places)).collect();
         Ok(Self {
             bits: Buffer::new(gpu, "active bits", instances * words)?,
             dirty: Buffer::new(gpu, "dirty bits", instances * words)?,
@@ -62,8 +64,27 @@ impl Active {
             slots: Buffer::from_slice(gpu, "slots", &order.slots)?,
             counts: Buffer::new(gpu, "counts", instances)?,
             words: words as u32,
-            levels: dispatches.len() as u32 - 1,
         })
+    }
+}
+
+/// How threads share the work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stages {
+    /// A dispatch that spreads, one that sums, one that lists.
+    Three,
+    /// One workgroup does all of it. On lavapipe, where a dispatch takes 20 µs and more, faster for some hundred
+    /// instances.
+    One,
+}
+
+impl Stages {
+    /// Words of bits up to which one workgroup is enough where processors are few.
+    const FEW: usize = 2048;
+
+    /// The faster way for a crowd on this kind of adapter.
+    pub fn of(gpu: &Gpu, active: &Active) -> Self {
+        if gpu.adapter().kind == "cpu" && active.bits.len() <= Self::FEW { Self::One } else { Self::Three }
     }
 }
 
@@ -71,6 +92,7 @@ impl Active {
 #[derive(Debug, Clone)]
 pub struct CompactPass {
     stages: [Kernel; 3],
+    all: Kernel,
 }
 
 /// Prepared lists.
@@ -83,19 +105,25 @@ impl CompactPass {
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let stage = |stage| Kernel::new(gpu, &shaders::ANIMATION_COMPACT, &[("STAGE", stage)]);
-        Ok(Self { stages: [stage(0.0)?, stage(1.0)?, stage(2.0)?] })
+        Ok(Self { stages: [stage(0.0)?, stage(1.0)?, stage(2.0)?], all: stage(3.0)? })
     }
 
     /// Prepares the lists of a crowd's active bits.
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, crowd: &Crowd, active: &Active) -> Result<CompactJob, Error> {
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        crowd: &Crowd,
+        active: &Active,
+        stages: Stages,
+    ) -> Result<CompactJob, Error> {
         let params = CompactParams {
             instances: crowd.len() as u32,
             bones: crowd.bones as u32,
             words: active.words,
-            levels: active.levels,
+            served: active.dispatches.len() as u32 - 1,
             most_groups: gpu.device().limits().max_compute_workgroups_per_dimension,
         };
         let uniform = Uniform::new(gpu, "compact", &params)?;
@@ -110,15 +138,22 @@ impl CompactPass {
             active.instances.raw().as_entire_binding(),
             active.dispatches.raw().as_entire_binding(),
         ];
-        let threads = [params.instances, 1, params.instances * params.words];
-        let step = |(kernel, threads): (&Kernel, u32)| {
-            Ok(Step {
+        let step = |kernel: &Kernel, threads: u32| {
+            Ok::<_, GpuError>(Step {
                 groups: vec![kernel.bind(gpu, 0, &resources)?],
                 workgroups: kernel.spread(gpu, threads),
                 kernel: kernel.clone(),
             })
         };
-        let steps = self.stages.iter().zip(threads).map(step).collect::<Result<_, GpuError>>()?;
+        let [spread, scan, scatter] = &self.stages;
+        let steps = match stages {
+            Stages::One => vec![step(&self.all, 1)?],
+            Stages::Three => vec![
+                step(spread, params.instances)?,
+                step(scan, 1)?,
+                step(scatter, params.instances * params.words)?,
+            ],
+        };
         Ok(Job::new(gpu, "animation/compact", steps)?)
     }
 }

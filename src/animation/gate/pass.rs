@@ -31,9 +31,9 @@ pub struct Gating {
     pub lods: Buffer<Lod>,
     /// Written by [`crate::animation::phase::PhasePass`].
     pub phases: Buffer<Phase>,
-    /// Each instance's last clip + 1, with the highest bit where layers lay above it, and its last turns / 16. Zeros: no
-    /// pose is stored.
-    pub history: Buffer<[u32; 2]>,
+    /// Each instance's last clip + 1, with the highest bit where layers lay above it; its last turns / 16; as bits, its
+    /// last time inside the clip; and nothing. Zeros: no pose is stored.
+    pub history: Buffer<[u32; 4]>,
     /// For each slot of each instance, the sum of motion when it was sampled last.
     pub sampled: Buffer<u32>,
     /// The table of movers.

@@ -11,7 +11,6 @@ use crate::{Error, InputError};
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct PhaseParams {
     pub instances: u32,
-    pub timelines: u32,
     pub elapsed: f32,
     pub layers: u32,
 }
@@ -31,7 +30,7 @@ impl PhasePass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_PHASE, &[])? })
     }
 
-    /// Prepares the phases of a crowd, from its places.
+    /// Prepares the phases of a crowd.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -44,7 +43,6 @@ impl PhasePass {
     ) -> Result<PhaseJob, Error> {
         let params = PhaseParams {
             instances: gating.lods.len() as u32,
-            timelines: clips.timelines_a_clip as u32,
             elapsed: 0.0,
             layers: crowd.layers as u32 - 1,
         };
@@ -53,7 +51,8 @@ impl PhasePass {
             uniform.raw().as_entire_binding(),
             crowd.instances.raw().as_entire_binding(),
             clips.clips.raw().as_entire_binding(),
-            crowd.places.raw().as_entire_binding(),
+            clips.timelines.raw().as_entire_binding(),
+            clips.times.raw().as_entire_binding(),
             gating.lods.raw().as_entire_binding(),
             crowd.shares.raw().as_entire_binding(),
             gating.history.raw().as_entire_binding(),

@@ -4,13 +4,16 @@ use encase::ShaderType;
 
 use super::Instance;
 use crate::animation::clip_set::ClipSet;
+use crate::animation::compact::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::animation::gate::Gating;
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `PlaceParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct PlaceParams {
+    pub entries: u32,
     pub instances: u32,
     pub timelines: u32,
     pub elapsed: f32,
@@ -19,16 +22,18 @@ pub(crate) struct PlaceParams {
 /// Finds where instances stand in their clips.
 #[derive(Debug, Clone)]
 pub struct PlacePass {
-    kernel: Kernel,
+    all: Kernel,
+    compacted: Kernel,
 }
 
 impl PlacePass {
-    /// Compiles the pipeline.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_PLACE, &[])? })
+        let kernel = |compacted| Kernel::new(gpu, &shaders::ANIMATION_PLACE, &[("COMPACTED", compacted)]);
+        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)? })
     }
 
     /// Prepares the places of a crowd.
@@ -36,27 +41,89 @@ impl PlacePass {
     /// # Errors
     /// [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<PlaceJob, Error> {
-        let params = PlaceParams {
-            instances: crowd.instances.len() as u32,
+        let params = PlaceParams::new(clips, crowd);
+        let uniform = Uniform::new(gpu, "place", &params)?;
+        let words = Buffer::new(gpu, "nothing", 0)?;
+        let (dispatches, history) = (Buffer::new(gpu, "nothing", 1)?, Buffer::new(gpu, "nothing", 1)?);
+        let listed = Listed { instances: &words, dispatches: &dispatches, history: &history };
+        let step = Step {
+            groups: vec![bind(&self.all, gpu, &uniform, clips, crowd, &listed)?],
+            workgroups: self.all.spread(gpu, params.entries * params.timelines),
+            kernel: self.all.clone(),
+        };
+        let work = Work::All(Job::new(gpu, "animation/place", vec![step])?);
+        Ok(PlaceJob { params, uniform, work })
+    }
+
+    /// Prepares the places of instances with an active bone alone, at the times that the gate saw: after
+    /// `animation/compact`.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn prepare_active(
+        &self,
+        gpu: &Gpu,
+        clips: &ClipBuffers,
+        crowd: &Crowd,
+        gating: &Gating,
+        active: &Active,
+    ) -> Result<PlaceJob, Error> {
+        let params = PlaceParams::new(clips, crowd);
+        let uniform = Uniform::new(gpu, "place", &params)?;
+        let listed =
+            Listed { instances: &active.instances, dispatches: &active.dispatches, history: &gating.history };
+        let group = bind(&self.compacted, gpu, &uniform, clips, crowd, &listed)?;
+        let dispatches = active.dispatches.clone();
+        let offset = 16 * (dispatches.len() as u64 - 1);
+        let work = Work::Active { kernel: self.compacted.clone(), group, dispatches, offset };
+        Ok(PlaceJob { params, uniform, work })
+    }
+}
+
+impl PlaceParams {
+    fn new(clips: &ClipBuffers, crowd: &Crowd) -> Self {
+        Self {
+            entries: crowd.instances.len() as u32,
+            instances: crowd.len() as u32,
             timelines: clips.timelines_a_clip as u32,
             elapsed: 0.0,
-        };
-        let uniform = Uniform::new(gpu, "place", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            crowd.instances.raw().as_entire_binding(),
-            clips.clips.raw().as_entire_binding(),
-            clips.timelines.raw().as_entire_binding(),
-            clips.times.raw().as_entire_binding(),
-            crowd.places.raw().as_entire_binding(),
-        ];
-        let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-            workgroups: self.kernel.spread(gpu, params.instances * params.timelines),
-            kernel: self.kernel.clone(),
-        };
-        Ok(PlaceJob { params, uniform, job: Job::new(gpu, "animation/place", vec![step])? })
+        }
     }
+}
+
+/// Which instances are placed.
+struct Listed<'a> {
+    instances: &'a Buffer<u32>,
+    dispatches: &'a Buffer<[u32; 4]>,
+    history: &'a Buffer<[u32; 4]>,
+}
+
+fn bind(
+    kernel: &Kernel,
+    gpu: &Gpu,
+    uniform: &Uniform<PlaceParams>,
+    clips: &ClipBuffers,
+    crowd: &Crowd,
+    listed: &Listed<'_>,
+) -> Result<Group, GpuError> {
+    let resources = [
+        uniform.raw().as_entire_binding(),
+        crowd.instances.raw().as_entire_binding(),
+        clips.clips.raw().as_entire_binding(),
+        clips.timelines.raw().as_entire_binding(),
+        clips.times.raw().as_entire_binding(),
+        crowd.places.raw().as_entire_binding(),
+        listed.instances.raw().as_entire_binding(),
+        listed.dispatches.raw().as_entire_binding(),
+        listed.history.raw().as_entire_binding(),
+    ];
+    kernel.bind(gpu, 0, &resources)
+}
+
+#[derive(Debug, Clone)]
+enum Work {
+    All(Job),
+    Active { kernel: Kernel, group: Group, dispatches: Buffer<[u32; 4]>, offset: u64 },
 }
 
 /// Prepared places: set the time, then record.
@@ -64,7 +131,7 @@ impl PlacePass {
 pub struct PlaceJob {
     params: PlaceParams,
     uniform: Uniform<PlaceParams>,
-    job: Job,
+    work: Work,
 }
 
 impl PlaceJob {
@@ -82,7 +149,12 @@ impl PlaceJob {
 
     /// Records the search.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
+        match &self.work {
+            Work::All(job) => job.record(encoder),
+            Work::Active { kernel, group, dispatches, offset } => {
+                kernel.dispatch_indirect(encoder, "animation/place", group, (dispatches.raw(), *offset));
+            }
+        }
     }
 }
 

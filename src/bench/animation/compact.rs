@@ -2,7 +2,7 @@
 
 use super::{CROWDS, Scene};
 use crate::Error;
-use crate::animation::compact::{Active, CompactPass};
+use crate::animation::compact::{Active, CompactPass, Stages};
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
 use crate::reference::animation::compact::compact;
@@ -26,7 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
                 .step_by(order.words())
                 .for_each(|word| *word &= u32::MAX >> unused);
             active.bits.write(gpu, &bits)?;
-            let job = pass.prepare(gpu, &scene.crowd, &active)?;
+            let job = pass.prepare(gpu, &scene.crowd, &active, Stages::of(gpu, &active))?;
             let chosen: u32 = bits.iter().map(|word| word.count_ones()).sum();
             // Bits twice in and once out, a pair and its slot.
             let words = (3 * bits.len() + 2 * chosen as usize) / 2;

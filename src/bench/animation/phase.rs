@@ -28,12 +28,12 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         job.set(gpu, 0.4)?;
         // 12 words in, 6 out.
         let copied = copy_of(gpu, 9 * count)?;
-        let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 2]; count]);
+        let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 4]; count]);
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Twin, || {
-                let found = phases(&scene.set, &scene.instances, &[], &found, &lods, 0.4, &mut history);
+                let found = phases(&scene.set, &scene.instances, &[], &lods, 0.4, &mut history);
                 drop(std::hint::black_box(found));
             }),
         ];

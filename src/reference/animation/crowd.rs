@@ -44,7 +44,7 @@ pub struct Crowd<'a> {
     pub locals: Vec<Transform>,
     /// Likewise, in the model's space.
     pub models: Vec<Affine>,
-    history: Vec<[u32; 2]>,
+    history: Vec<[u32; 4]>,
     sampled: Vec<u32>,
 }
 
@@ -67,7 +67,7 @@ impl<'a> Crowd<'a> {
             lods: vec![Lod::FULL; count],
             locals: vec![Transform::IDENTITY; pairs],
             models: vec![AFFINE_IDENTITY; pairs],
-            history: vec![[0; 2]; count],
+            history: vec![[0; 4]; count],
             sampled: vec![0; pairs],
         }
     }
@@ -75,7 +75,7 @@ impl<'a> Crowd<'a> {
     /// Brings the crowd to a time, and says what was done for it.
     pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let places = places(self.set, &self.instances, elapsed);
-        let phases = phases(self.set, &self.instances, &[], &places, &self.lods, elapsed, &mut self.history);
+        let phases = phases(self.set, &self.instances, &[], &self.lods, elapsed, &mut self.history);
         let bits = match choice {
             Choice::Gate(mode) => gate(self.table, mode, frame, &self.lods, &phases, &mut self.sampled),
             Choice::Budget(most) => budget(self.table, most, &self.lods, &phases, &mut self.sampled),

@@ -1,14 +1,13 @@
 //! Where instances stand on their clips' common timelines: twin of `kernels/animation/phase.wgsl`.
 
-use super::place::clock;
+use super::place::{clock, place};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::phase::{BLENDED, Phase, TURNS_SHIFT, Verdict};
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
 
-/// The phase of each instance. `layers` are those above the base; `places` are those of
-/// [`super::place::places`]; `history` is kept from frame to frame, and zero at first.
+/// The phase of each instance. `layers` are those above the base; `history` is kept from frame to frame, and zero at first.
 ///
 /// # Panics
 /// With fewer places, levels or histories than instances.
@@ -16,24 +15,23 @@ pub fn phases(
     set: &ClipSet,
     instances: &[Instance],
     layers: &[Layer],
-    places: &[Place],
     lods: &[Lod],
     elapsed: f32,
-    history: &mut [[u32; 2]],
+    history: &mut [[u32; 4]],
 ) -> Vec<Phase> {
     let of = |(index, instance): (usize, &Instance)| {
         let clip = &set.clips()[instance.clip as usize];
-        let (_, turns) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
-        let place = places[index * set.timelines_a_clip()];
+        let (inside, turns) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
+        let place = place(set.common_times(clip), inside);
         let weight: f32 = layers.iter().map(|layer| layer.weights[index]).sum();
         let blended = if weight > 0.0 { BLENDED } else { 0 };
-        let known = [(instance.clip + 1) | blended, (turns >> TURNS_SHIFT) as u32];
+        let known = [(instance.clip + 1) | blended, (turns >> TURNS_SHIFT) as u32, inside.to_bits(), 0];
         let last = std::mem::replace(&mut history[index], known);
         let flags = lods[index].flags;
         let verdict = if flags & Lod::HIDDEN != 0 {
-            history[index] = [0; 2];
+            history[index] = [0; 4];
             Verdict::Hidden
-        } else if flags & Lod::REFRESH != 0 || last != known {
+        } else if flags & Lod::REFRESH != 0 || last[..2] != known[..2] {
             Verdict::Forced
         } else if blended != 0 {
             Verdict::Blended

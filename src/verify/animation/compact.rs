@@ -2,7 +2,7 @@
 
 use super::{Draw, SIZES, random_crowd};
 use crate::Error;
-use crate::animation::compact::{Active, CompactPass};
+use crate::animation::compact::{Active, CompactPass, Stages};
 use crate::animation::concat::Order;
 use crate::animation::crowd::Crowd;
 use crate::reference::animation::compact::{Work, compact};
@@ -24,7 +24,9 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         for kind in ["none", "all", "a third", "few", "whole instances"] {
             let bits = random_bits(&mut draw, kind, &order, count);
             let name = format!("{bones} bones × {count}, {kind}");
-            add(cases, &name, &order, &crowd, &bits)?;
+            for stages in [Stages::Three, Stages::One] {
+                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &bits, stages)?;
+            }
         }
     }
     Ok(())
@@ -50,7 +52,14 @@ fn random_bits(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Vec<
     bits
 }
 
-fn add(cases: &mut Cases<'_>, name: &str, order: &Order, crowd: &Crowd, bits: &[u32]) -> Result<(), Error> {
+fn add(
+    cases: &mut Cases<'_>,
+    name: &str,
+    order: &Order,
+    crowd: &Crowd,
+    bits: &[u32],
+    stages: Stages,
+) -> Result<(), Error> {
     let gpu = cases.gpu;
     let mut active = Active::new(gpu, order, crowd)?;
     active.bits.write(gpu, bits)?;
@@ -60,7 +69,7 @@ fn add(cases: &mut Cases<'_>, name: &str, order: &Order, crowd: &Crowd, bits: &[
     active.dirty = dirty.buffer.clone();
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
-    let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active)?;
+    let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active, stages)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected = compact(order, bits);
     let padded = |list: &[u32], room: usize| {
@@ -74,14 +83,15 @@ fn add(cases: &mut Cases<'_>, name: &str, order: &Order, crowd: &Crowd, bits: &[
     cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
     cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
     cases.add(format!("{name}: dirty"), dirty.check(gpu, |actual| exact(actual, &expected.dirty))?);
-    cases.add(format!("{name}: dispatches"), dispatches(gpu, order, &active, &expected)?);
+    cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected)?);
     Ok(())
 }
 
-/// Workgroups of 64 for each pair, each instance, each level's chains.
+/// Workgroups of 64 for each pair, each instance, each level's chains, each place.
 fn dispatches(
     gpu: &crate::gpu::Gpu,
     order: &Order,
+    crowd: &Crowd,
     active: &Active,
     expected: &Work,
 ) -> Result<Comparison, Error> {
@@ -96,6 +106,8 @@ fn dispatches(
         let chains = (level[1] - level[0]) as usize;
         groups(chains * expected.instances.len(), chains)
     }));
+    let places = crowd.places.len() / crowd.len();
+    all.push(groups(places * expected.instances.len(), places));
     let of_pairs = active.pairs.dispatched.read_blocking(gpu)?;
     let mut actual = vec![[of_pairs[0], of_pairs[1], of_pairs[2], of_pairs[3]]];
     actual.extend(active.dispatches.read_blocking(gpu)?);

@@ -2,7 +2,7 @@
 
 use super::{Draw, SIZES, random_crowd};
 use crate::Error;
-use crate::animation::compact::{Active, CompactPass};
+use crate::animation::compact::{Active, CompactPass, Stages};
 use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Order, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::skeleton::Skeleton;
@@ -98,7 +98,7 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
         crowd.models = output.buffer.clone();
         let active = Active::new(gpu, &order, &crowd)?;
         active.bits.write(gpu, &bits)?;
-        let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active)?;
+        let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active, Stages::Three)?;
         let job = ConcatPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
         gpu.run("verify", |encoder| {
             lists.record(encoder);

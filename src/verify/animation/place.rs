@@ -1,11 +1,18 @@
 //! Parity of `kernels/animation/place.wgsl`.
 
 use super::edges::{ELAPSED, edges};
-use super::{SIZES, random_crowd};
+use super::{SIZES, random_clips, random_crowd, random_instances};
 use crate::Error;
+use crate::animation::compact::Active;
+use crate::animation::concat::Order;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::place::{PLACE_BOUND, Place, PlacePass};
-use crate::reference::animation::place::places;
+use crate::animation::gate::Gating;
+use crate::animation::gate_table::GateTable;
+use crate::animation::layers::{Layer, all_instances};
+use crate::animation::place::{Instance, PLACE_BOUND, Place, PlacePass};
+use crate::animation::sample::Wrap;
+use crate::reference::animation::place::{clock, places};
+use crate::verify::compare::Comparison;
 use crate::verify::poison::{POISON, Poisoned};
 use crate::verify::{Cases, compare};
 
@@ -31,23 +38,75 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let room = set.timelines_a_clip();
             let is_used =
                 |at: usize| at % room < set.clips()[instances[at / room].clip as usize].timelines as usize;
-            let comparison = output.check(gpu, |actual| {
-                let poison = Place { key: POISON, fraction: f32::from_bits(POISON) };
-                // Untouched rooms compare as −1.
-                let phase = |place: &Place| match place.key == poison.key {
-                    true if place.fraction.to_bits() == POISON => -1.0,
-                    _ => place.key as f32 + place.fraction,
-                };
-                let expected: Vec<f32> = (expected.iter().enumerate())
-                    .map(|(at, place)| if is_used(at) { phase(place) } else { -1.0 })
-                    .collect();
-                let actual: Vec<f32> = actual.iter().map(phase).collect();
-                compare::absolute(&actual, &expected, PLACE_BOUND)
-            })?;
+            let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
             cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
         }
     }
-    at_edges(cases, &pass)
+    at_edges(cases, &pass)?;
+    of_a_list(cases, &pass)
+}
+
+/// Instances of a list, with their layers, at the times that gates saw; the places of others stay untouched.
+fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (skeleton, set, base) = random_crowd(case as u32, bones, count)?;
+        let layer = Layer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
+        let layers = vec![layer; case % 3];
+        let mut crowd = Crowd::layered(gpu, &set, &base, &layers)?;
+        let output = Poisoned::<Place>::new(gpu, crowd.places.len())?;
+        crowd.places = output.buffer.clone();
+        let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
+        let model_clips = random_clips(case as u32, &skeleton, 3)?;
+        let table = GateTable::of_movers(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
+        let gating = Gating::new(gpu, &table, &crowd)?;
+        let active = Active::new(gpu, &order, &crowd)?;
+        // Every third, and what the gate saw is not what the clock says.
+        let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
+        active.instances.write(gpu, &listed)?;
+        let room = set.timelines_a_clip();
+        let threads = listed.len() * room * (1 + layers.len());
+        let mut dispatches = active.dispatches.read_blocking(gpu)?;
+        dispatches[0][3] = listed.len() as u32;
+        *dispatches.last_mut().expect("two") = [threads.div_ceil(64) as u32, 1, 1, 0];
+        active.dispatches.write(gpu, &dispatches)?;
+        let seen: Vec<f32> = base
+            .iter()
+            .map(|instance| clock(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25).0)
+            .collect();
+        gating.history.write(gpu, &seen.iter().map(|time| [1, 0, time.to_bits(), 0]).collect::<Vec<_>>())?;
+        let job = pass.prepare_active(gpu, &clips, &crowd, &gating, &active)?;
+        job.set(gpu, 0.5)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let all = all_instances(&base, &layers);
+        let mut expected = places(&set, &all, 0.5);
+        for (instance, time) in listed.iter().map(|at| *at as usize).map(|at| (at, seen[at])) {
+            let seen = Instance::new(base[instance].clip, Wrap::Clamp, time, 0.0);
+            expected[instance * room..][..room].copy_from_slice(&places(&set, &[seen], 0.0));
+        }
+        let is_used = |at: usize| {
+            let is_listed = (at / room % count).is_multiple_of(3);
+            is_listed && at % room < set.clips()[all[at / room].clip as usize].timelines as usize
+        };
+        let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
+        let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
+        cases.add(name, comparison);
+    }
+    Ok(())
+}
+
+/// Places that are used, and poison elsewhere.
+fn compare_places(actual: &[Place], expected: &[Place], is_used: impl Fn(usize) -> bool) -> Comparison {
+    // Untouched rooms compare as −1.
+    let phase = |place: &Place| match place.key == POISON {
+        true if place.fraction.to_bits() == POISON => -1.0,
+        _ => place.key as f32 + place.fraction,
+    };
+    let expected: Vec<f32> = (expected.iter().enumerate())
+        .map(|(at, place)| if is_used(at) { phase(place) } else { -1.0 })
+        .collect();
+    let actual: Vec<f32> = actual.iter().map(phase).collect();
+    compare::absolute(&actual, &expected, PLACE_BOUND)
 }
 
 /// Places that are known without a twin.
