@@ -8,6 +8,7 @@
 //! - [`surface`]: height maps, the ray-height methods with measured error and cost, acceleration maps, tangent
 //!   frames.
 //! - [`animation`]: skeletons and clips, import of glTF, sampling and concatenation, priorities of bones and keys.
+//! - [`skinning`]: meshes that follow skeletons.
 //! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
 //!   a GPU.
 //! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
@@ -58,6 +59,7 @@ pub mod gpu;
 pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;
+pub mod skinning;
 pub mod surface;
 pub mod terrain;
 #[cfg(feature = "gpu")]

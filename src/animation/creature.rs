@@ -33,7 +33,12 @@ pub fn creature() -> Result<Model, InputError> {
         let keys: Vec<_> = parts.iter().map(|part| motion::keys(action, part)).collect();
         Clip::new(action.name(), &skeleton, &keys, 0.0)
     });
-    Ok(Model { skeleton, skins: vec![skin], clips: clips.into_iter().collect::<Result<_, _>>()? })
+    Ok(Model {
+        skeleton,
+        skins: vec![skin],
+        clips: clips.into_iter().collect::<Result<_, _>>()?,
+        meshes: vec![],
+    })
 }
 
 /// From the model's space at rest into each bone's.

@@ -3,6 +3,7 @@
 mod concatenation;
 mod import;
 mod malformed;
+mod meshes;
 mod player;
 mod sampling;
 mod scene;

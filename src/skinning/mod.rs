@@ -1,0 +1,9 @@
+//! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
+
+pub mod mesh;
+pub mod morph;
+pub mod weights;
+
+pub use mesh::{Mesh, reaches};
+pub use morph::{MorphTarget, WeightKeys};
+pub use weights::{Influence, Influences};
