@@ -2,8 +2,11 @@
 
 pub mod mesh;
 pub mod morph;
+pub mod palette;
+pub mod skin;
 pub mod weights;
 
 pub use mesh::{Mesh, reaches};
 pub use morph::{MorphTarget, WeightKeys};
-pub use weights::{Influence, Influences};
+pub use skin::{Blend, Vertex};
+pub use weights::{Influence, Influences, Reduction};

@@ -1,4 +1,9 @@
-//! What vertices follow: up to eight bones each, the strongest first.
+//! What vertices follow: up to eight bones each, the strongest first; and with distance fewer (A section 8.4).
+//!
+//! - `truncate(k)` keeps the k strongest, divided by their sum. It pops where k changes.
+//! - `fade(λ)` takes λ times the second strongest weight from every weight but the strongest, which gets what is left
+//!   over. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest vanish first, and those that
+//!   have vanished are not fetched.
 
 use crate::InputError;
 
@@ -68,6 +73,74 @@ impl Influences {
     /// All influences, vertex by vertex.
     pub fn all(&self) -> &[Influence] {
         &self.all
+    }
+}
+
+/// Which influences count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Reduction {
+    /// The λ of `fade`, 0 to 1.
+    pub fade: f32,
+    /// The k of `truncate`, at least 1.
+    pub most: u32,
+}
+
+impl Reduction {
+    /// Every influence.
+    pub const FULL: Self = Self { fade: 0.0, most: MOST_INFLUENCES as u32 };
+
+    /// The strongest influences.
+    ///
+    /// # Errors
+    /// [`InputError`] unless `most` is in 1 to [`MOST_INFLUENCES`].
+    pub fn truncate(most: u32) -> Result<Self, InputError> {
+        let reduction = Self { most, ..Self::FULL };
+        reduction.validate().map(|()| reduction)
+    }
+
+    /// From full quality at 0 to rigid at 1.
+    ///
+    /// # Errors
+    /// [`InputError`] unless `fade` is in 0 to 1.
+    pub fn fade(fade: f32) -> Result<Self, InputError> {
+        let reduction = Self { fade, ..Self::FULL };
+        reduction.validate().map(|()| reduction)
+    }
+
+    /// Full quality up to `near`, rigid from `far` on, fading in between.
+    ///
+    /// # Errors
+    /// [`InputError`] for values that are not finite, and unless `near` is below `far`.
+    pub fn at_distance(distance: f32, [near, far]: [f32; 2]) -> Result<Self, InputError> {
+        for (field, value) in [("distance", distance), ("near", near), ("far", far)] {
+            if !value.is_finite() {
+                return Err(InputError::new(field, value, "must be finite"));
+            }
+        }
+        if near >= far {
+            return Err(InputError::new(
+                "near",
+                near,
+                format!("must be below {far}, where vertices are rigid"),
+            ));
+        }
+        Self::fade(((distance - near) / (far - near)).clamp(0.0, 1.0))
+    }
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !(0.0..=1.0).contains(&self.fade) {
+            return Err(InputError::new("fade", self.fade, "must be in 0..=1"));
+        }
+        if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
+            return Err(InputError::new("truncate", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
+        }
+        Ok(())
     }
 }
 
