@@ -1,8 +1,12 @@
 //! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
 
+#[cfg(feature = "gpu")]
+pub mod buffers;
+pub mod clusters;
 pub mod mesh;
 pub mod morph;
 pub mod palette;
+pub mod select;
 pub mod skin;
 pub mod weights;
 

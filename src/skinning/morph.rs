@@ -7,6 +7,16 @@ use crate::animation::place::Place;
 use crate::animation::transform::finite;
 use crate::reference::animation::place::place;
 
+#[cfg(feature = "gpu")]
+mod pass;
+
+#[cfg(feature = "gpu")]
+pub use pass::MorphPass;
+
+/// How far a component may lie from the twin's for four targets of deltas of at most 1, weights of at most 1.5 and
+/// vertices of at most 2, on any device: each sum of at most 8 adds 2ε of it and 2ε of the product, ε = 2⁻²⁴.
+pub const MORPH_BOUND: f32 = 5e-6;
+
 /// What a weight of 1 adds to some vertices. The others do not move.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MorphTarget {

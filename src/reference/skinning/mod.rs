@@ -2,5 +2,6 @@
 
 pub mod morph;
 pub mod palette;
+pub mod select;
 pub mod skin;
 pub mod weights;
