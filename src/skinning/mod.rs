@@ -3,9 +3,11 @@
 #[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod clusters;
+pub mod export;
 pub mod mesh;
 pub mod morph;
 pub mod palette;
+pub mod picture;
 pub mod select;
 pub mod skin;
 pub mod weights;

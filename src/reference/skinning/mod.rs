@@ -2,6 +2,7 @@
 
 pub mod morph;
 pub mod palette;
+pub mod picture;
 pub mod select;
 pub mod skin;
 pub mod weights;
