@@ -4,6 +4,7 @@
 pub mod buffers;
 pub mod clusters;
 pub mod export;
+pub mod lod;
 pub mod mesh;
 pub mod morph;
 pub mod palette;

@@ -45,6 +45,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/place", run: animation::place::cases },
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
+    Stem { name: "skinning/lod", run: skinning::lod::cases },
     Stem { name: "skinning/palette", run: skinning::palette::cases },
     Stem { name: "skinning/morph", run: skinning::morph::cases },
     Stem { name: "skinning/select", run: skinning::select::cases },

@@ -1,5 +1,6 @@
 //! Benchmarks of `kernels/skinning/`: a mesh of 10,000 vertices around 64 bones.
 
+pub mod lod;
 pub mod morph;
 pub mod palette;
 pub mod select;

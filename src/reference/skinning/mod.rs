@@ -1,5 +1,6 @@
 //! Twins of `kernels/skinning/`.
 
+pub mod lod;
 pub mod morph;
 pub mod palette;
 pub mod picture;

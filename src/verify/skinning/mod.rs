@@ -1,5 +1,6 @@
 //! Parity of `kernels/skinning/`.
 
+pub mod lod;
 pub mod morph;
 pub mod palette;
 pub mod select;
