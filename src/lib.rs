@@ -9,6 +9,7 @@
 //!   frames.
 //! - [`animation`]: skeletons and clips, import of glTF, sampling and concatenation, layers, bounds, root motion,
 //!   priorities of bones and keys.
+//! - [`skinning`]: meshes that follow skeletons.
 //! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
 //!   a GPU.
 //! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
@@ -59,6 +60,7 @@ pub mod gpu;
 pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;
+pub mod skinning;
 pub mod surface;
 pub mod terrain;
 #[cfg(feature = "gpu")]

@@ -121,7 +121,8 @@ impl Keys {
     }
 }
 
-fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
+/// Refuses no times, and such as descend or are out of range.
+pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     if times.is_empty() {
         return Err(InputError::new(format!("{path}.len"), 0, "must be at least 1"));
     }

@@ -6,8 +6,10 @@
 //! needs: 3 to 33, at times of their own, linear, stepped or splines; many bones have fewer than three tracks, and
 //! some have none.
 
+mod body;
 mod bones;
 mod motion;
+mod tube;
 
 use super::clip::Clip;
 use super::model::Model;
@@ -16,7 +18,7 @@ use crate::InputError;
 use bones::{Part, parts};
 use motion::Action;
 
-/// The creature with its three clips and one skin of all bones.
+/// The creature with its three clips, one skin of all bones, and one mesh of about 5,000 vertices that follows it.
 ///
 /// # Errors
 /// None that anybody has seen: what it is made of is checked like any other model.
@@ -24,20 +26,28 @@ pub fn creature() -> Result<Model, InputError> {
     let parts = parts();
     let bone = |part: &Part| Bone { name: part.kind.name(), parent: part.parent, rest: part.rest };
     let skeleton = Skeleton::of_joints(parts.iter().map(bone).collect())?;
+    let models = rest_models(&skeleton);
+    let places: Vec<_> = models.iter().map(|model| model.w_axis.truncate()).collect();
+    let mesh = body::body(&parts, &places)?;
     let skin = Skin {
         name: "creature".to_owned(),
         bones: (0..skeleton.len() as u32).collect(),
-        inverse_binds: inverse_binds(&skeleton),
+        inverse_binds: models.iter().map(|model| model.inverse().to_cols_array().map(|x| x as f32)).collect(),
     };
     let clips = [Action::Walk, Action::Idle, Action::Wave].map(|action| {
         let keys: Vec<_> = parts.iter().map(|part| motion::keys(action, part)).collect();
         Clip::new(action.name(), &skeleton, &keys, 0.0)
     });
-    Ok(Model { skeleton, skins: vec![skin], clips: clips.into_iter().collect::<Result<_, _>>()? })
+    Ok(Model {
+        skeleton,
+        skins: vec![skin],
+        clips: clips.into_iter().collect::<Result<_, _>>()?,
+        meshes: vec![mesh],
+    })
 }
 
-/// From the model's space at rest into each bone's.
-fn inverse_binds(skeleton: &Skeleton) -> Vec<[f32; 16]> {
+/// From each bone's space into the model's, at rest.
+fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
     let mut models: Vec<glam::DMat4> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {
         let rest = &bone.rest;
@@ -48,7 +58,7 @@ fn inverse_binds(skeleton: &Skeleton) -> Vec<[f32; 16]> {
         );
         models.push(bone.parent.map_or(local, |parent| models[parent as usize] * local));
     }
-    models.iter().map(|model| model.inverse().to_cols_array().map(|value| value as f32)).collect()
+    models
 }
 
 #[cfg(test)]
@@ -163,5 +173,42 @@ mod tests {
             .map(|track| track.code)
             .collect();
         assert_eq!(codes.into_iter().collect::<Vec<_>>(), [0, 1, 2]);
+    }
+
+    #[test]
+    fn its_skin_is_closed_and_follows_every_bone() {
+        let model = model();
+        let mesh = &model.meshes[0];
+        assert_eq!(mesh.validate(&model.skins), Ok(()));
+        assert!((4500..=5500).contains(&mesh.vertices()), "{}", mesh.vertices());
+        // Each edge of the welded surface has one triangle on either side.
+        let welded = body::weld(&mesh.positions);
+        let mut edges = std::collections::HashMap::new();
+        for triangle in mesh.indices.chunks_exact(3) {
+            let [a, b, c] = [0, 1, 2].map(|corner| welded[triangle[corner] as usize]);
+            assert!(a != b && b != c && c != a, "no area");
+            for edge in [[a, b], [b, c], [c, a]] {
+                *edges.entry(edge).or_insert(0) += 1;
+            }
+        }
+        assert!(edges.iter().all(|([a, b], count)| *count == 1 && edges.get(&[*b, *a]) == Some(&1)));
+        // Turned outwards: the volume of a person, overlaps counted twice.
+        let volume = |triangle: &[u32]| {
+            let [a, b, c] =
+                [0, 1, 2].map(|corner| glam::Vec3::from(mesh.positions[triangle[corner] as usize]));
+            a.dot(b.cross(c)) / 6.0
+        };
+        let volume: f32 = mesh.indices.chunks_exact(3).map(volume).sum();
+        assert!((0.05..0.12).contains(&volume), "{volume}");
+        // Up to four bones a vertex.
+        let mut followed = vec![0_usize; model.skeleton.len()];
+        mesh.influences.all().iter().for_each(|influence| followed[influence.bone as usize] += 1);
+        let idle =
+            (0..153).filter(|bone| followed[*bone] == 0).map(|bone| &*model.skeleton.bones()[bone].name);
+        assert_eq!(idle.collect::<Vec<_>>(), ["root"]);
+        assert_eq!(mesh.influences.most(), 4);
+        let height = mesh.positions.iter().map(|position| position[1]);
+        let [low, high] = [height.clone().fold(f32::MAX, f32::min), height.fold(f32::MIN, f32::max)];
+        assert!((-0.03..0.02).contains(&low) && (1.7..2.1).contains(&high), "{low} to {high}");
     }
 }

@@ -1,4 +1,4 @@
-//! Import of glTF 2.0, as JSON or GLB: skins, the nodes they need, and animations.
+//! Import of glTF 2.0, as JSON or GLB: skins, the nodes they need, animations, and the meshes that follow skins.
 //!
 //! - Bones are the joints of every skin, each once, and all nodes above them: a joint's place in the scene is the
 //!   product of every node from the root, whether or not a skin uses it, and animations may move any of them.
@@ -6,6 +6,10 @@
 //! - Accessors may be sparse, interleaved, and of normalized integers. Buffers lie in the GLB, in `data:` URIs, or in
 //!   files beside the document.
 //! - Channels that move no node, or one that is no bone, are left out, but count for the clip's duration.
+//! - Meshes are those of nodes with a skin, a [`Mesh`](crate::skinning::Mesh) a primitive, in the order of the nodes,
+//!   vertices in the file's order. Strips and fans become triangles; points and lines have none. Normals that are
+//!   missing are smooth, tangents that are missing are solved from texture coordinates. Those that Draco compressed
+//!   are left out.
 //!
 //! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic.
 
@@ -13,6 +17,7 @@ mod accessor;
 mod clips;
 mod container;
 mod document;
+mod meshes;
 mod nodes;
 
 use std::path::Path;
@@ -42,6 +47,8 @@ impl Model {
         let document = Document::new(bytes, folder)?;
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
-        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips })
+        // What Draco compressed has no vertices here.
+        let meshes = if document.is_draco { Vec::new() } else { meshes::meshes(&document, &nodes.skins)? };
+        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes })
     }
 }

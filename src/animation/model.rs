@@ -1,10 +1,11 @@
-//! A character: one skeleton, the skins that share it, and its clips.
+//! A character: one skeleton, the skins that share it, its clips and its meshes.
 
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
 use crate::InputError;
+use crate::skinning::Mesh;
 
-/// A skeleton with its skins and clips.
+/// A skeleton with its skins, clips and meshes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// The bones.
@@ -13,6 +14,8 @@ pub struct Model {
     pub skins: Vec<Skin>,
     /// What moves them.
     pub clips: Vec<Clip>,
+    /// What is seen of it.
+    pub meshes: Vec<Mesh>,
 }
 
 impl Model {

@@ -4,6 +4,7 @@
 pub mod animation;
 pub mod baseline;
 mod measure;
+pub mod skinning;
 pub mod surface;
 mod table;
 pub mod terrain;
@@ -51,6 +52,11 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
     Stem { name: "animation/bounds", run: animation::bounds::cases },
+    Stem { name: "skinning/lod", run: skinning::lod::cases },
+    Stem { name: "skinning/palette", run: skinning::palette::cases },
+    Stem { name: "skinning/morph", run: skinning::morph::cases },
+    Stem { name: "skinning/select", run: skinning::select::cases },
+    Stem { name: "skinning/skin", run: skinning::skin::cases },
     // Draws pictures: last, for the sake of lavapipe's clock (see its cases).
     Stem { name: "surface/relief", run: surface::relief::cases },
 ];

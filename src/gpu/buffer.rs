@@ -9,7 +9,7 @@ use super::readback::Readback;
 use super::{Gpu, GpuError};
 use crate::InputError;
 
-/// A storage buffer of `len` elements. Usable as storage, vertices, indirect arguments, and copy source and
+/// A storage buffer of `len` elements. Usable as storage, vertices, indices, indirect arguments, and copy source and
 /// destination.
 #[derive(Debug, Clone)]
 pub struct Buffer<T> {
@@ -36,6 +36,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         }
         let usage = wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::VERTEX
+            | wgpu::BufferUsages::INDEX
             | wgpu::BufferUsages::INDIRECT
             | wgpu::BufferUsages::COPY_SRC
             | wgpu::BufferUsages::COPY_DST;

@@ -4,5 +4,6 @@
 pub mod animation;
 pub mod baseline;
 pub mod hash;
+pub mod skinning;
 pub mod surface;
 pub mod terrain;

@@ -5,6 +5,7 @@ pub mod animation;
 pub mod baseline;
 pub mod compare;
 pub mod poison;
+pub mod skinning;
 pub mod surface;
 pub mod terrain;
 
@@ -50,6 +51,11 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
     Stem { name: "animation/bounds", run: animation::bounds::cases },
+    Stem { name: "skinning/lod", run: skinning::lod::cases },
+    Stem { name: "skinning/palette", run: skinning::palette::cases },
+    Stem { name: "skinning/morph", run: skinning::morph::cases },
+    Stem { name: "skinning/select", run: skinning::select::cases },
+    Stem { name: "skinning/skin", run: skinning::skin::cases },
 ];
 
 /// One case's result.

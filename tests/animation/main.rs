@@ -12,6 +12,7 @@ mod harness;
 mod import;
 mod layers;
 mod malformed;
+mod meshes;
 mod player;
 mod root_motion;
 mod sampling;

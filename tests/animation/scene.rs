@@ -47,6 +47,7 @@ impl Scene {
     pub fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
         let width = match kind {
             "SCALAR" => 1,
+            "VEC2" => 2,
             "VEC3" => 3,
             "VEC4" => 4,
             _ => 16,
@@ -57,6 +58,19 @@ impl Scene {
         self.push(
             "accessors",
             json!({"bufferView": view, "componentType": FLOAT, "type": kind, "count": count}),
+        )
+    }
+
+    /// An accessor of unsigned integers of so many bytes.
+    pub fn integers(&mut self, kind: &str, bytes: usize, values: &[u32]) -> usize {
+        let width = if kind == "VEC4" { 4 } else { 1 };
+        let packed: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()[..bytes].to_vec()).collect();
+        let view = self.view(&packed);
+        let component = [5121, 5123, 5123, 5125][bytes - 1];
+        let count = values.len() / width;
+        self.push(
+            "accessors",
+            json!({"bufferView": view, "componentType": component, "type": kind, "count": count}),
         )
     }
 

@@ -12,4 +12,5 @@ mod relief;
 #[allow(dead_code, reason = "only the tests of the import write GLBs")]
 #[path = "../animation/scene.rs"]
 mod scene;
+mod skin;
 mod terrain;

@@ -1,4 +1,5 @@
-//! Accessors: numbers in buffers (glTF 2.0, section 3.6.2), sparse, interleaved or normalized.
+//! Accessors: numbers in buffers (glTF 2.0, section 3.6.2), sparse, interleaved or normalized; floats, or integers as
+//! joints and indices are.
 
 use gltf_json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
 use gltf_json::validation::Checked;
@@ -16,7 +17,21 @@ struct Shape {
     component: ComponentType,
     components: usize,
     count: usize,
+    is_normalized: bool,
 }
+
+/// What an accessor's numbers may be.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// Floats, or integers that stand for fractions.
+    Fraction,
+    /// Those, and small integers as they are: `KHR_mesh_quantization`.
+    Quantized,
+    /// Unsigned integers.
+    Whole,
+}
+
+type Decode<T> = fn(Shape, &[u8]) -> T;
 
 impl Document<'_> {
     /// An accessor as vectors of `N` floats. Normalized integers become fractions.
@@ -24,35 +39,56 @@ impl Document<'_> {
     /// # Errors
     /// [`InputError`] with the path of what is wrong, for integers that are not normalized too.
     pub fn vectors<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>, InputError> {
-        let flat = self.floats(index, N)?;
-        Ok(flat.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
+        self.read(index, Kind::Fraction, float)
     }
 
-    fn floats(&self, index: Index<Accessor>, components: usize) -> Result<Vec<f32>, InputError> {
+    /// An attribute of vertices: as [`Document::vectors`], and integers of 8 or 16 bits for themselves.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path of what is wrong.
+    pub fn attributes<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>, InputError> {
+        self.read(index, Kind::Quantized, float)
+    }
+
+    /// An accessor as vectors of `N` unsigned integers.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path of what is wrong, for floats and normalized integers too.
+    pub fn integers<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[u32; N]>, InputError> {
+        self.read(index, Kind::Whole, |shape, bytes| whole(shape.component, bytes))
+    }
+
+    fn read<const N: usize, T: Copy + Default>(
+        &self,
+        index: Index<Accessor>,
+        kind: Kind,
+        decode: Decode<T>,
+    ) -> Result<Vec<[T; N]>, InputError> {
         let path = format!("accessors[{}]", index.value());
         let accessor = self.root.accessors.get(index.value());
         let accessor = accessor.ok_or_else(|| InputError::new(&path, index.value(), "must exist"))?;
-        let shape = shape(&path, accessor, components)?;
+        let shape = shape(&path, accessor, N, kind)?;
         let mut values = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                self.elements(&format!("{path}.byteOffset"), view, offset, shape)?
+                self.elements(&format!("{path}.byteOffset"), view, offset, shape, decode)?
             }
-            None => vec![0.0; shape.count * components],
+            None => vec![T::default(); shape.count * N],
         };
         if let Some(sparse) = &accessor.sparse {
-            self.replace(&format!("{path}.sparse"), sparse, shape, &mut values)?;
+            self.replace(&format!("{path}.sparse"), sparse, shape, &mut values, decode)?;
         }
-        Ok(values)
+        Ok(values.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
     }
 
     /// Replaces the elements that a sparse accessor names.
-    fn replace(
+    fn replace<T: Copy>(
         &self,
         path: &str,
         sparse: &Sparse,
         shape: Shape,
-        values: &mut [f32],
+        values: &mut [T],
+        decode: Decode<T>,
     ) -> Result<(), InputError> {
         let count =
             usize::try_from(sparse.count.0).ok().filter(|count| *count <= shape.count).ok_or_else(|| {
@@ -66,14 +102,14 @@ impl Document<'_> {
                 "must be unsigned",
             ));
         };
-        let of_indices = Shape { component: component.0, components: 1, count };
+        let of_indices = Shape { component: component.0, components: 1, count, is_normalized: false };
         let offset = sparse.indices.byte_offset.0;
         let at = format!("{path}.indices.byteOffset");
         let bytes = self.packed(&at, sparse.indices.buffer_view, offset, of_indices)?;
         let indices = bytes.chunks_exact(component.0.size()).map(|bytes| whole(component.0, bytes));
         let offset = sparse.values.byte_offset.0;
         let at = format!("{path}.values.byteOffset");
-        let new = self.elements(&at, sparse.values.buffer_view, offset, Shape { count, ..shape })?;
+        let new = self.elements(&at, sparse.values.buffer_view, offset, Shape { count, ..shape }, decode)?;
         for (at, (index, new)) in indices.zip(new.chunks_exact(shape.components)).enumerate() {
             let index = index as usize;
             if index >= shape.count {
@@ -85,15 +121,16 @@ impl Document<'_> {
         Ok(())
     }
 
-    fn elements(
+    fn elements<T>(
         &self,
         path: &str,
         view: Index<buffer::View>,
         offset: u64,
         shape: Shape,
-    ) -> Result<Vec<f32>, InputError> {
+        decode: Decode<T>,
+    ) -> Result<Vec<T>, InputError> {
         let bytes = self.packed(path, view, offset, shape)?;
-        Ok(bytes.chunks_exact(shape.component.size()).map(|bytes| float(shape.component, bytes)).collect())
+        Ok(bytes.chunks_exact(shape.component.size()).map(|bytes| decode(shape, bytes)).collect())
     }
 
     /// The bytes of the elements, without what lies between them.
@@ -129,9 +166,10 @@ impl Document<'_> {
     }
 }
 
-fn shape(path: &str, accessor: &Accessor, components: usize) -> Result<Shape, InputError> {
+fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Result<Shape, InputError> {
     let wanted = match components {
         1 => Type::Scalar,
+        2 => Type::Vec2,
         3 => Type::Vec3,
         4 => Type::Vec4,
         _ => Type::Mat4,
@@ -147,9 +185,20 @@ fn shape(path: &str, accessor: &Accessor, components: usize) -> Result<Shape, In
         return Err(InputError::new(format!("{path}.componentType"), "unknown", "must be one of glTF's"));
     };
     let component = component.0;
-    let is_fraction = accessor.normalized && component.size() < 4 && components < 16;
-    if component != ComponentType::F32 && !is_fraction {
-        let bound = "must be 5126 (float) here, or normalized integers of 8 or 16 bits in vectors";
+    let is_small = component.size() < 4 && components < 16;
+    let is_unsigned = matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
+    let (fits, bound) = match kind {
+        Kind::Fraction => (
+            component == ComponentType::F32 || accessor.normalized && is_small,
+            "must be 5126 (float) here, or normalized integers of 8 or 16 bits in vectors",
+        ),
+        Kind::Quantized => (
+            component == ComponentType::F32 || is_small,
+            "must be 5126 (float) here, or integers of 8 or 16 bits",
+        ),
+        Kind::Whole => (is_unsigned && !accessor.normalized, "must be unsigned here, and not normalized"),
+    };
+    if !fits {
         return Err(InputError::new(format!("{path}.componentType"), component.as_gl_enum(), bound));
     }
     let count = accessor.count.0;
@@ -157,22 +206,21 @@ fn shape(path: &str, accessor: &Accessor, components: usize) -> Result<Shape, In
         let bound = format!("must be at most {}", MOST_COMPONENTS / components as u64);
         return Err(InputError::new(format!("{path}.count"), count, bound));
     }
-    Ok(Shape { component, components, count: count as usize })
+    Ok(Shape { component, components, count: count as usize, is_normalized: accessor.normalized })
 }
 
-/// A component that stands for a number or, in integers, for a fraction (glTF 2.0, section 3.6.2.2).
-fn float(component: ComponentType, bytes: &[u8]) -> f32 {
-    match (component, bytes) {
-        (ComponentType::I8, [byte, ..]) => (f32::from(*byte as i8) / 127.0).max(-1.0),
-        (ComponentType::U8, [byte, ..]) => f32::from(*byte) / 255.0,
-        (ComponentType::I16, [low, high, ..]) => {
-            (f32::from(i16::from_le_bytes([*low, *high])) / 32_767.0).max(-1.0)
-        }
-        (ComponentType::U16, [low, high, ..]) => f32::from(u16::from_le_bytes([*low, *high])) / 65_535.0,
-        (ComponentType::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
+/// A component that stands for a number or, in normalized integers, for a fraction (glTF 2.0, section 3.6.2.2).
+fn float(shape: Shape, bytes: &[u8]) -> f32 {
+    let (value, one) = match (shape.component, bytes) {
+        (ComponentType::I8, [byte, ..]) => (f32::from(*byte as i8), 127.0),
+        (ComponentType::U8, [byte, ..]) => (f32::from(*byte), 255.0),
+        (ComponentType::I16, [low, high, ..]) => (f32::from(i16::from_le_bytes([*low, *high])), 32_767.0),
+        (ComponentType::U16, [low, high, ..]) => (f32::from(u16::from_le_bytes([*low, *high])), 65_535.0),
+        (ComponentType::F32, [a, b, c, d, ..]) => return f32::from_le_bytes([*a, *b, *c, *d]),
         // Never asked for: `shape` lets only the above pass.
-        _ => f32::NAN,
-    }
+        _ => return f32::NAN,
+    };
+    if shape.is_normalized { (value / one).max(-1.0) } else { value }
 }
 
 /// An index.

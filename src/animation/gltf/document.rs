@@ -15,6 +15,8 @@ use crate::InputError;
 /// A document whose indices lie in their bounds.
 pub struct Document<'a> {
     pub root: Root,
+    /// Whether meshes are compressed with Draco, and have no other form.
+    pub is_draco: bool,
     binary: Option<&'a [u8]>,
     folder: Option<&'a Path>,
     buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
@@ -31,17 +33,16 @@ impl<'a> Document<'a> {
             let place = format!("line {} column {}", error.line(), error.column());
             InputError::new("JSON", place, error.to_string())
         })?;
-        let required = value.pointer("/extensionsRequired").and_then(Value::as_array);
-        if let Some(name) =
-            required.into_iter().flatten().filter_map(Value::as_str).find(|name| UNREADABLE.contains(name))
-        {
+        if let Some(name) = required_names(&value).find(|name| UNREADABLE.contains(name)) {
             return Err(InputError::new(
                 "extensionsRequired",
                 name,
                 "is not read: decompress the file first",
             ));
         }
+        let is_draco = (required_names(&value)).any(|name| name == "KHR_draco_mesh_compression");
         leave_out_channels_without_node(&mut value);
+        leave_out_own_attributes(&mut value);
         let root: Root = serde_path_to_error::deserialize(value).map_err(|error| {
             let path = error.path().to_string();
             let field = if path == "." { "glTF".to_owned() } else { path };
@@ -49,7 +50,7 @@ impl<'a> Document<'a> {
         })?;
         validate(&root)?;
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();
-        Ok(Self { root, binary, folder, buffers })
+        Ok(Self { root, is_draco, binary, folder, buffers })
     }
 
     /// The bytes of a buffer view.
@@ -141,6 +142,20 @@ const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::n
     base64::engine::GeneralPurposeConfig::new()
         .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
 );
+
+fn required_names(value: &Value) -> impl Iterator<Item = &str> {
+    let required = value.pointer("/extensionsRequired").and_then(Value::as_array);
+    required.into_iter().flatten().filter_map(Value::as_str)
+}
+
+/// Applications may give vertices attributes of their own; gltf-json takes them for mistakes.
+fn leave_out_own_attributes(value: &mut Value) {
+    let meshes = value.get_mut("meshes").and_then(Value::as_array_mut).into_iter().flatten();
+    let primitives = meshes.filter_map(|mesh| mesh.get_mut("primitives")?.as_array_mut()).flatten();
+    for attributes in primitives.filter_map(|primitive| primitive.get_mut("attributes")?.as_object_mut()) {
+        attributes.retain(|name, _| !name.starts_with('_'));
+    }
+}
 
 /// glTF lets extensions animate what is no node; readers that do not know them skip such channels.
 fn leave_out_channels_without_node(value: &mut Value) {

@@ -15,6 +15,7 @@ mod progress;
 mod relief;
 #[cfg(feature = "gpu")]
 mod shaders;
+mod skin;
 mod terrain;
 #[cfg(feature = "gpu")]
 mod verify;
@@ -50,6 +51,7 @@ enum Command {
     Relief(Box<relief::Relief>),
     Pose(pose::Pose),
     Priorities(priorities::Priorities),
+    Skin(skin::Skin),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -98,6 +100,7 @@ fn main() -> ExitCode {
         Command::Relief(command) => command.run(&context),
         Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),
+        Command::Skin(command) => command.run(&context),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]

@@ -55,7 +55,7 @@ pub struct Pose {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-enum Backend {
+pub enum Backend {
     #[cfg(feature = "gpu")]
     #[default]
     Gpu,
@@ -67,6 +67,15 @@ enum Backend {
 pub enum WrapName {
     Loop,
     Clamp,
+}
+
+impl WrapName {
+    pub fn wrap(self) -> Wrap {
+        match self {
+            Self::Loop => Wrap::Loop,
+            Self::Clamp => Wrap::Clamp,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -89,11 +98,7 @@ impl Pose {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let model = open(&self.model)?;
         let clip = find(&model, &self.model, &self.clip)?;
-        let wrap = match self.wrap {
-            WrapName::Loop => Wrap::Loop,
-            WrapName::Clamp => Wrap::Clamp,
-        };
-        let time = wrap.inside(clip.duration(), self.time)?;
+        let time = self.wrap.wrap().inside(clip.duration(), self.time)?;
         let (locals, models) = match self.backend {
             #[cfg(feature = "gpu")]
             Backend::Gpu => on_gpu(&context.gpu()?, &model, clip, time)?,
@@ -105,7 +110,7 @@ impl Pose {
     }
 }
 
-fn on_cpu(model: &Model, clip: &Clip, time: f32) -> (Vec<Transform>, Vec<Affine>) {
+pub fn on_cpu(model: &Model, clip: &Clip, time: f32) -> (Vec<Transform>, Vec<Affine>) {
     let locals = sample(clip, time, RotationPath::Slerp);
     let models = concat(&model.skeleton, &locals);
     (locals, models)

@@ -1,0 +1,70 @@
+// Which instances are seen, and how far their influences fade. A thread decides for one instance.
+
+struct LodParams {
+    // Of the view's volume: unit normals inwards, and distances.
+    planes: array<vec4<f32>, 6>,
+    // The eye, and the distance at which fading begins.
+    eye: vec4<f32>,
+    // A ball around the model in all of its clips: middle and radius.
+    ball: vec4<f32>,
+    // The distance from which on vertices are rigid.
+    far: f32,
+    // Steps of the fade.
+    steps: f32,
+    instances: u32,
+}
+
+struct Reduction {
+    fade: f32,
+    most: u32,
+}
+
+// Of an indirect draw.
+struct Arguments {
+    indices: u32,
+    instances: atomic<u32>,
+    first_index: u32,
+    base_vertex: u32,
+    first_instance: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: LodParams;
+// Three rows an instance: from the model's space into the world.
+@group(0) @binding(1) var<storage, read> placements: array<vec4<f32>>;
+// Of the instances that are seen; others keep theirs.
+@group(0) @binding(2) var<storage, read_write> reductions: array<Reduction>;
+// The instances that are seen.
+@group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
+@group(0) @binding(4) var<storage, read_write> arguments: Arguments;
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let instance = (group.y * groups.x + group.x) * 64u + lane;
+    if instance >= params.instances {
+        return;
+    }
+    let x = placements[3u * instance];
+    let y = placements[3u * instance + 1u];
+    let z = placements[3u * instance + 2u];
+    let middle = vec4<f32>(params.ball.xyz, 1.0);
+    let center = vec3<f32>(dot(x, middle), dot(y, middle), dot(z, middle));
+    // The squared lengths of the columns.
+    let columns = x.xyz * x.xyz + y.xyz * y.xyz + z.xyz * z.xyz;
+    // No longer than the matrix stretches: a sum holds for sheared ones too.
+    let radius = params.ball.w * sqrt(columns.x + columns.y + columns.z);
+    var is_seen = true;
+    for (var plane = 0u; plane < 6u; plane++) {
+        let side = params.planes[plane];
+        is_seen = is_seen && dot(side.xyz, center) + side.w >= -radius;
+    }
+    if is_seen {
+        let away = length(center - params.eye.xyz);
+        let way = clamp((away - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
+        reductions[instance] = Reduction(floor(way * params.steps) / params.steps, 8u);
+        drawn[atomicAdd(&arguments.instances, 1u)] = instance;
+    }
+}

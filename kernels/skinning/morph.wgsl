@@ -1,0 +1,56 @@
+// Morph targets: vertices with the weighted deltas of their targets added, before skinning. A thread adds those of one
+// vertex of one instance.
+
+struct MorphParams {
+    vertices: u32,
+    targets: u32,
+    // Vertices of all instances.
+    pairs: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: MorphParams;
+// Five a vertex.
+@group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
+// Where each vertex's deltas begin; one more than there are vertices.
+@group(0) @binding(2) var<storage, read> offsets: array<u32>;
+// Three a delta: position and, as bits, the target; normal; tangent.
+@group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
+// Of each instance's targets.
+@group(0) @binding(4) var<storage, read> weights: array<f32>;
+@group(0) @binding(5) var<storage, read_write> morphed: array<vec2<f32>>;
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pair = (group.y * groups.x + group.x) * 64u + lane;
+    if pair >= params.pairs {
+        return;
+    }
+    let instance = pair / params.vertices;
+    let vertex = pair - instance * params.vertices;
+    let first = 5u * vertex;
+    let a = vertices[first];
+    let b = vertices[first + 1u];
+    let c = vertices[first + 2u];
+    let d = vertices[first + 3u];
+    var position = vec3<f32>(a, b.x);
+    var normal = vec3<f32>(b.y, c);
+    var tangent = vec3<f32>(d, vertices[first + 4u].x);
+    let end = offsets[vertex + 1u];
+    for (var at = offsets[vertex]; at < end; at++) {
+        let moved = deltas[3u * at];
+        let weight = weights[instance * params.targets + bitcast<u32>(moved.w)];
+        position += weight * moved.xyz;
+        normal += weight * deltas[3u * at + 1u].xyz;
+        tangent += weight * deltas[3u * at + 2u].xyz;
+    }
+    let to = 5u * pair;
+    morphed[to] = position.xy;
+    morphed[to + 1u] = vec2<f32>(position.z, normal.x);
+    morphed[to + 2u] = normal.yz;
+    morphed[to + 3u] = tangent.xy;
+    morphed[to + 4u] = vec2<f32>(tangent.z, vertices[first + 4u].y);
+}

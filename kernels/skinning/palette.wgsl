@@ -1,0 +1,112 @@
+// Palettes: what takes vertices from where they were bound to the model's space, for each instance and bone of a skin.
+// With DUAL taken apart into a stretch and a rigid motion after it. A thread makes one bone's.
+
+override DUAL: bool = false;
+
+struct PaletteParams {
+    // Bones of the skin, and of the skeleton.
+    bones: u32,
+    all_bones: u32,
+    // Bones of the skin times instances.
+    pairs: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: PaletteParams;
+// The skin's bones.
+@group(0) @binding(1) var<storage, read> bones: array<u32>;
+// Three rows a bone of the skin.
+@group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
+// Three rows a bone of the skeleton and instance.
+@group(0) @binding(3) var<storage, read> models: array<vec4<f32>>;
+// Three rows, or with DUAL rotation, dual part, diagonal and what is above it.
+@group(0) @binding(4) var<storage, read_write> palette: array<vec4<f32>>;
+
+fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
+    let linear = row.x * x + row.y * y + row.z * z;
+    return vec4<f32>(linear.xyz, linear.w + row.w);
+}
+
+fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
+    let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
+    // What is smaller than this, devices may flush to zero.
+    if size < 1e-30 {
+        return other;
+    }
+    let scaled = vector / size;
+    return scaled * inverseSqrt(dot(scaled, scaled));
+}
+
+// Duff et al. 2017.
+fn upright(v: vec3<f32>) -> vec3<f32> {
+    let side = select(1.0, -1.0, v.z < 0.0);
+    let a = -1.0 / (side + v.z);
+    return vec3<f32>(1.0 + side * v.x * v.x * a, side * v.x * v.y * a, -side * v.x);
+}
+
+// Of whichever sign, from a rotation's columns.
+fn quaternion(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec4<f32> {
+    let squares = vec4<f32>(
+        1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z, 1.0 + x.x + y.y + z.z);
+    let xy = x.y + y.x;
+    let yz = y.z + z.y;
+    let zx = z.x + x.z;
+    let with_w = vec3<f32>(y.z - z.y, z.x - x.z, x.y - y.x);
+    var q = vec4<f32>(with_w, squares.w);
+    if squares.w < 1.0 {
+        if squares.x >= squares.y && squares.x >= squares.z {
+            q = vec4<f32>(squares.x, xy, zx, with_w.x);
+        } else if squares.y >= squares.z {
+            q = vec4<f32>(xy, squares.y, yz, with_w.y);
+        } else {
+            q = vec4<f32>(zx, yz, squares.z, with_w.z);
+        }
+    }
+    return q * inverseSqrt(dot(q, q));
+}
+
+fn write_dual(at: u32, rows: array<vec4<f32>, 3>) {
+    let a = vec3<f32>(rows[0].x, rows[1].x, rows[2].x);
+    let b = vec3<f32>(rows[0].y, rows[1].y, rows[2].y);
+    let c = vec3<f32>(rows[0].z, rows[1].z, rows[2].z);
+    let t = vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
+    // What has no direction gets one that leaves the others alone.
+    let x = unit_or(a, vec3<f32>(1.0, 0.0, 0.0));
+    let along = dot(x, b);
+    let y = unit_or(b - along * x, upright(x));
+    let z = cross(x, y);
+    let q = quaternion(x, y, z);
+    palette[at] = q;
+    palette[at + 1u] = 0.5 * vec4<f32>(t * q.w + cross(t, q.xyz), -dot(t, q.xyz));
+    palette[at + 2u] = vec4<f32>(dot(x, a), dot(y, b), dot(z, c), 0.0);
+    palette[at + 3u] = vec4<f32>(along, dot(x, c), dot(y, c), 0.0);
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pair = (group.y * groups.x + group.x) * 64u + lane;
+    if pair >= params.pairs {
+        return;
+    }
+    let instance = pair / params.bones;
+    let bone = pair - instance * params.bones;
+    let bind = 3u * bone;
+    let x = inverse_binds[bind];
+    let y = inverse_binds[bind + 1u];
+    let z = inverse_binds[bind + 2u];
+    let model = 3u * (instance * params.all_bones + bones[bone]);
+    let rows = array<vec4<f32>, 3>(
+        product_row(models[model], x, y, z),
+        product_row(models[model + 1u], x, y, z),
+        product_row(models[model + 2u], x, y, z));
+    if DUAL {
+        write_dual(4u * pair, rows);
+    } else {
+        palette[3u * pair] = rows[0];
+        palette[3u * pair + 1u] = rows[1];
+        palette[3u * pair + 2u] = rows[2];
+    }
+}

@@ -1,0 +1,193 @@
+// Skinning (A section 8.4): vertices where their bones take them, with as many influences as each instance's reduction
+// leaves. A workgroup skins a cluster of 64 vertices of one instance: every one, or with COMPACTED those of a list.
+// Instances run faster than clusters, so that a cluster's vertices stay in the cache.
+
+override COMPACTED: bool = false;
+// Dual quaternions in place of matrices.
+override DUAL: bool = false;
+// Vertices of each instance in place of the mesh's.
+override MORPHED: bool = false;
+
+struct SkinParams {
+    vertices: u32,
+    // Of the mesh, times instances.
+    pairs: u32,
+    // Of the skin.
+    bones: u32,
+    // In the output; in the others they count from `first_instance`.
+    instances: u32,
+    first_instance: u32,
+}
+
+struct Reduction {
+    fade: f32,
+    most: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: SkinParams;
+// Five a vertex: position, normal, tangent and handedness.
+@group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
+// Two a cluster: where its influences begin, and how many a vertex. There, in columns of 64: two bones a word; the
+// weights of all but the strongest, falling.
+@group(0) @binding(2) var<storage, read> influences: array<u32>;
+// Three rows a bone and instance, or with DUAL four.
+@group(0) @binding(3) var<storage, read> palette: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> reductions: array<Reduction>;
+// cluster * instances + instance, of those to be skinned.
+@group(0) @binding(5) var<storage, read> pairs: array<u32>;
+// Workgroups of the dispatch, and how many pairs.
+@group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
+// As `vertices`, instance by instance.
+@group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
+
+struct Rows {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+}
+
+// A sum of bones: rows of matrices, or rotation, dual part, diagonal and what is above it.
+struct Sum {
+    a: vec4<f32>,
+    b: vec4<f32>,
+    c: vec4<f32>,
+    d: vec4<f32>,
+}
+
+// A bone more; `side` is its weight, negative where its quaternion is on the other side of the strongest one's.
+fn added(sum: Sum, at: u32, weight: f32, side: f32) -> Sum {
+    if DUAL {
+        return Sum(
+            sum.a + side * palette[at], sum.b + side * palette[at + 1u],
+            sum.c + weight * palette[at + 2u], sum.d + weight * palette[at + 3u]);
+    }
+    return Sum(
+        sum.a + weight * palette[at], sum.b + weight * palette[at + 1u], sum.c + weight * palette[at + 2u], sum.d);
+}
+
+fn matrix_of(sum: Sum) -> Rows {
+    if !DUAL {
+        return Rows(sum.a, sum.b, sum.c);
+    }
+    let q = sum.a;
+    let d = sum.b;
+    // Times 2 over the squared length, in place of normalizing.
+    let twice = 2.0 * (1.0 / dot(q, q));
+    let t = twice * (q.w * d.xyz - d.w * q.xyz + cross(q.xyz, d.xyz));
+    let u = sum.c;
+    let above = sum.d;
+    let x = vec3<f32>(
+        1.0 - twice * (q.y * q.y + q.z * q.z), twice * (q.x * q.y - q.w * q.z), twice * (q.x * q.z + q.w * q.y));
+    let y = vec3<f32>(
+        twice * (q.x * q.y + q.w * q.z), 1.0 - twice * (q.x * q.x + q.z * q.z), twice * (q.y * q.z - q.w * q.x));
+    let z = vec3<f32>(
+        twice * (q.x * q.z - q.w * q.y), twice * (q.y * q.z + q.w * q.x), 1.0 - twice * (q.x * q.x + q.y * q.y));
+    return Rows(
+        vec4<f32>(x.x * u.x, x.x * above.x + x.y * u.y, x.x * above.y + x.y * above.z + x.z * u.z, t.x),
+        vec4<f32>(y.x * u.x, y.x * above.x + y.y * u.y, y.x * above.y + y.y * above.z + y.z * u.z, t.y),
+        vec4<f32>(z.x * u.x, z.x * above.x + z.y * u.y, z.x * above.y + z.y * above.z + z.z * u.z, t.z));
+}
+
+// The matrix of a vertex: its column of the cluster's influences begins at `column`.
+fn blended(column: u32, slots: u32, first_bone: u32, reduction: Reduction) -> Rows {
+    let stride = select(3u, 4u, DUAL);
+    var bones = influences[column];
+    let strongest = stride * (first_bone + (bones & 0xffffu));
+    var sum = Sum(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
+    var others = 0.0;
+    let most = clamp(reduction.most, 1u, slots);
+    if most > 1u {
+        let weights = column + 64u * ((slots + 1u) / 2u) - 64u;
+        var lost = 0.0;
+        for (var slot = most; slot < slots; slot++) {
+            lost += bitcast<f32>(influences[weights + 64u * slot]);
+        }
+        let scale = 1.0 / (1.0 - lost);
+        var real = vec4<f32>(0.0);
+        if DUAL {
+            real = palette[strongest];
+        }
+        var weight = bitcast<f32>(influences[weights + 64u]);
+        let taken = reduction.fade * weight;
+        var slot = 1u;
+        while weight > taken {
+            if (slot & 1u) == 0u {
+                bones = influences[column + 32u * slot];
+            }
+            let at = stride * (first_bone + select(bones & 0xffffu, bones >> 16u, (slot & 1u) == 1u));
+            let left = (weight - taken) * scale;
+            others += left;
+            var side = left;
+            if DUAL {
+                side = select(left, -left, dot(palette[at], real) < 0.0);
+            }
+            sum = added(sum, at, left, side);
+            slot++;
+            if slot >= most {
+                break;
+            }
+            weight = bitcast<f32>(influences[weights + 64u * slot]);
+        }
+    }
+    let left = 1.0 - others;
+    return matrix_of(added(sum, strongest, left, left));
+}
+
+fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
+    let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
+    // What is smaller than this, devices may flush to zero.
+    let scaled = vector / max(size, 1e-30);
+    return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < 1e-30);
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    var pair = group.y * groups.x + group.x;
+    if COMPACTED {
+        if pair >= dispatched.w {
+            return;
+        }
+        pair = pairs[pair];
+    }
+    let cluster = pair / params.instances;
+    let place = pair - cluster * params.instances;
+    let vertex = 64u * cluster + lane;
+    if pair >= params.pairs || vertex >= params.vertices {
+        return;
+    }
+    let instance = params.first_instance + place;
+    let rows = blended(
+        influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, reductions[instance]);
+    var first = 5u * vertex;
+    if MORPHED {
+        first += 5u * params.vertices * instance;
+    }
+    let a = vertices[first];
+    let b = vertices[first + 1u];
+    let c = vertices[first + 2u];
+    let d = vertices[first + 3u];
+    let e = vertices[first + 4u];
+    let old = vec3<f32>(a, b.x);
+    let old_normal = vec3<f32>(b.y, c);
+    let along = vec3<f32>(d, e.x);
+    let x = rows.x.xyz;
+    let y = rows.y.xyz;
+    let z = rows.z.xyz;
+    let position = vec3<f32>(dot(x, old) + rows.x.w, dot(y, old) + rows.y.w, dot(z, old) + rows.z.w);
+    // The rows of the cofactor matrix.
+    let of_x = cross(y, z);
+    let side = select(1.0, -1.0, dot(x, of_x) < 0.0);
+    let normal = unit_or(
+        side * vec3<f32>(dot(of_x, old_normal), dot(cross(z, x), old_normal), dot(cross(x, y), old_normal)), old_normal);
+    let tangent = unit_or(vec3<f32>(dot(x, along), dot(y, along), dot(z, along)), along);
+    let to = 5u * (place * params.vertices + vertex);
+    skinned[to] = position.xy;
+    skinned[to + 1u] = vec2<f32>(position.z, normal.x);
+    skinned[to + 2u] = normal.yz;
+    skinned[to + 3u] = tangent.xy;
+    skinned[to + 4u] = vec2<f32>(tangent.z, side * e.y);
+}

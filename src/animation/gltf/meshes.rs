@@ -1,0 +1,284 @@
+//! Meshes of nodes with a skin: vertices, triangles, influences, morph targets and the keys of their weights.
+
+use gltf_json::Index;
+use gltf_json::accessor::Accessor;
+use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
+use gltf_json::mesh::{Mode, MorphTarget as GltfTarget, Primitive, Semantic};
+use gltf_json::validation::Checked;
+
+use super::document::Document;
+use crate::InputError;
+use crate::animation::clip::Interpolation;
+use crate::animation::skeleton::Skin;
+use crate::skinning::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals, solved_tangents};
+use crate::skinning::morph::{MorphDelta, MorphTarget, WeightKeys};
+use crate::skinning::weights::{Influence, Influences};
+
+/// Every primitive of every node with a skin, in the order of the nodes.
+pub fn meshes(document: &Document<'_>, skins: &[Skin]) -> Result<Vec<Mesh>, InputError> {
+    let mut meshes = Vec::new();
+    for (node, of_node) in document.root.nodes.iter().enumerate() {
+        let (Some(mesh), Some(skin)) = (of_node.mesh, of_node.skin) else { continue };
+        let (mesh, skin) = (mesh.value(), skin.value());
+        let weights = weights(document, node, mesh)?;
+        let weight_keys = weight_keys(document, node, weights.len())?;
+        let name = of_node.name.clone().unwrap_or_else(|| format!("node_{node}"));
+        for (at, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
+            let reader = Reader { document, primitive, path: format!("meshes[{mesh}].primitives[{at}]") };
+            let read = reader.mesh(&skins[skin], weights.len())?;
+            meshes.push(Mesh {
+                name: format!("{name}_{at}"),
+                skin,
+                weights: weights.clone(),
+                weight_keys: weight_keys.clone(),
+                ..read
+            });
+        }
+    }
+    Ok(meshes)
+}
+
+/// The weights of a node's targets: its own, or its mesh's, or 0.
+fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
+    let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
+    let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());
+    let targets = first.map_or(0, Vec::len);
+    let (path, weights) = match (&of_node.weights, &of_mesh.weights) {
+        (Some(weights), _) => (format!("nodes[{node}].weights"), weights.clone()),
+        (None, Some(weights)) => (format!("meshes[{mesh}].weights"), weights.clone()),
+        (None, None) => return Ok(vec![0.0; targets]),
+    };
+    if weights.len() != targets {
+        let bound = format!("must be {targets}, one a morph target");
+        return Err(InputError::new(format!("{path}.len"), weights.len(), bound));
+    }
+    crate::animation::transform::finite(&path, &weights)?;
+    Ok(weights)
+}
+
+/// The clips that move a node's targets.
+fn weight_keys(
+    document: &Document<'_>,
+    node: usize,
+    targets: usize,
+) -> Result<Vec<(usize, WeightKeys)>, InputError> {
+    let mut all: Vec<(usize, WeightKeys)> = Vec::new();
+    for (clip, animation) in document.root.animations.iter().enumerate() {
+        for (at, channel) in animation.channels.iter().enumerate() {
+            let is_of_weights = channel.target.path == Checked::Valid(Property::MorphTargetWeights);
+            // A mesh without targets has nothing to move.
+            if !is_of_weights || channel.target.node.value() != node || targets == 0 {
+                continue;
+            }
+            if all.last().is_some_and(|(last, _)| *last == clip) {
+                let path = format!("animations[{clip}].channels[{at}].target");
+                return Err(InputError::new(path, node, "must not be animated by two channels"));
+            }
+            let path = format!("animations[{clip}].samplers[{}]", channel.sampler.value());
+            let sampler = &animation.samplers[channel.sampler.value()];
+            let interpolation = match sampler.interpolation {
+                Checked::Valid(GltfInterpolation::Step) => Interpolation::Step,
+                Checked::Valid(GltfInterpolation::CubicSpline) => Interpolation::CubicSpline,
+                _ => Interpolation::Linear,
+            };
+            let floats = |accessor| Ok(document.vectors::<1>(accessor)?.into_iter().flatten().collect());
+            let paths = [format!("{path}.input"), format!("{path}.output")];
+            let (times, values) = (floats(sampler.input)?, floats(sampler.output)?);
+            let keys = WeightKeys::new([&paths[0], &paths[1]], times, values, interpolation, targets)?;
+            all.push((clip, keys));
+        }
+    }
+    Ok(all)
+}
+
+/// A primitive, and its path inside the file.
+struct Reader<'a, 'd> {
+    document: &'a Document<'d>,
+    primitive: &'a Primitive,
+    path: String,
+}
+
+impl Reader<'_, '_> {
+    fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
+        let Some(positions) = self.accessor(&Semantic::Positions) else {
+            return Err(InputError::new(self.named("POSITION"), "missing", "must be given"));
+        };
+        let positions = self.document.attributes::<3>(positions)?;
+        if positions.len() > MOST_VERTICES {
+            let bound = format!("must be at most {MOST_VERTICES}");
+            return Err(InputError::new(format!("{}.count", self.named("POSITION")), positions.len(), bound));
+        }
+        in_range(&self.named("POSITION"), &positions)?;
+        let vertices = positions.len();
+        let uv = self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices)?;
+        let has_uv = uv.is_some();
+        let uv = uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]);
+        let indices = self.triangles(vertices)?;
+        let normals = self.normals(&positions, &indices)?;
+        let tangents = match self.attribute::<4>(&Semantic::Tangents, "TANGENT", vertices)? {
+            Some(tangents) if has_uv => tangents.into_iter().map(flipped).collect(),
+            _ => solved_tangents(&positions, &normals, &uv, &indices)?,
+        };
+        let influences = self.influences(vertices, skin.bones.len())?;
+        let targets = self.targets(vertices, targets)?;
+        let name = String::new();
+        let (weights, weight_keys) = (vec![], vec![]);
+        Ok(Mesh {
+            name,
+            skin: 0,
+            positions,
+            normals,
+            tangents,
+            uv,
+            indices,
+            influences,
+            targets,
+            weights,
+            weight_keys,
+        })
+    }
+
+    fn named(&self, attribute: &str) -> String {
+        format!("{}.attributes.{attribute}", self.path)
+    }
+
+    fn accessor(&self, semantic: &Semantic) -> Option<Index<Accessor>> {
+        self.primitive.attributes.get(&Checked::Valid(semantic.clone())).copied()
+    }
+
+    /// An attribute, one a vertex and in range, where there is one.
+    fn attribute<const N: usize>(
+        &self,
+        semantic: &Semantic,
+        name: &str,
+        vertices: usize,
+    ) -> Result<Option<Vec<[f32; N]>>, InputError> {
+        let Some(accessor) = self.accessor(semantic) else { return Ok(None) };
+        let values = self.document.attributes::<N>(accessor)?;
+        self.one_a_vertex(&self.named(name), values.len(), vertices)?;
+        in_range(&self.named(name), &values)?;
+        Ok(Some(values))
+    }
+
+    fn one_a_vertex(&self, path: &str, count: usize, vertices: usize) -> Result<(), InputError> {
+        if count == vertices {
+            return Ok(());
+        }
+        Err(InputError::new(format!("{path}.count"), count, format!("must be {vertices}, one a vertex")))
+    }
+
+    /// Unit normals: the file's, or where it has none, or one of no length, those of the surface.
+    fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
+        let Some(given) = self.attribute::<3>(&Semantic::Normals, "NORMAL", positions.len())? else {
+            return Ok(smooth_normals(positions, indices));
+        };
+        let length = |normal: &[f32; 3]| normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
+        let unit = |normal: [f32; 3]| match length(&normal) {
+            // As they are: no second rounding.
+            length if (length - 1.0).abs() < 1e-3 => Some(normal),
+            length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
+            _ => None,
+        };
+        let units: Vec<_> = given.into_iter().map(unit).collect();
+        if units.iter().all(Option::is_some) {
+            return Ok(units.into_iter().flatten().collect());
+        }
+        let smooth = smooth_normals(positions, indices);
+        Ok(units.into_iter().zip(smooth).map(|(unit, smooth)| unit.unwrap_or(smooth)).collect())
+    }
+
+    /// Sets of four joints and weights, as many as there are.
+    fn influences(&self, vertices: usize, bones: usize) -> Result<Influences, InputError> {
+        let mut all: Vec<Vec<Influence>> = vec![Vec::with_capacity(4); vertices];
+        for set in 0.. {
+            let (joints_name, weights_name) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
+            let (joints, weights) =
+                match [Semantic::Joints(set), Semantic::Weights(set)].map(|s| self.accessor(&s)) {
+                    [Some(joints), Some(weights)] => (joints, weights),
+                    [None, None] if set > 0 => break,
+                    [joints, _] => {
+                        let lacking = if joints.is_none() { joints_name } else { weights_name };
+                        let bound = "must be given: meshes of nodes with a skin follow joints";
+                        return Err(InputError::new(self.named(&lacking), "missing", bound));
+                    }
+                };
+            let (joints, weights) =
+                (self.document.integers::<4>(joints)?, self.document.vectors::<4>(weights)?);
+            self.one_a_vertex(&self.named(&joints_name), joints.len(), vertices)?;
+            self.one_a_vertex(&self.named(&weights_name), weights.len(), vertices)?;
+            for (all, (joints, weights)) in all.iter_mut().zip(joints.iter().zip(&weights)) {
+                all.extend(joints.iter().zip(weights).map(|(&bone, &weight)| Influence { bone, weight }));
+            }
+        }
+        Influences::new(&self.named("WEIGHTS_0"), bones, all)
+    }
+
+    /// Lists, strips and fans as lists. Points and lines have no triangles.
+    fn triangles(&self, vertices: usize) -> Result<Vec<u32>, InputError> {
+        let indices: Vec<u32> = match self.primitive.indices {
+            Some(accessor) => self.document.integers::<1>(accessor)?.into_iter().flatten().collect(),
+            None => (0..vertices as u32).collect(),
+        };
+        if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
+            let bound = format!("must be below {vertices}, the number of vertices");
+            return Err(InputError::new(format!("{}.indices[{at}]", self.path), indices[at], bound));
+        }
+        let Checked::Valid(mode) = self.primitive.mode else {
+            return Err(InputError::new(format!("{}.mode", self.path), "unknown", "must be one of glTF's"));
+        };
+        // Strips are stitched by triangles without area.
+        let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
+        let corners = |at: usize| [indices[at], indices[at + 1], indices[at + 2]];
+        let windows = 0..indices.len().saturating_sub(2);
+        Ok(match mode {
+            Mode::Triangles if !indices.len().is_multiple_of(3) => {
+                let bound = "must be a multiple of 3 for triangles";
+                return Err(InputError::new(format!("{}.indices.count", self.path), indices.len(), bound));
+            }
+            Mode::Triangles => indices,
+            Mode::TriangleStrip => {
+                let turned = |at: usize| match (at % 2, corners(at)) {
+                    (0, triangle) => triangle,
+                    (_, [a, b, c]) => [b, a, c],
+                };
+                windows.map(turned).filter(|triangle| !is_flat(triangle)).flatten().collect()
+            }
+            Mode::TriangleFan => {
+                let fan = |at: usize| [indices[0], indices[at + 1], indices[at + 2]];
+                windows.map(fan).filter(|triangle| !is_flat(triangle)).flatten().collect()
+            }
+            _ => Vec::new(),
+        })
+    }
+
+    fn targets(&self, vertices: usize, expected: usize) -> Result<Vec<MorphTarget>, InputError> {
+        let targets = self.primitive.targets.as_deref().unwrap_or_default();
+        if targets.len() != expected {
+            let bound = format!("must be {expected}, as many as the mesh's first primitive has");
+            return Err(InputError::new(format!("{}.targets.len", self.path), targets.len(), bound));
+        }
+        targets.iter().enumerate().map(|(at, target)| self.target(vertices, at, target)).collect()
+    }
+
+    fn target(&self, vertices: usize, at: usize, target: &GltfTarget) -> Result<MorphTarget, InputError> {
+        let mut deltas = vec![MorphDelta::default(); vertices];
+        let mut add = |name: &str, accessor: Option<Index<Accessor>>, set: fn(&mut MorphDelta, [f32; 3])| {
+            let Some(accessor) = accessor else { return Ok(()) };
+            let values = self.document.attributes::<3>(accessor)?;
+            let path = format!("{}.targets[{at}].{name}", self.path);
+            self.one_a_vertex(&path, values.len(), vertices)?;
+            in_range(&path, &values)?;
+            deltas.iter_mut().zip(values).for_each(|(delta, value)| set(delta, value));
+            Ok(())
+        };
+        add("POSITION", target.positions, |delta, value| delta.position = value)?;
+        add("NORMAL", target.normals, |delta, value| delta.normal = value)?;
+        add("TANGENT", target.tangents, |delta, value| delta.tangent = value)?;
+        Ok(MorphTarget::new(&deltas))
+    }
+}
+
+/// From glTF's handedness to this crate's, or back: glTF's bitangent points up the image.
+fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+    [x, y, z, if w < 0.0 { 1.0 } else { -1.0 }]
+}

@@ -1,0 +1,103 @@
+//! Skinning of crowds.
+
+use super::{CROWDS, RING, Scene};
+use crate::Error;
+use crate::bench::terrain::copy_of;
+use crate::bench::{Backend, Bench, Contender};
+use crate::gpu::{Buffer, Gpu, Job};
+use crate::reference::skinning::morph::morph;
+use crate::reference::skinning::palette::rows;
+use crate::reference::skinning::skin::skin;
+use crate::skinning::buffers::ActiveClusters;
+use crate::skinning::clusters::CLUSTER;
+use crate::skinning::palette::Palette;
+use crate::skinning::skin::{Blend, SkinPass, Vertex};
+use crate::skinning::weights::Reduction;
+
+/// Eight, four, two influences and one.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = SkinPass::new(gpu, Blend::Linear)?;
+    let vertices = RING * RING;
+    for influences in [8, 4, 2, 1] {
+        for instances in CROWDS {
+            let scene = Scene::new(gpu, influences, 0, instances)?;
+            // A vertex and its influences in, its bones' rows in, a vertex out.
+            let words = 10 + influences.div_ceil(2) + (influences - 1) + 12 * influences + 10;
+            let batch = batch(gpu, instances, 4 * words / 2);
+            let jobs = batches(gpu, &pass, &scene, [instances, batch])?;
+            let copied = copy_of(gpu, words * vertices * batch / 2)?;
+            let mesh = &scene.model.meshes[0];
+            let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+            let unskinned = morph(mesh, &[]);
+            let twin = || {
+                for _ in 0..instances {
+                    drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
+                }
+            };
+            // The same output without influences.
+            let unmoved = copy_of(gpu, 20 * vertices * batch / 2)?;
+            let contenders = vec![
+                Contender::recorded(Backend::Gpu, |encoder| jobs.iter().for_each(|job| job.record(encoder))),
+                Contender::recorded(Backend::Copy, |encoder| {
+                    jobs.iter().for_each(|_| copied.record(encoder))
+                }),
+                Contender::recorded(Backend::Limit, |encoder| {
+                    jobs.iter().for_each(|_| unmoved.record(encoder))
+                }),
+                Contender::host(Backend::Twin, twin),
+            ];
+            let all = instances * vertices;
+            let case = format!("{influences} influences, 10k × {instances}");
+            bench.case(case, (all, "vertex"), (4 * words * all) as u64, contenders)?;
+        }
+    }
+    some(bench, &pass)
+}
+
+/// Every eighth cluster of a hundred instances.
+fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
+    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
+    let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
+    let chosen: Vec<u32> = (0..(CROWDS[1] * scene.mesh.clusters()) as u32).step_by(8).collect();
+    active.write(gpu, &chosen)?;
+    let job = pass.prepare_active(gpu, &scene.mesh, &scene.crowd, &output, &active)?;
+    let vertices = CLUSTER * chosen.len();
+    let copied = copy_of(gpu, 73 * vertices / 2)?;
+    let mesh = &scene.model.meshes[0];
+    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+    let unskinned = morph(mesh, &[]);
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            for _ in 0..vertices / unskinned.len() {
+                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
+            }
+        }),
+    ];
+    bench.case("an eighth of 4, 10k × 100", (vertices, "vertex"), 292 * vertices as u64, contenders)
+}
+
+/// Instances of which a buffer holds so many bytes a vertex, a divisor of them all.
+fn batch(gpu: &Gpu, instances: usize, bytes: usize) -> usize {
+    let room = gpu.max_binding() as usize / (RING * RING * bytes.max(size_of::<Vertex>()));
+    (1..=instances).rev().find(|batch| instances.is_multiple_of(*batch) && *batch <= room.max(1)).unwrap_or(1)
+}
+
+/// Jobs for all instances, batch by batch into the same buffer.
+fn batches(
+    gpu: &Gpu,
+    pass: &SkinPass,
+    scene: &Scene,
+    [instances, batch]: [usize; 2],
+) -> Result<Vec<Job>, Error> {
+    let output = Buffer::new(gpu, "skinned", batch * RING * RING)?;
+    let firsts = (0..instances).step_by(batch);
+    firsts.map(|first| pass.prepare(gpu, &scene.mesh, &scene.crowd, first..first + batch, &output)).collect()
+}

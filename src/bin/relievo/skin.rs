@@ -1,0 +1,255 @@
+//! `relievo skin`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use relievo::animation::Model;
+use relievo::reference::skinning::morph::morph;
+use relievo::reference::skinning::palette::palette_for;
+use relievo::reference::skinning::picture::Scene;
+use relievo::reference::skinning::skin::skin;
+use relievo::skinning::export::obj;
+use relievo::skinning::mesh::COORDINATE_LIMIT;
+use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::{Blend, Mesh, Reduction, Vertex};
+use relievo::surface::linear_image::LinearImage;
+use relievo::{Error, InputError};
+
+use crate::Context;
+use crate::output::Staged;
+use crate::pose::{Backend, WrapName, find, on_cpu, open};
+
+/// Writes the skinned meshes of a model at a moment of a clip: where every vertex is, and a picture.
+///
+/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. Positions and
+/// normals are in the scene's space, with every digit; vertices are in the file's order. Points and lines have no
+/// faces. skin.png: all of it, lit, in one colour.
+#[derive(Args)]
+pub struct Skin {
+    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    #[arg(long, value_name = "FILE|builtin")]
+    model: PathBuf,
+    /// The clip: its name, or its number, counted from 0.
+    #[arg(long, value_name = "NAME|INDEX")]
+    clip: String,
+    /// Seconds since the clip's start.
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    time: f64,
+    /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
+    #[arg(long, value_name = "MODE", default_value = "loop")]
+    wrap: WrapName,
+    /// Which bones a vertex follows: all of its own (up to 8); the K strongest; or all, fading to the strongest alone as
+    /// LAMBDA goes from 0 to 1.
+    #[arg(long, value_name = "full|truncate:K|fade:LAMBDA", default_value = "full")]
+    influences: String,
+    /// Blends rigid motions rather than matrices: twisted limbs keep their volume.
+    #[arg(long)]
+    dual_quaternion: bool,
+    /// What computes and draws; both agree within rounding.
+    #[arg(long, default_value_t, value_enum)]
+    backend: Backend,
+    /// The folder for mesh.obj and skin.png.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Edge of the picture.
+const EDGE: u32 = 768;
+
+/// Samples along a pixel's edge.
+const FINER: u32 = 2;
+
+/// Linear.
+const SKY: [f32; 3] = [0.02, 0.025, 0.03];
+const CLAY: [f32; 3] = [0.6, 0.3, 0.16];
+
+impl Skin {
+    #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
+    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+        let reduction = reduction(&self.influences)?;
+        let model = open(&self.model)?;
+        if model.meshes.is_empty() {
+            let bound = "must be at least one that follows a skin, and is not compressed with Draco";
+            return Err(Error::InputFile {
+                path: self.model.clone(),
+                source: InputError::new("meshes", "none", bound),
+            });
+        }
+        let moment = Moment::new(self, &model, reduction)?;
+        let mut staged = Staged::new(&self.out)?;
+        let (skinned, picture) = match self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu => device::skinned(&context.gpu()?, &moment)?,
+            Backend::Cpu => on_host(&moment)?,
+        };
+        let meshes: Vec<_> =
+            model.meshes.iter().zip(&skinned).map(|(mesh, vertices)| (mesh, &vertices[..])).collect();
+        let path = staged.path("mesh.obj");
+        std::fs::write(&path, obj(&meshes)).map_err(|error| Error::output(&path, error))?;
+        let path = staged.path("skin.png");
+        let image = picture.reduced(FINER).encoded();
+        image.save(&path).map_err(|error| Error::output(&path, error))?;
+        staged.publish()?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// `full`, `truncate:K` or `fade:LAMBDA`.
+fn reduction(text: &str) -> Result<Reduction, InputError> {
+    let refused = || InputError::new("influences", text, "must be full, truncate:K or fade:LAMBDA");
+    let named =
+        |error: InputError| InputError::new("influences", text, format!("{} {}", error.field, error.bound));
+    match text.split_once(':') {
+        None if text == "full" => Ok(Reduction::FULL),
+        Some(("truncate", most)) => Reduction::truncate(most.parse().map_err(|_| refused())?).map_err(named),
+        Some(("fade", fade)) => Reduction::fade(fade.parse().map_err(|_| refused())?).map_err(named),
+        _ => Err(refused()),
+    }
+}
+
+/// A model in a clip, at a time inside it.
+struct Moment<'a> {
+    model: &'a Model,
+    clip: usize,
+    time: f32,
+    reduction: Reduction,
+    blend: Blend,
+}
+
+impl<'a> Moment<'a> {
+    fn new(skin: &Skin, model: &'a Model, reduction: Reduction) -> Result<Self, Error> {
+        let clip = find(model, &skin.model, &skin.clip)?;
+        let time = skin.wrap.wrap().inside(clip.duration(), skin.time)?;
+        let index = model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default();
+        let blend = if skin.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
+        Ok(Self { model, clip: index, time, reduction, blend })
+    }
+
+    fn weights(&self, mesh: &Mesh) -> Vec<f32> {
+        mesh.weights_at(self.clip, self.time)
+    }
+}
+
+/// Refuses vertices that large scales have driven out of range.
+fn check_range(mesh: usize, vertices: &[Vertex]) -> Result<(), InputError> {
+    let is_good = |value: &f32| value.abs() <= COORDINATE_LIMIT;
+    match vertices.iter().position(|vertex| !vertex.position.iter().all(is_good)) {
+        None => Ok(()),
+        Some(at) => {
+            let bound = format!("must be within ±{COORDINATE_LIMIT:e}: scales or weights are too large");
+            let value = format!("{:?}", vertices[at].position);
+            Err(InputError::new(format!("meshes[{mesh}].positions[{at}]"), value, bound))
+        }
+    }
+}
+
+fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error> {
+    let model = moment.model;
+    let (_, models) = on_cpu(model, &model.clips[moment.clip], moment.time);
+    let skinned: Vec<Vec<Vertex>> = (model.meshes.iter())
+        .map(|mesh| {
+            let palette = palette_for(&model.skins[mesh.skin], &models, moment.blend);
+            skin(&morph(mesh, &moment.weights(mesh)), &mesh.influences, &palette, moment.reduction)
+        })
+        .collect();
+    skinned.iter().enumerate().try_for_each(|(mesh, vertices)| check_range(mesh, vertices))?;
+    let scene = Scene {
+        clip_from_model: framing(skinned.iter().flatten()),
+        light: Light::default(),
+        albedo: CLAY,
+        size: [FINER * EDGE; 2],
+    };
+    let parts: Vec<_> =
+        model.meshes.iter().zip(&skinned).map(|(mesh, v)| (&v[..], &mesh.indices[..])).collect();
+    let picture = scene.draw(&parts, SKY);
+    Ok((skinned, picture))
+}
+
+#[cfg(feature = "gpu")]
+mod device {
+    use super::*;
+    use relievo::animation::concat::{ConcatPass, Walk};
+    use relievo::animation::crowd::{ClipBuffers, Crowd};
+    use relievo::animation::place::PlacePass;
+    use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
+    use relievo::animation::transform::AFFINE_IDENTITY;
+    use relievo::animation::{ClipSet, Instance};
+    use relievo::gpu::{Buffer, Gpu};
+    use relievo::render::ColorTexture;
+    use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
+    use relievo::render::target::{LINEAR_FORMAT, Target};
+    use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+    use relievo::skinning::morph::MorphPass;
+    use relievo::skinning::palette::PalettePass;
+    use relievo::skinning::skin::SkinPass;
+    use relievo::surface::mips::Mips;
+
+    /// A crowd of one.
+    pub fn skinned(gpu: &Gpu, moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error> {
+        let crowd = posed(gpu, moment)?;
+        let (mut all, mut scenes) = (Vec::new(), Vec::new());
+        let color = ColorTexture::linear(gpu, &clay(), true)?;
+        for (index, mesh) in moment.model.meshes.iter().enumerate() {
+            let (vertices, scene) = skinned_mesh(gpu, moment, mesh, &crowd, &color)?;
+            check_range(index, &vertices)?;
+            all.push(vertices);
+            scenes.push(scene);
+        }
+        let clip_from_model = framing(all.iter().flatten());
+        scenes.iter_mut().try_for_each(|scene| scene.set_camera(gpu, clip_from_model))?;
+        let size = [FINER * EDGE; 2];
+        let target = Target::linear(gpu, size)?;
+        target.draw(gpu, SKY.map(f64::from), |pass| scenes.iter().for_each(|scene| scene.draw(pass)))?;
+        Ok((all, LinearImage { size, pixels: target.read_linear(gpu)? }))
+    }
+
+    fn posed(gpu: &Gpu, moment: &Moment<'_>) -> Result<Crowd, Error> {
+        let set = ClipSet::new(&[&moment.model.clips[moment.clip]])?;
+        let clips = ClipBuffers::new(gpu, &set)?;
+        // The time is inside the clip already, and its end is not its start here.
+        let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, moment.time, 0.0)])?;
+        let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
+        let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
+        let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &moment.model.skeleton, &crowd)?;
+        gpu.run("pose", |encoder| {
+            place.record(encoder);
+            sample.record(encoder);
+            concat.record(encoder);
+        })?;
+        Ok(crowd)
+    }
+
+    fn skinned_mesh(
+        gpu: &Gpu,
+        moment: &Moment<'_>,
+        mesh: &Mesh,
+        posed: &Crowd,
+        color: &ColorTexture,
+    ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
+        let (buffers, clusters) = MeshBuffers::new(gpu, moment.model, mesh)?;
+        let crowd = SkinnedCrowd::new(gpu, &buffers, 1, moment.blend)?;
+        crowd.reductions.write(gpu, &[moment.reduction])?;
+        crowd.weights.write(gpu, &moment.weights(mesh))?;
+        let skinned = Buffer::new(gpu, "skinned", mesh.vertices())?;
+        let palette = PalettePass::new(gpu)?.prepare(gpu, &buffers, &posed.models, &crowd)?;
+        let morph = MorphPass::new(gpu)?.prepare(gpu, &buffers, &crowd)?;
+        let skin = SkinPass::new(gpu, moment.blend)?.prepare(gpu, &buffers, &crowd, 0..1, &skinned)?;
+        gpu.run("skin", |encoder| [&palette, &morph, &skin].iter().for_each(|job| job.record(encoder)))?;
+        let instances = SkinnedInstances {
+            mesh: &buffers,
+            skinned: &skinned,
+            placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY])?,
+            drawn: &Buffer::from_slice(gpu, "drawn", &[0])?,
+            albedo: color,
+            light: Light::default(),
+        };
+        let scene = SkinnedRenderer::new(gpu, LINEAR_FORMAT)?.scene(gpu, &instances)?;
+        Ok((clusters.in_mesh_order(&skinned.read_blocking(gpu)?), scene))
+    }
+
+    fn clay() -> Mips {
+        let [r, g, b] = CLAY.map(relievo::reference::terrain::blend::srgb_byte);
+        Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([r, g, b, 255])))
+    }
+}

@@ -1,0 +1,9 @@
+//! Twins of `kernels/skinning/`.
+
+pub mod lod;
+pub mod morph;
+pub mod palette;
+pub mod picture;
+pub mod select;
+pub mod skin;
+pub mod weights;

@@ -1,0 +1,29 @@
+//! Morph targets: twin of `kernels/skinning/morph.wgsl`.
+
+use crate::skinning::{Mesh, Vertex};
+
+/// A mesh's vertices with these weights of its targets, before skinning. Normals and tangents keep the length that the
+/// sum has.
+///
+/// # Panics
+/// For a mesh that [`Mesh::validate`] refuses.
+pub fn morph(mesh: &Mesh, weights: &[f32]) -> Vec<Vertex> {
+    let mut vertices: Vec<Vertex> = (0..mesh.vertices())
+        .map(|vertex| Vertex {
+            position: mesh.positions[vertex],
+            normal: mesh.normals[vertex],
+            tangent: mesh.tangents[vertex],
+        })
+        .collect();
+    for (target, weight) in mesh.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        for (vertex, delta) in target.vertices.iter().zip(&target.deltas) {
+            let vertex = &mut vertices[*vertex as usize];
+            for axis in 0..3 {
+                vertex.position[axis] += weight * delta.position[axis];
+                vertex.normal[axis] += weight * delta.normal[axis];
+                vertex.tangent[axis] += weight * delta.tangent[axis];
+            }
+        }
+    }
+    vertices
+}

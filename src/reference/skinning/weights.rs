@@ -1,0 +1,120 @@
+//! Which influences count, and how much: the part of the skinning kernel that reduces weights.
+
+use crate::skinning::weights::{Influence, Reduction};
+
+/// The influences that are left, the strongest first; their weights sum to 1. `influences` is what
+/// [`Influences::of`](crate::skinning::Influences::of) gives: the strongest weight is never read, but what the others
+/// leave of 1.
+pub fn reduced(influences: &[Influence], reduction: Reduction) -> Vec<Influence> {
+    let most = influences.len().min(reduction.most as usize);
+    let lost = influences[most..].iter().fold(0.0, |sum, influence| sum + influence.weight);
+    let scale = 1.0 / (1.0 - lost);
+    let taken = reduction.fade * influences.get(1).map_or(0.0, |second| second.weight);
+    let mut left = vec![influences[0]];
+    let mut sum = 0.0;
+    for influence in &influences[1..most] {
+        if influence.weight <= taken {
+            break;
+        }
+        let weight = (influence.weight - taken) * scale;
+        sum += weight;
+        left.push(Influence { weight, ..*influence });
+    }
+    left[0].weight = 1.0 - sum;
+    left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skinning::weights::Influences;
+
+    fn vertex(weights: &[f32]) -> Vec<Influence> {
+        let given = (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight: *weight }).collect();
+        Influences::new("w", 8, [given]).expect("valid").of(0).to_vec()
+    }
+
+    /// Uneven ones, equal ones, one alone, nearly nothing.
+    fn vertices() -> Vec<Vec<Influence>> {
+        let mut all = vec![vertex(&[1.0]), vertex(&[0.5, 0.5]), vertex(&[0.125; 8]), vertex(&[1.0, 1e-30])];
+        for seed in 0..200_u32 {
+            let count = 2 + seed % 7;
+            let weight = |at: u32| 0.01 + ((seed * 7919 + at * 104_729) % 1000) as f32 / 1000.0;
+            all.push(vertex(&(0..count).map(weight).collect::<Vec<_>>()));
+        }
+        all
+    }
+
+    fn sum(influences: &[Influence]) -> f64 {
+        influences.iter().map(|influence| f64::from(influence.weight)).sum()
+    }
+
+    #[test]
+    fn weights_sum_to_one_and_the_weakest_vanish_first() {
+        for vertex in vertices() {
+            let mut before = vertex.len();
+            for step in 0..=64 {
+                let left = reduced(&vertex, Reduction::fade(step as f32 / 64.0).expect("in range"));
+                // A sum of eight rounds seven times, by half an ulp of 1 at most.
+                assert!((sum(&left) - 1.0).abs() <= 7.0 * f64::from(f32::EPSILON) / 2.0, "{left:?}");
+                assert!(left.iter().all(|influence| influence.weight > 0.0), "{left:?}");
+                assert!(left.is_sorted_by(|a, b| a.weight >= b.weight) && left.len() <= before);
+                assert!(left.iter().zip(&vertex).all(|(left, all)| left.bone == all.bone));
+                before = left.len();
+            }
+            assert_eq!(before, 1, "rigid at 1");
+        }
+    }
+
+    #[test]
+    fn no_fade_is_full_quality_and_full_fade_is_rigid() {
+        for vertex in vertices() {
+            let full = reduced(&vertex, Reduction::FULL);
+            assert_eq!(reduced(&vertex, Reduction::fade(0.0).expect("in range")), full);
+            assert_eq!(full[1..], vertex[1..]);
+            assert!((full[0].weight - vertex[0].weight).abs() <= 4.0 * f32::EPSILON);
+            let rigid = Influence { weight: 1.0, ..vertex[0] };
+            assert_eq!(reduced(&vertex, Reduction::fade(1.0).expect("in range")), [rigid]);
+            assert_eq!(reduced(&vertex, Reduction::truncate(1).expect("in range")), [rigid]);
+        }
+    }
+
+    #[test]
+    fn weights_never_jump_while_they_fade() {
+        for vertex in vertices() {
+            let at = |step: u32| reduced(&vertex, Reduction::fade(step as f32 / 1024.0).expect("in range"));
+            let second = vertex.get(1).map_or(0.0, |second| second.weight);
+            for step in 0..1024 {
+                let (a, b) = (at(step), at(step + 1));
+                for (slot, before) in a.iter().enumerate().skip(1) {
+                    let change = before.weight - b.get(slot).map_or(0.0, |influence| influence.weight);
+                    assert!((0.0..=second / 1024.0 + 1e-6).contains(&change), "{change}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn truncation_keeps_the_strongest() {
+        let vertex = vertex(&[0.4, 0.3, 0.2, 0.1]);
+        let left = reduced(&vertex, Reduction::truncate(2).expect("in range"));
+        assert_eq!(left.len(), 2);
+        assert!((left[0].weight - 4.0 / 7.0).abs() < 1e-6 && (left[1].weight - 3.0 / 7.0).abs() < 1e-6);
+        assert_eq!(
+            reduced(&vertex, Reduction::truncate(4).expect("in range")),
+            reduced(&vertex, Reduction::FULL)
+        );
+    }
+
+    #[test]
+    fn reductions_are_checked() {
+        let field = |result: Result<Reduction, crate::InputError>| result.expect_err("refused").field;
+        assert_eq!(field(Reduction::fade(1.5)), "fade");
+        assert_eq!(field(Reduction::fade(f32::NAN)), "fade");
+        assert_eq!(field(Reduction::truncate(0)), "truncate");
+        assert_eq!(field(Reduction::truncate(9)), "truncate");
+        assert_eq!(field(Reduction::at_distance(1.0, [5.0, 5.0])), "near");
+        let fade = |distance| Reduction::at_distance(distance, [10.0, 30.0]).expect("in range").fade;
+        assert_eq!([fade(0.0), fade(10.0), fade(15.0), fade(30.0), fade(99.0)], [0.0, 0.0, 0.25, 1.0, 1.0]);
+    }
+}

@@ -1,0 +1,169 @@
+//! What skinning has on the device: a mesh in clusters with its skin, and for each instance what moves it and where its
+//! vertices are.
+
+use super::clusters::Clusters;
+use super::mesh::Mesh;
+use super::morph::MorphTarget;
+use super::skin::{Blend, Vertex};
+use super::weights::Reduction;
+use crate::animation::Model;
+use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::reference::skinning::palette::rows;
+use crate::{Error, InputError};
+
+/// A mesh on the device, and the skin that it follows. Vertices lie in clusters: see [`Clusters::order`].
+#[derive(Debug, Clone)]
+pub struct MeshBuffers {
+    /// Unmorphed.
+    pub vertices: Buffer<Vertex>,
+    /// One a vertex.
+    pub uv: Buffer<[f32; 2]>,
+    /// Three a triangle.
+    pub indices: Buffer<u32>,
+    /// See [`Clusters::influences`].
+    pub influences: Buffer<u32>,
+    /// See [`Clusters::masks`].
+    pub masks: Buffer<u32>,
+    /// Where each vertex's deltas begin; one more than there are vertices.
+    pub delta_offsets: Buffer<u32>,
+    /// Three a delta: position and, as bits, the target; normal; tangent.
+    pub deltas: Buffer<[[f32; 4]; 3]>,
+    /// The skin's bones.
+    pub bones: Buffer<u32>,
+    /// Three rows a bone of the skin.
+    pub inverse_binds: Buffer<[[f32; 4]; 3]>,
+    /// Words of a set of the skeleton's bones.
+    pub mask_words: usize,
+    /// Morph targets.
+    pub targets: usize,
+    /// Bones of the skeleton.
+    pub all_bones: usize,
+}
+
+impl MeshBuffers {
+    /// Uploads one of a model's meshes.
+    ///
+    /// # Errors
+    /// [`InputError`] for a mesh that does not fit its skin; [`GpuError`].
+    pub fn new(gpu: &Gpu, model: &Model, mesh: &Mesh) -> Result<(Self, Clusters), Error> {
+        let all_bones = model.skeleton.len();
+        let clusters = Clusters::new(mesh, &model.skins, all_bones)?;
+        let skin = &model.skins[mesh.skin];
+        skin.validate(&model.skeleton)?;
+        let binds: Vec<_> = skin.inverse_binds.iter().map(rows).collect();
+        let (delta_offsets, deltas) = deltas(&mesh.targets, &clusters);
+        let buffers = Self {
+            vertices: Buffer::from_slice(gpu, "mesh vertices", &clusters.vertices)?,
+            uv: Buffer::from_slice(gpu, "mesh uv", &clusters.uv)?,
+            indices: Buffer::from_slice(gpu, "mesh indices", &clusters.indices)?,
+            influences: Buffer::from_slice(gpu, "influences", &clusters.influences)?,
+            masks: Buffer::from_slice(gpu, "cluster masks", &clusters.masks)?,
+            delta_offsets: Buffer::from_slice(gpu, "morph offsets", &delta_offsets)?,
+            deltas: Buffer::from_slice(gpu, "morph deltas", &deltas)?,
+            bones: Buffer::from_slice(gpu, "skin bones", &skin.bones)?,
+            inverse_binds: Buffer::from_slice(gpu, "inverse binds", &binds)?,
+            mask_words: clusters.mask_words,
+            targets: mesh.targets.len(),
+            all_bones,
+        };
+        Ok((buffers, clusters))
+    }
+
+    /// Clusters of 64 vertices.
+    pub fn clusters(&self) -> usize {
+        self.vertices.len().div_ceil(super::clusters::CLUSTER)
+    }
+}
+
+/// The deltas of each vertex, by target.
+fn deltas(targets: &[MorphTarget], clusters: &Clusters) -> (Vec<u32>, Vec<[[f32; 4]; 3]>) {
+    let mut by_vertex = vec![Vec::new(); clusters.order.len()];
+    for (index, target) in (0..).zip(targets) {
+        for (vertex, delta) in target.vertices.iter().zip(&target.deltas) {
+            let ([x, y, z], [nx, ny, nz], [tx, ty, tz]) = (delta.position, delta.normal, delta.tangent);
+            let packed = [[x, y, z, f32::from_bits(index)], [nx, ny, nz, 0.0], [tx, ty, tz, 0.0]];
+            by_vertex[*vertex as usize].push(packed);
+        }
+    }
+    let mut offsets = vec![0];
+    let mut all = Vec::new();
+    for vertex in &clusters.order {
+        all.append(&mut by_vertex[*vertex as usize]);
+        offsets.push(all.len() as u32);
+    }
+    (offsets, all)
+}
+
+/// Instances of one mesh on the device. All buffers may be read, written and bound by the caller.
+#[derive(Debug, Clone)]
+pub struct SkinnedCrowd {
+    /// Written by [`super::palette::PalettePass`]: `instance · bones of the skin + bone`; three vectors a bone, or for
+    /// dual quaternions four.
+    pub palette: Buffer<[f32; 4]>,
+    /// One an instance. Full at first.
+    pub reductions: Buffer<Reduction>,
+    /// Weights of morph targets, instance by instance. 0 at first.
+    pub weights: Buffer<f32>,
+    /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + vertex`.
+    pub morphed: Buffer<Vertex>,
+    /// How many.
+    pub instances: usize,
+    /// What the palette is for.
+    pub blend: Blend,
+}
+
+impl SkinnedCrowd {
+    /// Room for instances of a mesh.
+    ///
+    /// # Errors
+    /// [`InputError`] for no instances; [`GpuError`].
+    pub fn new(gpu: &Gpu, mesh: &MeshBuffers, instances: usize, blend: Blend) -> Result<Self, Error> {
+        if instances == 0 || u32::try_from(instances * mesh.clusters().max(1)).is_err() {
+            let bound = format!("must be in 1..={}", u32::MAX as usize / mesh.clusters().max(1));
+            return Err(InputError::new("instances", instances, bound).into());
+        }
+        let vectors = if blend == Blend::Linear { 3 } else { 4 };
+        let morphed = if mesh.targets == 0 { 0 } else { instances * mesh.vertices.len() };
+        Ok(Self {
+            palette: Buffer::new(gpu, "palette", vectors * instances * mesh.bones.len())?,
+            reductions: Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; instances])?,
+            weights: Buffer::new(gpu, "morph weights", instances * mesh.targets)?,
+            morphed: Buffer::new(gpu, "morphed vertices", morphed)?,
+            instances,
+            blend,
+        })
+    }
+}
+
+/// The clusters that are to be skinned, in a buffer that kernels may fill.
+#[derive(Debug, Clone)]
+pub struct ActiveClusters {
+    /// `cluster · instances + instance`; others are skipped.
+    pub pairs: Buffer<u32>,
+    /// Workgroups along x, y and z, and how many pairs: arguments of an indirect dispatch.
+    pub dispatched: Buffer<u32>,
+}
+
+impl ActiveClusters {
+    /// Room for all clusters of all instances; none is active.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
+        Ok(Self {
+            pairs: Buffer::new(gpu, "clusters", mesh.clusters() * crowd.instances)?,
+            dispatched: Buffer::from_slice(gpu, "dispatched clusters", &[0, 1, 1, 0])?,
+        })
+    }
+
+    /// Makes these pairs active, from the host.
+    ///
+    /// # Errors
+    /// [`GpuError`], for more pairs than there are too.
+    pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
+        self.pairs.write(gpu, pairs)?;
+        let count = pairs.len() as u32;
+        let x = count.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
+        self.dispatched.write(gpu, &[x, count.div_ceil(x), 1, count])
+    }
+}

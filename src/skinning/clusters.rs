@@ -1,0 +1,165 @@
+//! Clusters: the vertices of a mesh in runs of 64 that follow few bones, laid out for the kernel.
+
+use super::mesh::Mesh;
+use super::skin::Vertex;
+use crate::InputError;
+use crate::animation::skeleton::Skin;
+use crate::reference::skinning::morph::morph;
+
+/// Vertices of a cluster.
+pub const CLUSTER: usize = 64;
+
+/// The most bones of a skin.
+pub const MOST_BONES: usize = 1 << 16;
+
+/// A mesh's vertices, cluster by cluster; the last cluster may have fewer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clusters {
+    /// For each place the mesh's vertex there.
+    pub order: Vec<u32>,
+    /// The vertices in this order, unmorphed.
+    pub vertices: Vec<Vertex>,
+    /// Texture coordinates in this order.
+    pub uv: Vec<[f32; 2]>,
+    /// The triangles, in the mesh's order, of vertices in this order.
+    pub indices: Vec<u32>,
+    /// Two words a cluster: where its influences begin, and how many its vertices have at most. There, in columns of 64
+    /// words: the bones, two a word, the strongest in the lower half of the first; then the weights of all but the
+    /// strongest, as bits. The strongest has what these leave of 1.
+    pub influences: Vec<u32>,
+    /// The bones of each cluster, as bits of [`Clusters::mask_words`] words.
+    pub masks: Vec<u32>,
+    /// One bit a bone of the skeleton.
+    pub mask_words: usize,
+}
+
+impl Clusters {
+    /// The clusters of a mesh whose skin fits a skeleton of so many bones.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Mesh::validate`], and for skins of more than [`MOST_BONES`].
+    pub fn new(mesh: &Mesh, skins: &[Skin], bones: usize) -> Result<Self, InputError> {
+        mesh.validate(skins)?;
+        let skin = &skins[mesh.skin];
+        if skin.bones.len() > MOST_BONES {
+            let bound = format!("must be at most {MOST_BONES}");
+            return Err(InputError::new("skin.bones.len", skin.bones.len(), bound));
+        }
+        let order = order(mesh);
+        let mut place = vec![0; mesh.vertices()];
+        (0..).zip(&order).for_each(|(at, vertex)| place[*vertex as usize] = at);
+        let vertices = morph(mesh, &[]);
+        let mask_words = bones.div_ceil(32);
+        let clusters = order.chunks(CLUSTER);
+        Ok(Self {
+            vertices: order.iter().map(|vertex| vertices[*vertex as usize]).collect(),
+            uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
+            indices: mesh.indices.iter().map(|index| place[*index as usize]).collect(),
+            influences: influences(mesh, &order),
+            masks: clusters.flat_map(|cluster| mask(mesh, skin, cluster, mask_words)).collect(),
+            mask_words,
+            order,
+        })
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.order.len().div_ceil(CLUSTER)
+    }
+
+    /// Whether the mesh has no vertices.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// Values one a place, back in the mesh's own order.
+    pub fn in_mesh_order<T: Copy>(&self, placed: &[T]) -> Vec<T> {
+        let mut all: Vec<_> = self.order.iter().zip(placed).collect();
+        all.sort_by_key(|(vertex, _)| **vertex);
+        all.into_iter().map(|(_, value)| *value).collect()
+    }
+}
+
+/// Vertices of the same strongest bone beside each other, then those of as many influences, then of the same others.
+fn order(mesh: &Mesh) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
+    order.sort_by_cached_key(|vertex| {
+        let influences = mesh.influences.of(*vertex as usize);
+        let bones: Vec<u32> = influences.iter().map(|influence| influence.bone).collect();
+        (bones.first().copied(), bones.len(), bones)
+    });
+    order
+}
+
+fn influences(mesh: &Mesh, order: &[u32]) -> Vec<u32> {
+    let clusters = order.len().div_ceil(CLUSTER);
+    let mut words = vec![0; 2 * clusters];
+    for (index, cluster) in order.chunks(CLUSTER).enumerate() {
+        let of =
+            |lane: usize| cluster.get(lane).map_or(&[][..], |vertex| mesh.influences.of(*vertex as usize));
+        let slots = (0..CLUSTER).map(|lane| of(lane).len()).max().unwrap_or(0);
+        words[2 * index] = words.len() as u32;
+        words[2 * index + 1] = slots as u32;
+        let bone = |lane: usize, slot: usize| of(lane).get(slot).map_or(0, |influence| influence.bone);
+        for pair in 0..slots.div_ceil(2) {
+            words.extend((0..CLUSTER).map(|lane| bone(lane, 2 * pair) | bone(lane, 2 * pair + 1) << 16));
+        }
+        for slot in 1..slots {
+            let weight = |lane: usize| of(lane).get(slot).map_or(0.0, |influence| influence.weight);
+            words.extend((0..CLUSTER).map(|lane| weight(lane).to_bits()));
+        }
+    }
+    words
+}
+
+fn mask(mesh: &Mesh, skin: &Skin, cluster: &[u32], words: usize) -> Vec<u32> {
+    let mut mask = vec![0; words];
+    for influence in cluster.iter().flat_map(|vertex| mesh.influences.of(*vertex as usize)) {
+        let bone = skin.bones[influence.bone as usize];
+        mask[bone as usize / 32] |= 1 << (bone % 32);
+    }
+    mask
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clusters_hold_every_vertex_and_its_bones() {
+        let model = crate::animation::creature().expect("valid");
+        let (mesh, skin) = (&model.meshes[0], &model.skins[0]);
+        let clusters = Clusters::new(mesh, &model.skins, model.skeleton.len()).expect("fits");
+        assert_eq!(clusters.len(), mesh.vertices().div_ceil(64));
+        let positions: Vec<_> = clusters.vertices.iter().map(|vertex| vertex.position).collect();
+        assert_eq!(clusters.in_mesh_order(&positions), mesh.positions);
+        assert_eq!(clusters.in_mesh_order(&clusters.uv), mesh.uv);
+        for (placed, index) in clusters.indices.iter().zip(&mesh.indices) {
+            assert_eq!(clusters.order[*placed as usize], *index);
+        }
+        let mut bones = 0;
+        for (place, vertex) in clusters.order.iter().enumerate() {
+            let (cluster, lane) = (place / 64, place % 64);
+            let mask = &clusters.masks[5 * cluster..][..5];
+            let [first, slots] = [0, 1].map(|at| clusters.influences[2 * cluster + at] as usize);
+            let word = |column: usize| clusters.influences[first + 64 * column + lane];
+            for slot in 0..slots {
+                let found = word(slot / 2) >> (16 * (slot % 2)) & 0xffff;
+                let weight =
+                    if slot == 0 { f32::NAN } else { f32::from_bits(word(slots.div_ceil(2) + slot - 1)) };
+                match mesh.influences.of(*vertex as usize).get(slot) {
+                    Some(influence) => {
+                        assert_eq!(found, influence.bone);
+                        assert!(slot == 0 || weight == influence.weight);
+                        let bone = skin.bones[found as usize];
+                        assert_ne!(mask[bone as usize / 32] & 1 << (bone % 32), 0);
+                    }
+                    None => assert_eq!(weight, 0.0),
+                }
+            }
+            bones += if lane == 0 { mask.iter().map(|word| word.count_ones()).sum::<u32>() } else { 0 };
+        }
+        // Few bones a cluster, of 153.
+        assert!(bones < 8 * clusters.len() as u32, "{bones} in {}", clusters.len());
+    }
+}

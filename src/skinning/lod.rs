@@ -1,0 +1,135 @@
+//! What a crowd is drawn with: which instances are seen, and how far the influences of each fade with its distance.
+//!
+//! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
+//! noticeably. An instance that is not seen keeps the fade that it had.
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::InputError;
+use crate::animation::transform::Affine;
+use crate::skinning::weights::Reduction;
+
+#[cfg(feature = "gpu")]
+mod pass;
+
+#[cfg(feature = "gpu")]
+pub use pass::{LodJob, LodPass};
+
+/// Where a crowd is seen from, and how it fades.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LodView {
+    /// From world to clip space, depth 0 to 1.
+    pub clip_from_world: Mat4,
+    /// The eye, world units.
+    pub eye: Vec3,
+    /// Every influence counts up to here, world units from the eye.
+    pub near: f32,
+    /// From here on vertices follow one bone.
+    pub far: f32,
+    /// Steps of the fade; 64 is a good number.
+    pub steps: u32,
+    /// The middle of a ball around the model in all of its clips.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+}
+
+impl LodView {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !self.clip_from_world.is_finite() || !self.eye.is_finite() || !self.center.is_finite() {
+            let value = format!("{} {} {}", self.clip_from_world, self.eye, self.center);
+            return Err(InputError::new("view.clip_from_world, eye, center", value, "must be finite"));
+        }
+        if !(self.radius >= 0.0 && self.radius.is_finite()) {
+            return Err(InputError::new("view.radius", self.radius, "must be finite, and not negative"));
+        }
+        if self.steps == 0 || self.steps > 1 << 16 {
+            return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
+        }
+        Reduction::at_distance(0.0, [self.near, self.far])
+            .map(|_| ())
+            .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
+    }
+
+    /// The planes of the view's volume: unit normals inwards, and distances.
+    pub fn planes(&self) -> [Vec4; 6] {
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_world.row(row));
+        // A plane that lies at infinity cuts nothing off.
+        let unit = |plane: Vec4| match plane.truncate().length() {
+            length if length > 0.0 => plane / length,
+            _ => Vec4::W,
+        };
+        [w + x, w - x, w + y, w - y, z, w - z].map(unit)
+    }
+}
+
+/// A ball around a model: around these places of its vertices, with a margin for what lies between.
+pub fn ball(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
+    let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
+    if !low.cmple(high).all() {
+        return (Vec3::ZERO, 0.0);
+    }
+    let center = low.midpoint(high);
+    (center, 1.05 * places.map(|place| place.distance(center)).fold(0.0, f32::max))
+}
+
+/// Where an instance of uniform scale stands: turned about +Y, then moved.
+pub fn standing(at: Vec3, turn: f32, scale: f32) -> Affine {
+    let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
+    [[cosine, 0.0, sine, at.x], [0.0, scale, 0.0, at.y], [-sine, 0.0, cosine, at.z]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view() -> LodView {
+        LodView {
+            clip_from_world: Mat4::IDENTITY,
+            eye: Vec3::ZERO,
+            near: 10.0,
+            far: 30.0,
+            steps: 64,
+            center: Vec3::ZERO,
+            radius: 1.0,
+        }
+    }
+
+    #[test]
+    fn views_are_checked_field_by_field() {
+        assert_eq!(view().validate(), Ok(()));
+        let refused = |view: LodView| view.validate().expect_err("refused").field;
+        assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
+        assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
+        assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
+        assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
+        assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
+    }
+
+    #[test]
+    fn planes_hold_the_cube_of_clip_space() {
+        let planes = view().planes();
+        let inside = |p: Vec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
+        assert!(inside(Vec3::new(0.9, -0.9, 0.1)) && inside(Vec3::new(0.0, 0.0, 0.9)));
+        for outside in [
+            Vec3::new(1.1, 0.0, 0.5),
+            Vec3::new(0.0, -1.1, 0.5),
+            Vec3::new(0.0, 0.0, -0.1),
+            Vec3::new(0.0, 0.0, 1.1),
+        ] {
+            assert!(!inside(outside), "{outside}");
+        }
+    }
+
+    #[test]
+    fn balls_hold_their_places() {
+        let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
+        let (center, radius) = ball(places.into_iter());
+        assert!(places.iter().all(|place| place.distance(center) <= radius) && radius < 1.5);
+        assert_eq!(ball(std::iter::empty()), (Vec3::ZERO, 0.0));
+    }
+}

@@ -1,0 +1,121 @@
+//! `kernels/skinning/lod.wgsl`.
+
+use encase::ShaderType;
+use glam::Vec4;
+
+use super::LodView;
+use crate::Error;
+use crate::animation::transform::Affine;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::skinning::weights::Reduction;
+
+/// `LodParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct LodParams {
+    pub planes: [Vec4; 6],
+    pub eye: Vec4,
+    pub ball: Vec4,
+    pub far: f32,
+    pub steps: f32,
+    pub instances: u32,
+}
+
+impl LodParams {
+    fn new(view: &LodView, instances: usize) -> Self {
+        Self {
+            planes: view.planes(),
+            eye: view.eye.extend(view.near),
+            ball: view.center.extend(view.radius),
+            far: view.far,
+            steps: view.steps as f32,
+            instances: instances as u32,
+        }
+    }
+}
+
+/// Decides what is drawn.
+#[derive(Debug, Clone)]
+pub struct LodPass {
+    kernel: Kernel,
+}
+
+impl LodPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_LOD, &[])? })
+    }
+
+    /// Prepares the reductions of the instances that are seen, the list of these, and the second of the `arguments` of an
+    /// indirect draw, their number ([`crate::render::SkinnedScene::arguments`]).
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for a view out of range and too small buffers; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        view: &LodView,
+        placements: &Buffer<Affine>,
+        reductions: &Buffer<Reduction>,
+        drawn: &Buffer<u32>,
+        arguments: &Buffer<u32>,
+    ) -> Result<LodJob, Error> {
+        view.validate()?;
+        let instances = placements.len();
+        reductions.check_holds("reductions", instances)?;
+        drawn.check_holds("drawn", instances)?;
+        arguments.check_holds("arguments", 5)?;
+        let uniform = Uniform::new(gpu, "lod", &LodParams::new(view, instances))?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            placements.raw().as_entire_binding(),
+            reductions.raw().as_entire_binding(),
+            drawn.raw().as_entire_binding(),
+            arguments.raw().as_entire_binding(),
+        ];
+        let step = Step {
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: self.kernel.spread(gpu, instances as u32),
+            kernel: self.kernel.clone(),
+        };
+        let job = Job::new(gpu, "skinning/lod", vec![step])?;
+        Ok(LodJob { job, uniform, arguments: arguments.clone(), instances })
+    }
+}
+
+/// Prepared decisions.
+#[derive(Debug, Clone)]
+pub struct LodJob {
+    job: Job,
+    uniform: Uniform<LodParams>,
+    arguments: Buffer<u32>,
+    instances: usize,
+}
+
+impl LodJob {
+    /// Chooses the view of the next submission.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for a view out of range; [`GpuError`].
+    pub fn set(&self, gpu: &Gpu, view: &LodView) -> Result<(), Error> {
+        view.validate()?;
+        Ok(self.uniform.write(gpu, &LodParams::new(view, self.instances))?)
+    }
+
+    /// Records the decisions.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        // The number of instances.
+        encoder.clear_buffer(self.arguments.raw(), 4, Some(4));
+        self.job.record(encoder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(lod_params_layout: LodParams = SKINNING_LOD "LodParams");
+}

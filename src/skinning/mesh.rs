@@ -1,0 +1,325 @@
+//! Skinned meshes: vertices in the space that they were bound in, the bones of a skin that they follow, triangles, and
+//! morph targets.
+
+use super::morph::{MorphTarget, WeightKeys};
+use super::weights::Influences;
+use crate::InputError;
+use crate::animation::skeleton::Skin;
+use crate::reference::surface::tangent::tangents;
+use crate::surface::tangent;
+
+/// The most vertices of a mesh.
+pub const MOST_VERTICES: usize = 1 << 24;
+
+/// The largest size of a coordinate.
+pub const COORDINATE_LIMIT: f32 = tangent::COORDINATE_LIMIT;
+
+/// Triangles that follow the bones of one skin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Of the node, and the primitive's number behind it.
+    pub name: String,
+    /// Which of the model's skins.
+    pub skin: usize,
+    /// In the space of the skin's inverse bind matrices.
+    pub positions: Vec<[f32; 3]>,
+    /// One a vertex, unit length or 0.
+    pub normals: Vec<[f32; 3]>,
+    /// One a vertex: a unit vector along u, and ±1; the bitangent along v is that times normal × tangent. glTF's
+    /// fourth component has the other sign.
+    pub tangents: Vec<[f32; 4]>,
+    /// One a vertex, v down the image.
+    pub uv: Vec<[f32; 2]>,
+    /// Three a triangle, counter-clockwise seen from outside.
+    pub indices: Vec<u32>,
+    /// What each vertex follows.
+    pub influences: Influences,
+    /// What moves vertices before they are skinned.
+    pub targets: Vec<MorphTarget>,
+    /// One a target, where no clip moves it.
+    pub weights: Vec<f32>,
+    /// The clips that move the targets, and how.
+    pub weight_keys: Vec<(usize, WeightKeys)>,
+}
+
+impl Mesh {
+    /// How many vertices.
+    pub fn vertices(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Checks lengths, indices and ranges, and that it fits its skin.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field, with its index.
+    pub fn validate(&self, skins: &[Skin]) -> Result<(), InputError> {
+        let Some(skin) = skins.get(self.skin) else {
+            return Err(InputError::new("mesh.skin", self.skin, format!("must be below {}", skins.len())));
+        };
+        let vertices = self.vertices();
+        if vertices > MOST_VERTICES {
+            return Err(InputError::new(
+                "mesh.positions.len",
+                vertices,
+                format!("must be at most {MOST_VERTICES}"),
+            ));
+        }
+        for (field, len) in [
+            ("normals", self.normals.len()),
+            ("tangents", self.tangents.len()),
+            ("uv", self.uv.len()),
+            ("influences", self.influences.vertices()),
+        ] {
+            if len != vertices {
+                return Err(InputError::new(
+                    format!("mesh.{field}.len"),
+                    len,
+                    format!("must be {vertices}, one a vertex"),
+                ));
+            }
+        }
+        in_range("mesh.positions", &self.positions)?;
+        in_range("mesh.normals", &self.normals)?;
+        in_range("mesh.tangents", &self.tangents)?;
+        in_range("mesh.uv", &self.uv)?;
+        if let Some(wrong) =
+            self.influences.all().iter().find(|influence| influence.bone as usize >= skin.bones.len())
+        {
+            let bound = format!("must be below {}, the skin's bones", skin.bones.len());
+            return Err(InputError::new("mesh.influences", wrong.bone, bound));
+        }
+        triangles("mesh.indices", &self.indices, vertices)?;
+        self.validate_targets()
+    }
+
+    fn validate_targets(&self) -> Result<(), InputError> {
+        let targets = self.targets.len();
+        if self.weights.len() != targets {
+            let bound = format!("must be {targets}, one a target");
+            return Err(InputError::new("mesh.weights.len", self.weights.len(), bound));
+        }
+        in_range("mesh.weights", &[self.weights.as_slice()])?;
+        for (at, target) in self.targets.iter().enumerate() {
+            let path = format!("mesh.targets[{at}]");
+            let last = target.vertices.last().is_some_and(|last| *last as usize >= self.vertices());
+            if last
+                || !target.vertices.is_sorted_by(|a, b| a < b)
+                || target.vertices.len() != target.deltas.len()
+            {
+                let bound = format!("must ascend below {}, with one delta each", self.vertices());
+                return Err(InputError::new(
+                    format!("{path}.vertices"),
+                    format!("[{} vertices]", target.vertices.len()),
+                    bound,
+                ));
+            }
+            for delta in &target.deltas {
+                in_range(&format!("{path}.deltas"), &[delta.position, delta.normal, delta.tangent])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The weights of the morph targets at a time inside a clip.
+    pub fn weights_at(&self, clip: usize, time: f32) -> Vec<f32> {
+        let keys = self.weight_keys.iter().find(|(of, _)| *of == clip);
+        keys.map_or_else(|| self.weights.clone(), |(_, keys)| keys.at(time))
+    }
+
+    /// No weight of a target is ever further from 0 than this, in no clip; at least 1.
+    fn largest_weight(&self, target: usize) -> f32 {
+        let keyed = self.weight_keys.iter().map(|(_, keys)| keys.largest(target));
+        keyed.fold(self.weights[target].abs().max(1.0), f32::max)
+    }
+}
+
+/// Refuses what is not finite or larger than [`COORDINATE_LIMIT`].
+pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
+    for (vertex, vector) in vectors.iter().enumerate() {
+        // NaN is not within.
+        let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
+        if let Some(axis) = vector.as_ref().iter().position(|value| !is_within(value)) {
+            let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
+            return Err(InputError::new(format!("{path}[{vertex}][{axis}]"), vector.as_ref()[axis], bound));
+        }
+    }
+    Ok(())
+}
+
+fn triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
+    if !indices.len().is_multiple_of(3) {
+        return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));
+    }
+    match indices.iter().position(|index| *index as usize >= vertices) {
+        None => Ok(()),
+        Some(at) => {
+            let bound = format!("must be below {vertices}, the number of vertices");
+            Err(InputError::new(format!("{path}[{at}]"), indices[at], bound))
+        }
+    }
+}
+
+/// Normals for vertices that have none: the triangles' normals, weighted by their areas. A vertex without triangles
+/// gets +Z.
+pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
+    let mut sums = vec![glam::DVec3::ZERO; positions.len()];
+    let position = |index: u32| glam::DVec3::from(positions[index as usize].map(f64::from));
+    for triangle in indices.chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|corner| position(triangle[corner]));
+        let area = (b - a).cross(c - a);
+        triangle.iter().for_each(|index| sums[*index as usize] += area);
+    }
+    let unit = |sum: &glam::DVec3| sum.try_normalize().unwrap_or(glam::DVec3::Z);
+    sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
+}
+
+/// Tangents for vertices that have none: see [`crate::surface::tangent`].
+///
+/// # Errors
+/// [`InputError`] for coordinates out of range, and indices of no vertex.
+pub(crate) fn solved_tangents(
+    positions: &[[f32; 3]],
+    normals: &[[f32; 3]],
+    uv: &[[f32; 2]],
+    indices: &[u32],
+) -> Result<Vec<[f32; 4]>, InputError> {
+    tangents(&tangent::Mesh { positions, normals, uv, indices })
+}
+
+/// How far vertices reach from each bone that they follow: the largest distance, in the bone's space, from its origin
+/// to a vertex that it weighs, as morph targets may move it. 0 where a bone weighs none. Rounded up.
+///
+/// Times the bone's largest scale this bounds how far a turn of the bone by a small angle moves any vertex, per radian
+/// (the ρ of the `bounded` gate). A target counts with the largest weight that it has in any clip, at least 1: whoever
+/// sets larger weights by hand reaches further.
+///
+/// # Panics
+/// For meshes that do not fit the skins, and skins that do not fit `bones` bones: see [`Mesh::validate`].
+pub fn reaches(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
+    let mut reaches = vec![0.0_f64; bones];
+    for mesh in meshes {
+        let skin = &skins[mesh.skin];
+        let binds: Vec<_> = skin
+            .inverse_binds
+            .iter()
+            .map(|bind| glam::DMat4::from_cols_array(&bind.map(f64::from)))
+            .collect();
+        let deltas = deltas_by_vertex(mesh);
+        for (vertex, position) in mesh.positions.iter().enumerate() {
+            let position = glam::DVec3::from(position.map(f64::from));
+            for influence in mesh.influences.of(vertex) {
+                let bind = &binds[influence.bone as usize];
+                let morphed: f64 =
+                    deltas[vertex].iter().map(|delta| bind.transform_vector3(*delta).length()).sum();
+                let reach = &mut reaches[skin.bones[influence.bone as usize] as usize];
+                *reach = reach.max(bind.transform_point3(position).length() + morphed);
+            }
+        }
+    }
+    // The nearest f32 is at most 2⁻²⁴ below; f64's own errors are far smaller.
+    reaches.into_iter().map(|reach| (reach * (1.0 + 1e-6)) as f32).collect()
+}
+
+/// How far each target moves each vertex at most.
+fn deltas_by_vertex(mesh: &Mesh) -> Vec<Vec<glam::DVec3>> {
+    let mut deltas = vec![Vec::new(); mesh.vertices()];
+    for (index, target) in mesh.targets.iter().enumerate() {
+        let weight = f64::from(mesh.largest_weight(index));
+        for (vertex, delta) in target.vertices.iter().zip(&target.deltas) {
+            deltas[*vertex as usize].push(weight * glam::DVec3::from(delta.position.map(f64::from)));
+        }
+    }
+    deltas
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skinning::morph::MorphDelta;
+    use crate::skinning::weights::Influence;
+
+    /// One triangle; its last vertex follows two bones, one of them bound at x = 10 and at half the size.
+    fn triangle() -> (Mesh, Vec<Skin>) {
+        let bind = glam::Mat4::from_scale(glam::Vec3::splat(0.5))
+            * glam::Mat4::from_translation(glam::vec3(-10.0, 0.0, 0.0));
+        let skin = Skin {
+            name: String::new(),
+            bones: vec![3, 1],
+            inverse_binds: vec![glam::Mat4::IDENTITY.to_cols_array(), bind.to_cols_array()],
+        };
+        let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+        let one = |bone| vec![Influence { bone, weight: 1.0 }];
+        let both = [one(0), one(1)].concat();
+        let delta = MorphDelta { position: [0.0, 0.0, 1.0], ..MorphDelta::default() };
+        let mesh = Mesh {
+            name: String::new(),
+            skin: 0,
+            normals: smooth_normals(&positions, &[0, 1, 2]),
+            tangents: vec![[1.0, 0.0, 0.0, 1.0]; 3],
+            uv: vec![[0.0; 2]; 3],
+            positions,
+            indices: vec![0, 1, 2],
+            influences: Influences::new("w", 2, [one(0), one(0), both]).expect("valid"),
+            targets: vec![MorphTarget { vertices: vec![2], deltas: vec![delta] }],
+            weights: vec![-3.0],
+            weight_keys: vec![],
+        };
+        (mesh, vec![skin])
+    }
+
+    #[test]
+    fn reaches_are_the_farthest_vertices() {
+        let (mut mesh, skins) = triangle();
+        assert_eq!(mesh.validate(&skins), Ok(()));
+        let reach = |mesh: &Mesh| reaches(5, &skins, std::slice::from_ref(mesh));
+        let near = |found: f32, wanted: f32| (wanted..wanted * 1.000_002).contains(&found);
+        // The weight of −3 counts.
+        let found = reach(&mesh);
+        assert!(near(found[3], 2.0 + 3.0) && near(found[1], 26.0_f32.sqrt() + 1.5), "{found:?}");
+        assert_eq!([found[0], found[2], found[4]], [0.0; 3]);
+        mesh.weights = vec![0.0];
+        assert!(near(reach(&mesh)[3], 3.0));
+        let keys =
+            WeightKeys::new(["t", "v"], vec![0.0], vec![7.0], crate::animation::Interpolation::Step, 1);
+        mesh.weight_keys = vec![(0, keys.expect("valid"))];
+        assert!(near(reach(&mesh)[3], 9.0));
+        assert_eq!((mesh.weights_at(0, 0.5), mesh.weights_at(1, 0.5)), (vec![7.0], vec![0.0]));
+    }
+
+    #[test]
+    fn normals_follow_areas() {
+        let normals = smooth_normals(
+            &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0], [9.0; 3]],
+            &[0, 1, 2, 0, 3, 1],
+        );
+        assert_eq!((normals[2], normals[3], normals[4]), ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]));
+        let expected = glam::vec3(0.0, 3.0, 1.0).normalize();
+        assert!((glam::Vec3::from(normals[0]) - expected).length() < 1e-6);
+    }
+
+    #[test]
+    fn meshes_are_checked_field_by_field() {
+        let refused = |change: &dyn Fn(&mut Mesh)| {
+            let (mut mesh, skins) = triangle();
+            change(&mut mesh);
+            mesh.validate(&skins).expect_err("refused").field
+        };
+        assert_eq!(refused(&|mesh| mesh.skin = 1), "mesh.skin");
+        assert_eq!(refused(&|mesh| mesh.uv.clear()), "mesh.uv.len");
+        assert_eq!(refused(&|mesh| mesh.positions[1][2] = f32::NAN), "mesh.positions[1][2]");
+        assert_eq!(refused(&|mesh| mesh.tangents[0][3] = 2e18), "mesh.tangents[0][3]");
+        assert_eq!(refused(&|mesh| mesh.indices.truncate(2)), "mesh.indices.len");
+        assert_eq!(refused(&|mesh| mesh.indices[1] = 3), "mesh.indices[1]");
+        assert_eq!(refused(&|mesh| mesh.weights.clear()), "mesh.weights.len");
+        assert_eq!(refused(&|mesh| mesh.targets[0].vertices[0] = 3), "mesh.targets[0].vertices");
+        assert_eq!(
+            refused(&|mesh| mesh.targets[0].deltas[0].normal[0] = f32::NAN),
+            "mesh.targets[0].deltas[1][0]"
+        );
+        let far = |mesh: &mut Mesh| {
+            let given = vec![Influence { bone: 2, weight: 1.0 }];
+            mesh.influences = Influences::new("w", 3, vec![given; 3]).expect("valid");
+        };
+        assert_eq!(refused(&far), "mesh.influences");
+    }
+}

@@ -1,0 +1,19 @@
+//! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
+
+#[cfg(feature = "gpu")]
+pub mod buffers;
+pub mod clusters;
+pub mod export;
+pub mod lod;
+pub mod mesh;
+pub mod morph;
+pub mod palette;
+pub mod picture;
+pub mod select;
+pub mod skin;
+pub mod weights;
+
+pub use mesh::{Mesh, reaches};
+pub use morph::{MorphTarget, WeightKeys};
+pub use skin::{Blend, Vertex};
+pub use weights::{Influence, Influences, Reduction};

@@ -1,0 +1,159 @@
+//! `kernels/skinning/skin.wgsl`.
+
+use std::ops::Range;
+
+use encase::ShaderType;
+
+use super::{Blend, Vertex};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::{Error, InputError};
+
+/// `SkinParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct SkinParams {
+    pub vertices: u32,
+    pub pairs: u32,
+    pub bones: u32,
+    pub instances: u32,
+    pub first_instance: u32,
+}
+
+/// Skins vertices.
+#[derive(Debug, Clone)]
+pub struct SkinPass {
+    // All and compacted; each unmorphed and morphed.
+    kernels: [[Kernel; 2]; 2],
+    blend: Blend,
+}
+
+impl SkinPass {
+    /// Compiles the pipelines of a kind of blending.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, blend: Blend) -> Result<Self, GpuError> {
+        let dual = f64::from(blend == Blend::DualQuaternion);
+        let kernel = |compacted, morphed| {
+            let overrides = [("COMPACTED", compacted), ("DUAL", dual), ("MORPHED", morphed)];
+            Kernel::new(gpu, &shaders::SKINNING_SKIN, &overrides)
+        };
+        let kernels = [[kernel(0.0, 0.0)?, kernel(0.0, 1.0)?], [kernel(1.0, 0.0)?, kernel(1.0, 1.0)?]];
+        Ok(Self { kernels, blend })
+    }
+
+    /// Prepares every vertex of some instances, which are `skinned` one after the other, in the mesh's clusters.
+    ///
+    /// # Errors
+    /// [`InputError`] for a crowd of another mesh or kind of blending, instances that it lacks, and too small an
+    /// output; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        instances: Range<usize>,
+        skinned: &Buffer<Vertex>,
+    ) -> Result<Job, Error> {
+        let nothing = ActiveClusters {
+            pairs: Buffer::new(gpu, "no clusters", 0)?,
+            dispatched: Buffer::from_slice(gpu, "no clusters", &[0; 4])?,
+        };
+        let kernel = self.kernel(false, mesh);
+        let pairs = (instances.len() * mesh.clusters()) as u32;
+        // A workgroup a pair.
+        let x = pairs.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
+        let group = self.bind(gpu, kernel, (mesh, crowd), instances, (skinned, &nothing))?;
+        let step =
+            Step { groups: vec![group], workgroups: [x, pairs.div_ceil(x), 1], kernel: kernel.clone() };
+        Ok(Job::new(gpu, "skinning/skin", vec![step])?)
+    }
+
+    /// Prepares the active clusters of all instances; the other vertices stay.
+    ///
+    /// # Errors
+    /// As [`SkinPass::prepare`].
+    pub fn prepare_active(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        skinned: &Buffer<Vertex>,
+        active: &ActiveClusters,
+    ) -> Result<SkinActiveJob, Error> {
+        let kernel = self.kernel(true, mesh);
+        let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, (skinned, active))?;
+        Ok(SkinActiveJob { kernel: kernel.clone(), group, dispatched: active.dispatched.clone() })
+    }
+
+    fn kernel(&self, compacted: bool, mesh: &MeshBuffers) -> &Kernel {
+        &self.kernels[usize::from(compacted)][usize::from(mesh.targets > 0)]
+    }
+
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        kernel: &Kernel,
+        (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
+        instances: Range<usize>,
+        (skinned, active): (&Buffer<Vertex>, &ActiveClusters),
+    ) -> Result<Group, Error> {
+        if crowd.blend != self.blend {
+            let bound = format!("must be {:?}, as the pass's", self.blend);
+            return Err(InputError::new("crowd.blend", format!("{:?}", crowd.blend), bound).into());
+        }
+        if instances.is_empty() || instances.end > crowd.instances {
+            let bound = format!("must be some of {}", crowd.instances);
+            return Err(InputError::new("instances", format!("{instances:?}"), bound).into());
+        }
+        let vectors = if self.blend == Blend::Linear { 3 } else { 4 };
+        crowd.palette.check_holds("crowd.palette", vectors * crowd.instances * mesh.bones.len())?;
+        skinned.check_holds("skinned", instances.len() * mesh.vertices.len())?;
+        let vertices = if mesh.targets > 0 { &crowd.morphed } else { &mesh.vertices };
+        if mesh.targets > 0 {
+            vertices.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
+        }
+        let params = SkinParams {
+            vertices: mesh.vertices.len() as u32,
+            pairs: (instances.len() * mesh.clusters()) as u32,
+            bones: mesh.bones.len() as u32,
+            instances: instances.len() as u32,
+            first_instance: instances.start as u32,
+        };
+        let uniform = Uniform::new(gpu, "skin", &params)?;
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            vertices.raw().as_entire_binding(),
+            mesh.influences.raw().as_entire_binding(),
+            crowd.palette.raw().as_entire_binding(),
+            crowd.reductions.raw().as_entire_binding(),
+            active.pairs.raw().as_entire_binding(),
+            active.dispatched.raw().as_entire_binding(),
+            skinned.raw().as_entire_binding(),
+        ];
+        Ok(kernel.bind(gpu, 0, &resources)?)
+    }
+}
+
+/// Prepared skinning of clusters that a kernel or the host chooses.
+#[derive(Debug, Clone)]
+pub struct SkinActiveJob {
+    kernel: Kernel,
+    group: Group,
+    dispatched: Buffer<u32>,
+}
+
+impl SkinActiveJob {
+    /// Records the skinning.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.kernel.dispatch_indirect(encoder, "skinning/skin", &self.group, (self.dispatched.raw(), 0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(skin_params_layout: SkinParams = SKINNING_SKIN "SkinParams");
+}

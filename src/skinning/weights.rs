@@ -1,0 +1,220 @@
+//! What vertices follow: up to eight bones each, the strongest first; and with distance fewer (A section 8.4).
+//!
+//! - `truncate(k)` keeps the k strongest, divided by their sum. It pops where k changes.
+//! - `fade(λ)` takes λ times the second strongest weight from every weight but the strongest, which gets what is left
+//!   over. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest vanish first, and those that
+//!   have vanished are not fetched.
+
+use crate::InputError;
+
+/// The most bones that a vertex follows.
+pub const MOST_INFLUENCES: usize = 8;
+
+/// A bone, and how much a vertex follows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Influence {
+    /// The bone's place in the skin's list.
+    pub bone: u32,
+    /// Above 0; those of a vertex sum to 1.
+    pub weight: f32,
+}
+
+/// The influences of every vertex of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Influences {
+    offsets: Vec<u32>,
+    all: Vec<Influence>,
+}
+
+impl Influences {
+    /// The influences of vertices, each given as bones and weights in any order: those of one bone are added up,
+    /// weights of 0 left out, the others sorted, the largest first (equal ones by bone), and divided by their sum.
+    ///
+    /// # Errors
+    /// [`InputError`] for weights that are negative or not finite, a vertex without weights or with more than
+    /// [`MOST_INFLUENCES`], and weighted bones that are not below `bones`. `path` comes before the vertex's number.
+    pub fn new(
+        path: &str,
+        bones: usize,
+        vertices: impl IntoIterator<Item = Vec<Influence>>,
+    ) -> Result<Self, InputError> {
+        let mut influences = Self { offsets: vec![0], all: Vec::new() };
+        for (vertex, mut given) in vertices.into_iter().enumerate() {
+            order(&mut given)
+                .and_then(|()| check(&given, bones))
+                .map_err(|(value, bound)| InputError::new(format!("{path}[{vertex}]"), value, bound))?;
+            let sum: f64 = given.iter().map(|influence| f64::from(influence.weight)).sum();
+            influences.all.extend(given.iter().map(|influence| Influence {
+                bone: influence.bone,
+                weight: (f64::from(influence.weight) / sum) as f32,
+            }));
+            influences.offsets.push(influences.all.len() as u32);
+        }
+        Ok(influences)
+    }
+
+    /// What a vertex follows, the strongest first.
+    pub fn of(&self, vertex: usize) -> &[Influence] {
+        &self.all[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
+    }
+
+    /// Vertices.
+    pub fn vertices(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The most influences of a vertex.
+    pub fn most(&self) -> usize {
+        self.offsets.windows(2).map(|ends| (ends[1] - ends[0]) as usize).max().unwrap_or(0)
+    }
+
+    /// All influences, vertex by vertex.
+    pub fn all(&self) -> &[Influence] {
+        &self.all
+    }
+}
+
+/// Which influences count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Reduction {
+    /// The λ of `fade`, 0 to 1.
+    pub fade: f32,
+    /// The k of `truncate`, at least 1.
+    pub most: u32,
+}
+
+impl Reduction {
+    /// Every influence.
+    pub const FULL: Self = Self { fade: 0.0, most: MOST_INFLUENCES as u32 };
+
+    /// The strongest influences.
+    ///
+    /// # Errors
+    /// [`InputError`] unless `most` is in 1 to [`MOST_INFLUENCES`].
+    pub fn truncate(most: u32) -> Result<Self, InputError> {
+        let reduction = Self { most, ..Self::FULL };
+        reduction.validate().map(|()| reduction)
+    }
+
+    /// From full quality at 0 to rigid at 1.
+    ///
+    /// # Errors
+    /// [`InputError`] unless `fade` is in 0 to 1.
+    pub fn fade(fade: f32) -> Result<Self, InputError> {
+        let reduction = Self { fade, ..Self::FULL };
+        reduction.validate().map(|()| reduction)
+    }
+
+    /// Full quality up to `near`, rigid from `far` on, fading in between.
+    ///
+    /// # Errors
+    /// [`InputError`] for values that are not finite, and unless `near` is below `far`.
+    pub fn at_distance(distance: f32, [near, far]: [f32; 2]) -> Result<Self, InputError> {
+        for (field, value) in [("distance", distance), ("near", near), ("far", far)] {
+            if !value.is_finite() {
+                return Err(InputError::new(field, value, "must be finite"));
+            }
+        }
+        if near >= far {
+            return Err(InputError::new(
+                "near",
+                near,
+                format!("must be below {far}, where vertices are rigid"),
+            ));
+        }
+        Self::fade(((distance - near) / (far - near)).clamp(0.0, 1.0))
+    }
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !(0.0..=1.0).contains(&self.fade) {
+            return Err(InputError::new("fade", self.fade, "must be in 0..=1"));
+        }
+        if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
+            return Err(InputError::new("truncate", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
+        }
+        Ok(())
+    }
+}
+
+type Fault = (String, String);
+
+/// Adds up, drops and sorts.
+fn order(given: &mut Vec<Influence>) -> Result<(), Fault> {
+    if let Some(wrong) = given.iter().find(|influence| !(0.0..f32::INFINITY).contains(&influence.weight)) {
+        return Err((wrong.weight.to_string(), "must be finite, and not negative".to_owned()));
+    }
+    given.retain(|influence| influence.weight > 0.0);
+    given.sort_by_key(|influence| influence.bone);
+    given.dedup_by(|next, first| {
+        let is_same = next.bone == first.bone;
+        if is_same {
+            first.weight = (first.weight + next.weight).min(f32::MAX);
+        }
+        is_same
+    });
+    given.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    Ok(())
+}
+
+fn check(given: &[Influence], bones: usize) -> Result<(), Fault> {
+    if given.is_empty() {
+        return Err(("0".to_owned(), "must follow a bone: all its weights are 0".to_owned()));
+    }
+    if given.len() > MOST_INFLUENCES {
+        return Err((format!("{} weights", given.len()), format!("must be at most {MOST_INFLUENCES}")));
+    }
+    match given.iter().find(|influence| influence.bone as usize >= bones) {
+        Some(wrong) => {
+            Err((format!("joint {}", wrong.bone), format!("must be below {bones}, the skin's joints")))
+        }
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn influences(given: &[(u32, f32)]) -> Result<Vec<(u32, f32)>, InputError> {
+        let given = given.iter().map(|&(bone, weight)| Influence { bone, weight }).collect();
+        let all = Influences::new("w", 9, [given])?;
+        Ok(all.of(0).iter().map(|influence| (influence.bone, influence.weight)).collect())
+    }
+
+    #[test]
+    fn the_strongest_come_first_and_sum_to_one() {
+        assert_eq!(influences(&[(3, 0.25), (1, 0.0), (2, 0.75)]), Ok(vec![(2, 0.75), (3, 0.25)]));
+        assert_eq!(influences(&[(3, 2.0), (1, 2.0), (8, 4.0)]), Ok(vec![(8, 0.5), (1, 0.25), (3, 0.25)]));
+        // Named twice.
+        assert_eq!(influences(&[(3, 0.5), (1, 0.25), (3, 0.25)]), Ok(vec![(3, 0.75), (1, 0.25)]));
+        assert_eq!(influences(&[(3, f32::MAX), (3, f32::MAX)]), Ok(vec![(3, 1.0)]));
+        assert_eq!(influences(&[(3, f32::MIN_POSITIVE)]), Ok(vec![(3, 1.0)]));
+        // A joint without weight may be any.
+        assert_eq!(influences(&[(3, 1.0), (99, 0.0)]), Ok(vec![(3, 1.0)]));
+    }
+
+    #[test]
+    fn what_follows_nothing_or_too_much_is_refused() {
+        let refused = |given: &[(u32, f32)], value: &str| {
+            let error = influences(given).expect_err("refused");
+            assert_eq!((error.field.as_str(), error.value.as_str()), ("w[0]", value));
+        };
+        refused(&[], "0");
+        refused(&[(0, 0.0), (1, 0.0)], "0");
+        refused(&[(0, -0.5), (1, 1.5)], "-0.5");
+        refused(&[(0, f32::NAN)], "NaN");
+        refused(&[(0, f32::INFINITY)], "inf");
+        refused(&[(0, 0.5), (9, 0.5)], "joint 9");
+        let nine: Vec<_> = (0..9).map(|bone| (bone, 0.1)).collect();
+        refused(&nine, "9 weights");
+        assert!(influences(&nine[..8]).is_ok());
+    }
+}

@@ -1,0 +1,202 @@
+//! Meshes of glTF documents, as they may be and as they may not.
+
+use relievo::InputError;
+use relievo::animation::Model;
+use relievo::skinning::{Mesh, MorphTarget};
+use serde_json::{Value, json};
+
+use crate::scene::Scene;
+
+/// Two bones, and a node with a skinned mesh of one primitive of 4 vertices.
+struct Skinned(Scene);
+
+impl Skinned {
+    fn new() -> Self {
+        let mut scene = Scene::of_two_bones();
+        let positions = scene.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
+        scene.json["accessors"][positions]["min"] = json!([0, 0, 0]);
+        scene.json["accessors"][positions]["max"] = json!([1, 1, 0]);
+        let weights =
+            scene.floats("VEC4", &[[1.0, 0.0, 0.0, 0.0], [0.25, 0.75, 0.0, 0.0]].concat().repeat(2));
+        let joints = scene.integers("VEC4", 1, &[0, 1, 0, 0].repeat(4));
+        scene.json["meshes"] = json!([{"primitives": [{
+            "attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}, "mode": 5
+        }]}]);
+        scene.push("nodes", json!({"name": "body", "skin": 0, "mesh": 0, "translation": [9.0, 9.0, 9.0]}));
+        Self(scene)
+    }
+
+    fn attribute(&mut self, name: &str, accessor: usize) {
+        self.primitive()["attributes"][name] = json!(accessor);
+    }
+
+    fn primitive(&mut self) -> &mut Value {
+        &mut self.0.json["meshes"][0]["primitives"][0]
+    }
+
+    fn read(&self) -> Result<Mesh, InputError> {
+        let model = Model::from_gltf(&self.0.gltf(), None)?;
+        assert_eq!(model, Model::from_gltf(&self.0.glb(), None)?);
+        assert_eq!(model.meshes[0].validate(&model.skins), Ok(()));
+        Ok(model.meshes.into_iter().next().expect("a mesh"))
+    }
+
+    fn refused(&self, field: &str, words: &str) {
+        let error = self.read().expect_err(field);
+        assert!(error.field == field && error.to_string().contains(words), "{error}");
+    }
+}
+
+fn weights(mesh: &Mesh, vertex: usize) -> Vec<(u32, f32)> {
+    mesh.influences.of(vertex).iter().map(|influence| (influence.bone, influence.weight)).collect()
+}
+
+#[test]
+fn a_mesh_is_read() {
+    let mut skinned = Skinned::new();
+    let normals = skinned.0.floats("VEC3", &[[0.0, 0.0, 2.0], [0.0; 3]].concat().repeat(2));
+    let tangents =
+        skinned.0.floats("VEC4", &[[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, -1.0]].concat().repeat(2));
+    let uv = skinned.0.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
+    skinned.attribute("NORMAL", normals);
+    skinned.attribute("TANGENT", tangents);
+    skinned.attribute("TEXCOORD_0", uv);
+    skinned.attribute("_OWN", uv);
+    let mesh = skinned.read().expect("valid");
+    assert_eq!((&*mesh.name, mesh.skin, mesh.vertices()), ("body_0", 0, 4));
+    assert_eq!(mesh.positions[3], [1.0, 1.0, 0.0]);
+    // Longer ones become units, ones of no length the surface's.
+    assert_eq!(mesh.normals, vec![[0.0, 0.0, 1.0]; 4]);
+    // glTF's handedness is the other one.
+    assert_eq!(mesh.tangents[..2], [[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 1.0]]);
+    assert_eq!(mesh.uv[1], [1.0, 1.0]);
+    // A strip.
+    assert_eq!(mesh.indices, [0, 1, 2, 2, 1, 3]);
+    assert_eq!((weights(&mesh, 0), weights(&mesh, 1)), (vec![(0, 1.0)], vec![(1, 0.75), (0, 0.25)]));
+    // Solved tangents agree with the file's convention: v points down here, against +Y.
+    skinned.primitive()["attributes"].as_object_mut().expect("an object").remove("TANGENT");
+    assert_eq!(skinned.read().expect("valid").tangents, vec![[1.0, 0.0, 0.0, -1.0]; 4]);
+}
+
+#[test]
+fn triangles_of_every_mode() {
+    let mut skinned = Skinned::new();
+    let mut indices = |mode: u32, bytes: usize, indices: &[u32]| {
+        let accessor = skinned.0.integers("SCALAR", bytes, indices);
+        *skinned.primitive() = {
+            let mut primitive = skinned.primitive().clone();
+            primitive["mode"] = json!(mode);
+            primitive["indices"] = json!(accessor);
+            primitive
+        };
+        skinned.read().expect("valid").indices
+    };
+    assert_eq!(indices(4, 1, &[2, 1, 0, 3, 1, 2]), [2, 1, 0, 3, 1, 2]);
+    assert_eq!(indices(5, 2, &[0, 1, 2, 2, 2, 3, 1]), [0, 1, 2, 2, 3, 1]);
+    assert_eq!(indices(6, 4, &[0, 1, 3, 2]), [0, 1, 3, 0, 3, 2]);
+    assert_eq!(indices(0, 1, &[0, 1]), [0; 0]);
+    assert_eq!(indices(5, 1, &[0]), [0; 0]);
+    let mut whole = Skinned::new();
+    whole.primitive()["mode"] = json!(4);
+    whole.refused("meshes[0].primitives[0].indices.count", "multiple of 3");
+    let wrong = whole.0.integers("SCALAR", 2, &[0, 1, 4]);
+    whole.primitive()["indices"] = json!(wrong);
+    whole.refused("meshes[0].primitives[0].indices[2]", "below 4");
+    let float = whole.0.floats("SCALAR", &[0.0, 1.0, 2.0]);
+    whole.primitive()["indices"] = json!(float);
+    whole.refused(&format!("accessors[{float}].componentType"), "unsigned");
+}
+
+#[test]
+fn weights_of_every_type_and_number() {
+    let mut skinned = Skinned::new();
+    for (bytes, one) in [(1, 255), (2, 65_535)] {
+        let given = skinned.0.integers("VEC4", bytes, &[0, one / 5, 4 * one / 5, 0].repeat(4));
+        skinned.0.json["accessors"][given]["normalized"] = json!(true);
+        let joints = skinned.0.integers("VEC4", bytes, &[0, 1, 0, 77].repeat(4));
+        skinned.attribute("WEIGHTS_0", given);
+        skinned.attribute("JOINTS_0", joints);
+        let mesh = skinned.read().expect("valid");
+        let found = weights(&mesh, 3);
+        assert_eq!((found[0].0, found[1].0, found.len()), (0, 1, 2));
+        assert!((found[0].1 - 0.8).abs() < 1e-7 && (found[1].1 - 0.2).abs() < 1e-7);
+    }
+    // A second set: five influences of three joints that do not sum to 1.
+    skinned.0.push("nodes", json!({"name": "third"}));
+    skinned.0.json["skins"][0]["joints"] = json!([0, 1, 3]);
+    let given = skinned.0.floats("VEC4", &[1.0, 1.0, 1.0, 0.0].repeat(4));
+    let joints = skinned.0.integers("VEC4", 1, &[2, 1, 2, 9].repeat(4));
+    skinned.attribute("WEIGHTS_1", given);
+    skinned.refused("meshes[0].primitives[0].attributes.JOINTS_1", "missing");
+    skinned.attribute("JOINTS_1", joints);
+    let found = weights(&skinned.read().expect("valid"), 0);
+    assert_eq!(found.iter().map(|(joint, _)| *joint).collect::<Vec<_>>(), [2, 1, 0]);
+    assert!((found.iter().map(|(_, weight)| weight).sum::<f32>() - 1.0).abs() < 1e-6);
+    assert!((found[0].1 - 0.5).abs() < 1e-6 && (found[1].1 - 0.3).abs() < 1e-6);
+}
+
+#[test]
+fn vertices_that_follow_nothing_are_refused() {
+    let path = "meshes[0].primitives[0].attributes";
+    let vertex = format!("{path}.WEIGHTS_0[2]");
+    let wrong = |weights: [f32; 4], words: &str| {
+        let mut skinned = Skinned::new();
+        let all = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], weights, [1.0, 0.0, 0.0, 0.0]].concat();
+        let accessor = skinned.0.floats("VEC4", &all);
+        skinned.attribute("WEIGHTS_0", accessor);
+        skinned.refused(&vertex, words);
+    };
+    wrong([0.0; 4], "all its weights are 0");
+    wrong([1.5, -0.5, 0.0, 0.0], "-0.5");
+    wrong([f32::NAN, 0.5, 0.0, 0.0], "NaN");
+    let mut skinned = Skinned::new();
+    let joints = skinned.0.integers("VEC4", 1, &[0, 1, 0, 0, 0, 1, 0, 0, 2, 1, 0, 0, 0, 1, 0, 0]);
+    skinned.attribute("JOINTS_0", joints);
+    skinned.refused(&vertex, "below 2, the skin's joints");
+    let short = skinned.0.floats("VEC4", &[1.0; 12]);
+    skinned.attribute("WEIGHTS_0", short);
+    skinned.refused(&format!("{path}.WEIGHTS_0.count"), "must be 4");
+    let mut without = Skinned::new();
+    without.primitive()["attributes"].as_object_mut().expect("an object").remove("JOINTS_0");
+    without.refused(&format!("{path}.JOINTS_0"), "must be given");
+    let mut far = Skinned::new();
+    let normals = far.0.floats("VEC3", &[f32::INFINITY; 12]);
+    far.attribute("NORMAL", normals);
+    far.refused(&format!("{path}.NORMAL[0][0]"), "finite");
+}
+
+#[test]
+fn targets_are_sparse_and_animated() {
+    let mut skinned = Skinned::new();
+    let (index, value) = (skinned.0.view(&[2]), skinned.0.view(&3.0_f32.to_le_bytes().repeat(3)));
+    let sparse = skinned.0.push("accessors", json!({
+        "componentType": 5126, "type": "VEC3", "count": 4, "sparse": {
+            "count": 1, "indices": {"bufferView": index, "componentType": 5121}, "values": {"bufferView": value}
+        }
+    }));
+    let dense = skinned.0.floats("VEC3", &[0.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    skinned.primitive()["targets"] = json!([{"POSITION": sparse}, {"NORMAL": dense, "POSITION": sparse}]);
+    skinned.0.json["meshes"][0]["weights"] = json!([0.5, 0.25]);
+    let mesh = skinned.read().expect("valid");
+    assert_eq!(mesh.weights, [0.5, 0.25]);
+    let found = |target: &MorphTarget| {
+        (target.vertices.clone(), target.deltas.iter().map(|d| d.position).collect::<Vec<_>>())
+    };
+    assert_eq!(found(&mesh.targets[0]), (vec![2], vec![[3.0; 3]]));
+    assert_eq!(found(&mesh.targets[1]), (vec![1, 2], vec![[0.0; 3], [3.0; 3]]));
+    assert_eq!(mesh.targets[1].deltas[0].normal, [0.0, 5.0, 0.0]);
+    // The node's weights win.
+    skinned.0.json["nodes"][2]["weights"] = json!([1.0, 2.0]);
+    let (times, values) =
+        (skinned.0.floats("SCALAR", &[0.0, 2.0]), skinned.0.floats("SCALAR", &[0.0, 1.0, 4.0, -1.0]));
+    skinned.0.animate(0, "translation", "LINEAR", times, dense);
+    skinned.0.json["animations"] = json!([]);
+    skinned.0.animate(2, "weights", "LINEAR", times, values);
+    let mesh = skinned.read().expect("valid");
+    assert_eq!((mesh.weights_at(0, 1.0), mesh.weights_at(1, 1.0)), (vec![2.0, 0.0], vec![1.0, 2.0]));
+    let short = skinned.0.floats("SCALAR", &[0.0; 3]);
+    skinned.0.json["animations"][0]["samplers"][0]["output"] = json!(short);
+    skinned.refused("animations[0].samplers[0].output.len", "must be 4");
+    skinned.0.json["nodes"][2]["weights"] = json!([1.0]);
+    skinned.refused("nodes[2].weights.len", "must be 2");
+}

@@ -1,0 +1,5 @@
+//! Skinning: the twin against geometry, and against code of its own in double precision.
+
+mod blending;
+mod fading;
+mod shapes;

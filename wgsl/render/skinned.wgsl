@@ -1,0 +1,50 @@
+// Draws skinned instances of a mesh: textured, lit, each at a place of its own.
+
+struct SkinnedView {
+    clip_from_world: mat4x4<f32>,
+    // Unit vector towards the light; w: what faces away still gets, 0..1.
+    light: vec4<f32>,
+    // Of the mesh.
+    vertices: u32,
+}
+
+@group(0) @binding(0) var<uniform> view: SkinnedView;
+// Five a vertex and instance: position, normal, tangent.
+@group(0) @binding(1) var<storage, read> skinned: array<vec2<f32>>;
+@group(0) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;
+// Three rows an instance: from the model's space into the world.
+@group(0) @binding(3) var<storage, read> placements: array<vec4<f32>>;
+// The instances that are drawn.
+@group(0) @binding(4) var<storage, read> drawn: array<u32>;
+@group(0) @binding(5) var albedo: texture_2d<f32>;
+@group(0) @binding(6) var filtering: sampler;
+
+struct Vertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u32) -> Vertex {
+    let instance = drawn[index];
+    let at = 5u * (instance * view.vertices + vertex);
+    let middle = skinned[at + 1u];
+    let position = vec4<f32>(skinned[at], middle.x, 1.0);
+    let normal = vec3<f32>(middle.y, skinned[at + 2u]);
+    let x = placements[3u * instance];
+    let y = placements[3u * instance + 1u];
+    let z = placements[3u * instance + 2u];
+    let world = vec4<f32>(dot(x, position), dot(y, position), dot(z, position), 1.0);
+    // By the cofactors: right for uneven scales too.
+    let facing = vec3<f32>(
+        dot(cross(y.xyz, z.xyz), normal), dot(cross(z.xyz, x.xyz), normal), dot(cross(x.xyz, y.xyz), normal));
+    return Vertex(view.clip_from_world * world, facing, texture_coordinates[vertex]);
+}
+
+@fragment
+fn fragment(in: Vertex) -> @location(0) vec4<f32> {
+    let color = textureSample(albedo, filtering, in.uv).rgb;
+    let direct = max(dot(normalize(in.normal), view.light.xyz), 0.0);
+    return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
+}
