@@ -47,9 +47,8 @@ impl MeshBuffers {
     /// [`InputError`] for a mesh that does not fit its skin; [`GpuError`].
     pub fn new(gpu: &Gpu, model: &Model, mesh: &Mesh) -> Result<(Self, Clusters), Error> {
         let all_bones = model.skeleton.len();
-        let clusters = Clusters::new(mesh, &model.skins, all_bones)?;
+        let clusters = Clusters::new(mesh, &model.skins, &model.skeleton)?;
         let skin = &model.skins[mesh.skin];
-        skin.validate(&model.skeleton)?;
         let binds: Vec<_> = skin.inverse_binds.iter().map(rows).collect();
         let (delta_offsets, deltas) = deltas(&mesh.targets, &clusters);
         let buffers = Self {

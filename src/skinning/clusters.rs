@@ -3,7 +3,8 @@
 use super::mesh::Mesh;
 use super::skin::Vertex;
 use crate::InputError;
-use crate::animation::skeleton::Skin;
+use crate::animation::concat::Order;
+use crate::animation::skeleton::{Skeleton, Skin};
 use crate::reference::skinning::morph::morph;
 
 /// Vertices of a cluster.
@@ -27,36 +28,41 @@ pub struct Clusters {
     /// words: the bones, two a word, the strongest in the lower half of the first; then the weights of all but the
     /// strongest, as bits. The strongest has what these leave of 1.
     pub influences: Vec<u32>,
-    /// The bones of each cluster, as bits of [`Clusters::mask_words`] words.
+    /// The bones of each cluster, as bits of [`Clusters::mask_words`] words: a bit a slot of the skeleton's [`Order`],
+    /// as gates and [`Active::dirty`](crate::animation::compact) have them.
     pub masks: Vec<u32>,
-    /// One bit a bone of the skeleton.
+    /// [`Order::words`].
     pub mask_words: usize,
 }
 
 impl Clusters {
-    /// The clusters of a mesh whose skin fits a skeleton of so many bones.
+    /// The clusters of a mesh whose skin fits a skeleton.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], and for skins of more than [`MOST_BONES`].
-    pub fn new(mesh: &Mesh, skins: &[Skin], bones: usize) -> Result<Self, InputError> {
+    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MOST_BONES`].
+    pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
         if skin.bones.len() > MOST_BONES {
             let bound = format!("must be at most {MOST_BONES}");
             return Err(InputError::new("skin.bones.len", skin.bones.len(), bound));
         }
+        skin.validate(skeleton)?;
+        let bones = Order::new(skeleton);
+        let mut slot_of = vec![0; skeleton.len()];
+        (0..).zip(&bones.slots).for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
         let order = order(mesh);
         let mut place = vec![0; mesh.vertices()];
         (0..).zip(&order).for_each(|(at, vertex)| place[*vertex as usize] = at);
         let vertices = morph(mesh, &[]);
-        let mask_words = bones.div_ceil(32);
+        let mask_words = bones.words();
         let clusters = order.chunks(CLUSTER);
         Ok(Self {
             vertices: order.iter().map(|vertex| vertices[*vertex as usize]).collect(),
             uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
             indices: mesh.indices.iter().map(|index| place[*index as usize]).collect(),
             influences: influences(mesh, &order),
-            masks: clusters.flat_map(|cluster| mask(mesh, skin, cluster, mask_words)).collect(),
+            masks: clusters.flat_map(|cluster| mask(mesh, skin, &slot_of, cluster, mask_words)).collect(),
             mask_words,
             order,
         })
@@ -112,11 +118,11 @@ fn influences(mesh: &Mesh, order: &[u32]) -> Vec<u32> {
     words
 }
 
-fn mask(mesh: &Mesh, skin: &Skin, cluster: &[u32], words: usize) -> Vec<u32> {
+fn mask(mesh: &Mesh, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usize) -> Vec<u32> {
     let mut mask = vec![0; words];
     for influence in cluster.iter().flat_map(|vertex| mesh.influences.of(*vertex as usize)) {
-        let bone = skin.bones[influence.bone as usize];
-        mask[bone as usize / 32] |= 1 << (bone % 32);
+        let slot = slot_of[skin.bones[influence.bone as usize] as usize];
+        mask[slot / 32] |= 1 << (slot % 32);
     }
     mask
 }
@@ -129,7 +135,7 @@ mod tests {
     fn clusters_hold_every_vertex_and_its_bones() {
         let model = crate::animation::creature().expect("valid");
         let (mesh, skin) = (&model.meshes[0], &model.skins[0]);
-        let clusters = Clusters::new(mesh, &model.skins, model.skeleton.len()).expect("fits");
+        let clusters = Clusters::new(mesh, &model.skins, &model.skeleton).expect("fits");
         assert_eq!(clusters.len(), mesh.vertices().div_ceil(64));
         let positions: Vec<_> = clusters.vertices.iter().map(|vertex| vertex.position).collect();
         assert_eq!(clusters.in_mesh_order(&positions), mesh.positions);
@@ -137,6 +143,7 @@ mod tests {
         for (placed, index) in clusters.indices.iter().zip(&mesh.indices) {
             assert_eq!(clusters.order[*placed as usize], *index);
         }
+        let slots_of_bones = Order::new(&model.skeleton).slots;
         let mut bones = 0;
         for (place, vertex) in clusters.order.iter().enumerate() {
             let (cluster, lane) = (place / 64, place % 64);
@@ -152,7 +159,9 @@ mod tests {
                         assert_eq!(found, influence.bone);
                         assert!(slot == 0 || weight == influence.weight);
                         let bone = skin.bones[found as usize];
-                        assert_ne!(mask[bone as usize / 32] & 1 << (bone % 32), 0);
+                        let slot =
+                            slots_of_bones.iter().position(|slot| slot.bone == bone).expect("one each");
+                        assert_ne!(mask[slot / 32] & 1 << (slot % 32), 0);
                     }
                     None => assert_eq!(weight, 0.0),
                 }

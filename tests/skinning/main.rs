@@ -2,4 +2,5 @@
 
 mod blending;
 mod fading;
+mod gating;
 mod shapes;

@@ -19,8 +19,9 @@ pub(crate) struct SelectParams {
 /// What a selection reads and remembers.
 #[derive(Debug, Clone)]
 pub struct SelectBuffers {
-    /// The bones of each instance that were recomputed this frame, a bit a bone of the skeleton, in
-    /// [`MeshBuffers::mask_words`] words an instance: what a gate writes. A bone below one that moved has moved too.
+    /// The bones of each instance that were recomputed this frame, a bit a slot of the skeleton's order, in
+    /// [`MeshBuffers::mask_words`] words an instance. Put [`Active::dirty`](crate::animation::compact::Active::dirty)
+    /// here where a gate decides. A bone below one that moved has moved too.
     pub moved: Buffer<u32>,
     /// The reductions with which instances were skinned last; none at first, so that all are skinned.
     pub skinned: Buffer<Reduction>,

@@ -1,0 +1,134 @@
+//! The promise of the `bounded` gate where it counts: at every vertex, on screen.
+
+use relievo::animation::sample::{RotationPath, Wrap};
+use relievo::animation::transform::Affine;
+use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Instance, Lens, Model, Order};
+use relievo::reference::animation::crowd::{Choice, Crowd};
+use relievo::reference::skinning::morph::morph;
+use relievo::reference::skinning::palette::palette_for;
+use relievo::reference::skinning::select::select;
+use relievo::reference::skinning::skin::skin;
+use relievo::skinning::clusters::Clusters;
+use relievo::skinning::mesh::reaches;
+use relievo::skinning::skin::Blend;
+use relievo::skinning::skin::Vertex;
+use relievo::skinning::weights::Reduction;
+
+use crate::shapes::model;
+
+/// Where instances stand in the camera's space, metres: near and far, on the view axis and well off it.
+const PLACES: [[f32; 3]; 5] =
+    [[0.0, -1.0, 6.0], [4.0, 0.0, 7.0], [-9.0, 2.0, 12.0], [0.5, -1.0, 40.0], [-30.0, -5.0, 60.0]];
+
+struct Stage {
+    model: Model,
+    set: ClipSet,
+    order: Order,
+    bounds: GateTable,
+    movers: GateTable,
+}
+
+impl Stage {
+    fn new() -> Self {
+        let model = model();
+        let clips: Vec<&Clip> = model.clips.iter().collect();
+        let set = ClipSet::new(&clips).expect("one skeleton");
+        let order = Order::new(&model.skeleton);
+        let reaches = reaches(model.skeleton.len(), &model.skins, &model.meshes);
+        let bounds = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+        let movers = GateTable::of_movers(&order, &set, &clips).expect("fits");
+        Self { bounds: bounds.expect("fits"), movers, set, order, model }
+    }
+
+    fn crowd<'a>(&'a self, table: &'a GateTable, instances: &[Instance]) -> Crowd<'a> {
+        Crowd::new(&self.order, &self.set, table, RotationPath::Slerp, instances.to_vec())
+    }
+
+    fn vertices(&self, models: &[Affine]) -> Vec<Vertex> {
+        let mesh = &self.model.meshes[0];
+        let palette = palette_for(&self.model.skins[mesh.skin], models, Blend::Linear);
+        skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, Reduction::FULL)
+    }
+}
+
+/// The farthest that a vertex is from its place on screen, pixels.
+fn off_screen(lens: &Lens, place: [f32; 3], stale: &[Vertex], fresh: &[Vertex]) -> f64 {
+    let screen = |vertex: &Vertex| {
+        let [x, y, z] = std::array::from_fn(|i| f64::from(vertex.position[i]) + f64::from(place[i]));
+        [x / z, y / z].map(|at| at * f64::from(lens.focal_pixels))
+    };
+    let off = |(stale, fresh): (&Vertex, &Vertex)| {
+        let ([ax, ay], [bx, by]) = (screen(stale), screen(fresh));
+        (ax - bx).hypot(ay - by)
+    };
+    stale.iter().zip(fresh).map(off).fold(0.0, f64::max)
+}
+
+/// Pixels from 0.25 to 8; loops, clamps, reverse play, changed clips, frames of 1 to 100 ms.
+#[test]
+fn no_vertex_is_further_off_than_the_pixels_allow() {
+    let stage = Stage::new();
+    let lens = Lens::new(1080, 1.0, 0.1);
+    let mut largest = 0.0_f64;
+    for (case, pixels) in [0.25_f32, 0.5, 1.0, 2.0, 4.0, 8.0].into_iter().enumerate() {
+        let play = |at: usize, clip: usize| {
+            let wrap = if at == 3 { Wrap::Clamp } else { Wrap::Loop };
+            Instance::new(clip as u32 % 3, wrap, 0.3 * at as f32, [1.0, -1.0, 0.5, 1.0, 1.75][at])
+        };
+        let instances: Vec<_> = (0..PLACES.len()).map(|at| play(at, at + case)).collect();
+        let mut lazy = stage.crowd(&stage.bounds, &instances);
+        let mut full = stage.crowd(&stage.movers, &instances);
+        for (lod, place) in lazy.lods.iter_mut().zip(PLACES) {
+            lod.allowed = stage.bounds.units(lens.allowed(place, stage.bounds.radius(), pixels));
+            assert!(lod.allowed > 0, "{place:?} is too near");
+        }
+        let mut elapsed = 0.0;
+        for number in 0..40_u32 {
+            elapsed += [0.001, 0.016, 0.033, 0.1, 0.007][number as usize % 5];
+            if number == 20 {
+                (lazy.instances[1], full.instances[1]) = (play(1, 2), play(1, 2));
+            }
+            let frame = Frame { ticks: number, frame_ticks: 1, frame: number };
+            lazy.advance(Choice::Gate(Gate::Bounded), &frame, elapsed);
+            full.advance(Choice::Gate(Gate::Off), &frame, elapsed);
+            // Every instance once in some frames: skinning takes longest.
+            let at = number as usize % PLACES.len();
+            let own = at * stage.model.skeleton.len()..(at + 1) * stage.model.skeleton.len();
+            let vertices = |models: &[Affine]| stage.vertices(&models[own.clone()]);
+            let off = off_screen(&lens, PLACES[at], &vertices(&lazy.models), &vertices(&full.models));
+            assert!(off <= f64::from(pixels) + 0.01, "{pixels} allowed, {off} found, at {:?}", PLACES[at]);
+            largest = largest.max(off / f64::from(pixels));
+        }
+    }
+    assert!(largest > 0.3, "far too careful: {largest} of what is allowed");
+}
+
+/// What a gate leaves alone need not be skinned again: its dirty bits choose the clusters, and the vertices of the
+/// others stay where they are.
+#[test]
+fn clusters_without_a_dirty_bone_stay() {
+    let stage = Stage::new();
+    let mesh = &stage.model.meshes[0];
+    let clusters = Clusters::new(mesh, &stage.model.skins, &stage.model.skeleton).expect("fits");
+    let mut crowd = stage.crowd(&stage.bounds, &[Instance::new(2, Wrap::Loop, 0.0, 1.0)]);
+    crowd.lods[0].allowed = stage.bounds.units(0.2);
+    let mut before: Option<Vec<Vertex>> = None;
+    let mut skipped = 0;
+    for number in 0..60_u32 {
+        let frame = Frame { ticks: number, frame_ticks: 1, frame: number };
+        let work = crowd.advance(Choice::Gate(Gate::Bounded), &frame, number as f32 / 60.0);
+        let now = stage.vertices(&crowd.models);
+        let full = [Reduction::FULL];
+        let chosen = select(&clusters, &work.dirty, &full, &full);
+        if let Some(before) = before.replace(now.clone()) {
+            for (cluster, vertices) in clusters.order.chunks(64).enumerate() {
+                if !chosen.contains(&(cluster as u32)) {
+                    skipped += 1;
+                    let same = |at: &u32| before[*at as usize] == now[*at as usize];
+                    assert!(vertices.iter().all(same), "cluster {cluster} of frame {number} moved");
+                }
+            }
+        }
+    }
+    assert!(skipped > 20 * clusters.len(), "{skipped} of {}", 59 * clusters.len());
+}
