@@ -3,6 +3,7 @@
 #[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod clusters;
+pub mod collapse;
 pub mod export;
 pub mod lod;
 pub mod mesh;

@@ -284,7 +284,7 @@ fn every_value_may_be_wrong() {
     }
 }
 
-fn collect(value: &Value, pointer: String, pointers: &mut Vec<String>) {
+pub fn collect(value: &Value, pointer: String, pointers: &mut Vec<String>) {
     match value {
         Value::Object(object) => {
             object.iter().for_each(|(key, value)| collect(value, format!("{pointer}/{key}"), pointers));

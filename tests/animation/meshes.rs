@@ -200,3 +200,87 @@ fn targets_are_sparse_and_animated() {
     skinned.0.json["nodes"][2]["weights"] = json!([1.0]);
     skinned.refused("nodes[2].weights.len", "must be 2");
 }
+
+/// Targets, their keys, indices, texture coordinates, tangents.
+fn full() -> Scene {
+    let mut skinned = Skinned::new();
+    let delta = skinned.0.floats("VEC3", &[0.5; 12]);
+    skinned.primitive()["targets"] = json!([{"POSITION": delta, "NORMAL": delta}]);
+    let (tangents, uv) =
+        (skinned.0.floats("VEC4", &[0.6, 0.8, 0.0, 1.0].repeat(4)), skinned.0.floats("VEC2", &[0.5; 8]));
+    skinned.attribute("TANGENT", tangents);
+    skinned.attribute("TEXCOORD_0", uv);
+    let indices = skinned.0.integers("SCALAR", 2, &[0, 1, 2, 3]);
+    skinned.primitive()["indices"] = json!(indices);
+    skinned.0.json["meshes"][0]["weights"] = json!([0.5]);
+    let (times, values) = (skinned.0.floats("SCALAR", &[0.0, 2.0]), skinned.0.floats("SCALAR", &[0.0, 1.0]));
+    skinned.0.animate(2, "weights", "LINEAR", times, values);
+    skinned.0
+}
+
+/// Whatever is read can be skinned, and stays finite.
+fn skin_all(model: &Model) {
+    use relievo::reference::animation::concat::concat;
+    use relievo::reference::skinning::{morph::morph, palette::palette_for, skin::skin};
+    use relievo::skinning::clusters::Clusters;
+    use relievo::skinning::{Blend, Reduction, reaches};
+    let models = concat(&model.skeleton, &model.skeleton.rest());
+    // Scales may drive places out of range; that is the pose's fault.
+    let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
+    assert_eq!(reaches(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
+    for mesh in &model.meshes {
+        assert_eq!(mesh.validate(&model.skins), Ok(()));
+        assert!(Clusters::new(mesh, &model.skins, model.skeleton.len()).is_ok());
+        let weights = mesh.weights_at(0, 0.5);
+        let large = |weights: &[f32]| weights.iter().any(|weight| weight.abs() > 1e6);
+        let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
+        let vertices = skin(&morph(mesh, &weights), &mesh.influences, &palette, Reduction::FULL);
+        let small = mesh.positions.as_flattened().iter().all(|x| x.abs() < 1e6)
+            && mesh
+                .targets
+                .iter()
+                .flat_map(|target| &target.deltas)
+                .all(|delta| [delta.position, delta.normal].as_flattened().iter().all(|x| x.abs() < 1e6))
+            && model.skins[mesh.skin].inverse_binds.as_flattened().iter().all(|x| x.abs() < 1e6);
+        if is_sane && small && !large(&weights) {
+            let finite = |vertex: &relievo::skinning::Vertex| {
+                vertex.position.iter().chain(&vertex.normal).all(|x| x.is_finite())
+            };
+            assert!(vertices.iter().all(finite));
+        }
+    }
+}
+
+#[test]
+fn nothing_panics() {
+    let mut read = 0;
+    let mut try_it = |bytes: &[u8]| {
+        if let Ok(model) = Model::from_gltf(bytes, None) {
+            read += 1;
+            skin_all(&model);
+        }
+    };
+    let glb = full().glb();
+    try_it(&glb);
+    for case in 0..10_000 {
+        let words = crate::sampling::noise(case ^ 0x3e54, 9);
+        let mut changed = glb.clone();
+        for pair in words[..2 * (1 + case as usize % 4)].chunks_exact(2) {
+            let at = ((pair[0] + 1.0) / 2.0 * (glb.len() - 1) as f32) as usize;
+            changed[at] = ((pair[1] + 1.0) * 128.0) as u8;
+        }
+        try_it(&changed);
+    }
+    let mut pointers = Vec::new();
+    crate::malformed::collect(&full().json, String::new(), &mut pointers);
+    for pointer in pointers {
+        for value in
+            [json!(null), json!(-1), json!(1), json!(3), json!(1e300), json!("x"), json!([]), json!({})]
+        {
+            let mut changed = full();
+            *changed.json.pointer_mut(&pointer).expect("collected") = value;
+            try_it(&changed.gltf());
+        }
+    }
+    assert!(read > 500, "only {read} of the documents were still right");
+}

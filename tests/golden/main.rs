@@ -8,6 +8,7 @@ mod cracks;
 mod curved;
 mod faults;
 mod scene;
+mod skinned;
 
 use harness::{Tolerance, check_golden, relievo};
 

@@ -5,7 +5,8 @@ use std::cell::OnceCell;
 use std::path::{Component, Path};
 
 use base64::Engine as _;
-use gltf_json::validation::{Error as Fault, Validate};
+use gltf_json::mesh::Semantic;
+use gltf_json::validation::{Checked, Error as Fault, Validate};
 use gltf_json::{Index, Root, buffer};
 use serde_json::Value;
 
@@ -48,6 +49,7 @@ impl<'a> Document<'a> {
             let field = if path == "." { "glTF".to_owned() } else { path };
             InputError::new(field, "unreadable", error.inner().to_string())
         })?;
+        positions_exist(&root)?;
         validate(&root)?;
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();
         Ok(Self { root, is_draco, binary, folder, buffers })
@@ -171,6 +173,22 @@ fn leave_out_channels_without_node(value: &mut Value) {
             channels.retain(has_node);
         }
     }
+}
+
+/// What gltf-json's validation takes for granted, and panics without.
+fn positions_exist(root: &Root) -> Result<(), InputError> {
+    let meshes = root.meshes.iter().enumerate();
+    for (mesh, at, primitive) in
+        meshes.flat_map(|(mesh, all)| all.primitives.iter().enumerate().map(move |(at, one)| (mesh, at, one)))
+    {
+        let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
+        if let Some(index) = positions.filter(|index| index.value() >= root.accessors.len()) {
+            let path = format!("meshes[{mesh}].primitives[{at}].attributes.POSITION");
+            let bound = format!("must be below {}, the number of accessors", root.accessors.len());
+            return Err(InputError::new(path, index.value(), bound));
+        }
+    }
+    Ok(())
 }
 
 /// The first thing that gltf-json finds wrong. Extensions that materials or meshes need do not matter here.

@@ -150,10 +150,44 @@ impl SkinActiveJob {
     }
 }
 
+/// Records a copy of vertices as they are, before the next skinning changes them: last frame's, for motion vectors.
+///
+/// # Errors
+/// [`InputError`] for buffers of different lengths.
+pub fn keep_last(
+    encoder: &mut wgpu::CommandEncoder,
+    skinned: &Buffer<Vertex>,
+    last: &Buffer<Vertex>,
+) -> Result<(), InputError> {
+    if skinned.len() != last.len() {
+        let bound = format!("must be {}, as there are vertices", skinned.len());
+        return Err(InputError::new("last.len", last.len(), bound));
+    }
+    encoder.copy_buffer_to_buffer(skinned.raw(), 0, last.raw(), 0, skinned.bytes());
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::Options;
     use crate::gpu::layout::layout_test;
+
+    #[test]
+    fn the_last_frame_is_kept() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let now: Vec<Vertex> =
+            (0..5).map(|x| Vertex { position: [x as f32; 3], ..Vertex::default() }).collect();
+        let skinned = Buffer::from_slice(&gpu, "skinned", &now).expect("uploaded");
+        let last = Buffer::from_slice(&gpu, "last", &[Vertex::default(); 5]).expect("uploaded");
+        let other = Buffer::new(&gpu, "other", 4).expect("allocated");
+        let mut kept = Ok(());
+        gpu.run("keep", |encoder| kept = keep_last(encoder, &skinned, &last)).expect("run");
+        assert_eq!(kept, Ok(()));
+        assert_eq!(last.read_blocking(&gpu).expect("read"), now);
+        let refused = keep_last(&mut gpu.encoder("refused"), &skinned, &other).expect_err("refused");
+        assert_eq!((&*refused.field, &*refused.value), ("last.len", "4"));
+    }
 
     layout_test!(skin_params_layout: SkinParams = SKINNING_SKIN "SkinParams");
 }

@@ -1,0 +1,227 @@
+//! Skinned meshes: a bent and a twisted limb at three fades, linear beside dual quaternions; a crowd near and far.
+
+use glam::{Mat4, Vec3, camera};
+use image::{Rgba, RgbaImage};
+use relievo::animation::sample::RotationPath;
+use relievo::animation::transform::Affine;
+use relievo::animation::{Bone, Model, Skeleton, Skin, Transform, creature};
+use relievo::gpu::{Buffer, Gpu};
+use relievo::reference::animation::concat::concat;
+use relievo::reference::animation::sample::sample;
+use relievo::render::target::LINEAR_FORMAT;
+use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
+use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use relievo::skinning::lod::{LodPass, LodView, ball, standing};
+use relievo::skinning::palette::PalettePass;
+use relievo::skinning::picture::Light;
+use relievo::skinning::select::{SelectBuffers, SelectPass};
+use relievo::skinning::skin::{SkinPass, Vertex};
+use relievo::skinning::{Blend, Influence, Influences, Mesh, Reduction};
+use relievo::surface::linear_image::LinearImage;
+use relievo::surface::mips::Mips;
+
+use crate::harness::{Tolerance, check_golden, gpu};
+
+const SKY: [f64; 3] = [0.02, 0.025, 0.03];
+
+/// Squares of two colours.
+fn checks(gpu: &Gpu) -> ColorTexture {
+    let square = |x: u32, y: u32| {
+        if (x / 16 + y / 16).is_multiple_of(2) { [214, 150, 104, 255] } else { [150, 82, 52, 255] }
+    };
+    let image = RgbaImage::from_fn(64, 64, |x, y| Rgba(square(x, y)));
+    ColorTexture::linear(gpu, &Mips::of_color(image), true).expect("uploaded")
+}
+
+/// A limb along X around two bones that share the vertices in its middle.
+fn limb() -> Model {
+    const RINGS: usize = 41;
+    const SIDES: usize = 24;
+    let bone = |name: &str, parent| Bone { name: name.to_owned(), parent, rest: Transform::IDENTITY };
+    let skeleton = Skeleton::of_joints(vec![bone("upper", None), bone("lower", Some(0))]).expect("valid");
+    let identity = Mat4::IDENTITY.to_cols_array();
+    let skin = Skin { name: "limb".to_owned(), bones: vec![0, 1], inverse_binds: vec![identity; 2] };
+    let corner = |ring: usize, side: usize| (ring * (SIDES + 1) + side) as u32;
+    let (mut positions, mut normals, mut uv, mut follows) = (vec![], vec![], vec![], vec![]);
+    for (ring, side) in (0..RINGS).flat_map(|ring| (0..=SIDES).map(move |side| (ring, side))) {
+        let along = 2.0 * ring as f32 / (RINGS - 1) as f32 - 1.0;
+        let angle = std::f32::consts::TAU * side as f32 / SIDES as f32;
+        let around = Vec3::new(0.0, libm::cosf(angle), libm::sinf(angle));
+        positions.push((around * 0.28 + Vec3::X * along).to_array());
+        normals.push(around.to_array());
+        uv.push([along, side as f32 / SIDES as f32]);
+        let share = (along / 0.8 + 0.5).clamp(0.0, 1.0);
+        let share = share * share * (3.0 - 2.0 * share);
+        follows.push(vec![Influence { bone: 0, weight: 1.0 - share }, Influence { bone: 1, weight: share }]);
+    }
+    let quad = |ring: usize, side: usize| {
+        let [a, b, c, d] =
+            [corner(ring, side), corner(ring, side + 1), corner(ring + 1, side + 1), corner(ring + 1, side)];
+        [a, b, d, b, c, d]
+    };
+    let rings = (0..RINGS - 1).flat_map(|ring| (0..SIDES).flat_map(move |side| quad(ring, side)));
+    let mesh = Mesh {
+        name: "limb".to_owned(),
+        skin: 0,
+        tangents: vec![[1.0, 0.0, 0.0, 1.0]; positions.len()],
+        indices: rings.collect(),
+        influences: Influences::new("limb", 2, follows).expect("valid"),
+        positions,
+        normals,
+        uv,
+        targets: vec![],
+        weights: vec![],
+        weight_keys: vec![],
+    };
+    Model { skeleton, skins: vec![skin], clips: vec![], meshes: vec![mesh] }
+}
+
+fn rows(matrix: Mat4) -> Affine {
+    let [x, y, z, _] = matrix.transpose().to_cols_array_2d();
+    [x, y, z]
+}
+
+fn draw(gpu: &Gpu, scene: &mut SkinnedScene, clip_from_world: Mat4, size: [u32; 2]) -> RgbaImage {
+    let size = size.map(|edge| 2 * edge);
+    let target = Target::linear(gpu, size).expect("allocated");
+    scene.set_camera(gpu, clip_from_world).expect("set");
+    target.draw(gpu, SKY, |pass| scene.draw(pass)).expect("drawn");
+    LinearImage { size, pixels: target.read_linear(gpu).expect("read") }.reduced(2).encoded()
+}
+
+/// Six limbs in one picture: from left to right λ = 0, ½ and 1; above linear, below dual quaternions.
+fn limbs(lower: Mat4) -> RgbaImage {
+    let (gpu, model) = (gpu(), limb());
+    let (mesh, _) = MeshBuffers::new(&gpu, &model, &model.meshes[0]).expect("uploaded");
+    let size = [192, 112];
+    let mut all = RgbaImage::new(size[0], 2 * size[1] / 2);
+    for (row, blend) in (0..).zip([Blend::Linear, Blend::DualQuaternion]) {
+        let crowd = SkinnedCrowd::new(&gpu, &mesh, 3, blend).expect("allocated");
+        let fades = [0.0, 0.5, 1.0].map(|fade| Reduction::fade(fade).expect("in range"));
+        crowd.reductions.write(&gpu, &fades).expect("written");
+        let pose = [rows(Mat4::IDENTITY), rows(lower)];
+        let models = Buffer::from_slice(&gpu, "models", &pose.repeat(3)).expect("uploaded");
+        let skinned: Buffer<Vertex> =
+            Buffer::new(&gpu, "skinned", 3 * mesh.vertices.len()).expect("allocated");
+        let palette = PalettePass::new(&gpu).expect("compiled").prepare(&gpu, &mesh, &models, &crowd);
+        let skin = SkinPass::new(&gpu, blend).expect("compiled").prepare(&gpu, &mesh, &crowd, 0..3, &skinned);
+        let (palette, skin) = (palette.expect("prepared"), skin.expect("prepared"));
+        gpu.run("skin", |encoder| [&palette, &skin].iter().for_each(|job| job.record(encoder))).expect("run");
+        let places = [-2.2, 0.0, 2.2].map(|x| standing(Vec3::X * x, 0.0, 1.0));
+        let instances = SkinnedInstances {
+            mesh: &mesh,
+            skinned: &skinned,
+            placements: &Buffer::from_slice(&gpu, "placements", &places).expect("uploaded"),
+            drawn: &Buffer::from_slice(&gpu, "drawn", &[0, 1, 2]).expect("uploaded"),
+            albedo: &checks(&gpu),
+            light: Light::default(),
+        };
+        let mut scene = SkinnedRenderer::new(&gpu, LINEAR_FORMAT)
+            .expect("compiled")
+            .scene(&gpu, &instances)
+            .expect("bound");
+        let view =
+            camera::rh::view::look_at_mat4(Vec3::new(0.0, 1.2, 6.0), Vec3::new(0.0, 0.1, 0.0), Vec3::Y);
+        let aspect = 2.0 * size[0] as f32 / size[1] as f32;
+        let clip = camera::rh::proj::directx::perspective(0.33, aspect, 1.0, 20.0) * view;
+        let half = draw(&gpu, &mut scene, clip, [size[0], size[1] / 2]);
+        image::imageops::replace(&mut all, &half, 0, i64::from(row * size[1] / 2));
+    }
+    all
+}
+
+fn check(name: &str, actual: &RgbaImage) {
+    if let Err(error) = check_golden(name, actual, Tolerance::IMAGE) {
+        panic!("{error}");
+    }
+}
+
+#[test]
+fn a_bent_limb() {
+    check("skin_bend", &limbs(Mat4::from_axis_angle(Vec3::Z, 1.5)));
+}
+
+#[test]
+fn a_twisted_limb() {
+    check("skin_twist", &limbs(Mat4::from_axis_angle(Vec3::X, 2.8)));
+}
+
+/// Creatures in a row away from the eye, and some behind it: what is seen, how far it fades, which clusters are skinned,
+/// and the draw are all decided on the device.
+#[test]
+fn a_crowd_near_and_far() {
+    let (gpu, model) = (gpu(), creature().expect("valid"));
+    let (mesh, clusters) = MeshBuffers::new(&gpu, &model, &model.meshes[0]).expect("uploaded");
+    let walk = model.clip("walk").expect("there");
+    let place = |index: usize| {
+        let (row, column) = (index / 6, index % 6);
+        // The first row is behind the eye.
+        let z = [9.0, 3.0, 0.0, -5.0, -12.0, -22.0][row];
+        let at = Vec3::new(column as f32 * 1.5 - 3.75 + 0.3 * row as f32, 0.0, z);
+        standing(at, 0.5 * index as f32, 1.0)
+    };
+    let places: Vec<Affine> = (0..36).map(place).collect();
+    let pose = |index: usize| {
+        let time = (index as f32 * 0.618).fract() * walk.duration();
+        concat(&model.skeleton, &sample(walk, time, RotationPath::Slerp))
+    };
+    let models: Vec<Affine> = (0..36).flat_map(pose).collect();
+    let models = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
+    let crowd = SkinnedCrowd::new(&gpu, &mesh, 36, Blend::Linear).expect("allocated");
+    let skinned: Buffer<Vertex> = Buffer::new(&gpu, "skinned", 36 * mesh.vertices.len()).expect("allocated");
+    let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
+    let drawn = Buffer::new(&gpu, "drawn", 36).expect("allocated");
+    let instances = SkinnedInstances {
+        mesh: &mesh,
+        skinned: &skinned,
+        placements: &placements,
+        drawn: &drawn,
+        albedo: &checks(&gpu),
+        light: Light::default(),
+    };
+    let renderer = SkinnedRenderer::new(&gpu, LINEAR_FORMAT).expect("compiled");
+    let mut scene = renderer.scene(&gpu, &instances).expect("bound");
+    let size = [176, 112];
+    let eye = Vec3::new(-1.0, 2.6, 7.0);
+    let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.4, -4.0), Vec3::Y);
+    let clip_from_world = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0) * look;
+    let (center, radius) = ball(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
+    let view = LodView { clip_from_world, eye, near: 5.0, far: 30.0, steps: 64, center, radius };
+    let lod = LodPass::new(&gpu)
+        .expect("compiled")
+        .prepare(&gpu, &view, &placements, &crowd.reductions, &drawn, &scene.arguments)
+        .expect("prepared");
+    let palette =
+        PalettePass::new(&gpu).expect("compiled").prepare(&gpu, &mesh, &models, &crowd).expect("prepared");
+    let bits = SelectBuffers::new(&gpu, &mesh, &crowd).expect("allocated");
+    let active = ActiveClusters::new(&gpu, &mesh, &crowd).expect("allocated");
+    let select = SelectPass::new(&gpu)
+        .expect("compiled")
+        .prepare(&gpu, &mesh, &crowd, &bits, &active)
+        .expect("prepared");
+    let skin = SkinPass::new(&gpu, Blend::Linear)
+        .expect("compiled")
+        .prepare_active(&gpu, &mesh, &crowd, &skinned, &active)
+        .expect("prepared");
+    let frame = || {
+        gpu.run("frame", |encoder| {
+            lod.record(encoder);
+            palette.record(encoder);
+            select.record(encoder);
+            skin.record(encoder);
+        })
+        .expect("run");
+        active.dispatched.read_blocking(&gpu).expect("read")[3] as usize
+    };
+    // Everything once; then, as nothing moves, nothing.
+    assert_eq!(frame(), 36 * clusters.len());
+    assert_eq!(frame(), 0);
+    // One bone of one instance: the clusters that follow it.
+    let mut moved = vec![0; 36 * mesh.mask_words];
+    moved[7 * mesh.mask_words] = 1 << 4;
+    bits.moved.write(&gpu, &moved).expect("written");
+    assert!((1..20).contains(&frame()));
+    let seen = scene.arguments.read_blocking(&gpu).expect("read")[1];
+    assert!((12..34).contains(&seen), "{seen} of 36");
+    check("skin_crowd", &draw(&gpu, &mut scene, clip_from_world, size));
+}
