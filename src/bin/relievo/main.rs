@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod bench;
+mod crowd;
 #[cfg(feature = "gpu")]
 mod demo;
 #[cfg(feature = "gpu")]
@@ -50,6 +51,7 @@ enum Command {
     Relief(Box<relief::Relief>),
     Pose(pose::Pose),
     Priorities(priorities::Priorities),
+    Crowd(Box<crowd::Crowd>),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -98,6 +100,7 @@ fn main() -> ExitCode {
         Command::Relief(command) => command.run(&context),
         Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),
+        Command::Crowd(command) => command.run(&context),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]
