@@ -14,7 +14,7 @@ use super::skeleton::Skeleton;
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub use pass::{ConcatJob, ConcatPass, Walk};
+pub use pass::{ConcatActiveJob, ConcatJob, ConcatPass, Walk};
 
 /// How far a component may lie from the twin's, on any device: times the bones of the longest chain, times the largest
 /// component (at least 1). A local matrix carries 10ε of its scale (ε = 2⁻²⁴, each operation to either neighbour 2ε), a

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod bench;
+mod crowd;
 #[cfg(feature = "gpu")]
 mod demo;
 #[cfg(feature = "gpu")]
@@ -52,6 +53,7 @@ enum Command {
     Pose(pose::Pose),
     Priorities(priorities::Priorities),
     Skin(skin::Skin),
+    Crowd(Box<crowd::Crowd>),
     #[cfg(feature = "gpu")]
     Verify(verify::Verify),
     #[cfg(feature = "gpu")]
@@ -101,6 +103,7 @@ fn main() -> ExitCode {
         Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),
         Command::Skin(command) => command.run(&context),
+        Command::Crowd(command) => command.run(&context),
         #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
         #[cfg(feature = "gpu")]

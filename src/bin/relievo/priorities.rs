@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
-use relievo::animation::{Model, priority};
+use relievo::animation::{Clip, Model, Skeleton, priority};
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -76,11 +76,7 @@ impl Priorities {
         let model = open(&self.model)?;
         let clip = find(&model, &self.model, &self.clip)?;
         let loops = matches!(self.wrap, WrapName::Loop);
-        let weights = match self.weights.as_deref() {
-            None => Weights::default(),
-            Some("analyze") => Weights::analyze(&model.skeleton, clip, loops)?,
-            Some(text) => six(text)?,
-        };
+        let weights = weights(self.weights.as_deref(), &model.skeleton, clip, loops)?;
         let user = vec![USER_DEFAULT; model.skeleton.len()];
         let found = priority::Priorities::new(&model.skeleton, clip, loops, &weights, &user)?;
         let mut keys = found.keys;
@@ -95,6 +91,20 @@ impl Priorities {
         say(format_args!("weights: {}", shown.join(", ")))?;
         say(table(&model, &keys))?;
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// What `--weights` asks for.
+pub fn weights(
+    text: Option<&str>,
+    skeleton: &Skeleton,
+    clip: &Clip,
+    loops: bool,
+) -> Result<Weights, InputError> {
+    match text {
+        None => Ok(Weights::default()),
+        Some("analyze") => Weights::analyze(skeleton, clip, loops),
+        Some(text) => six(text),
     }
 }
 

@@ -1,0 +1,152 @@
+//! `relievo crowd`
+
+#[cfg(feature = "gpu")]
+mod device;
+mod errors;
+mod gates;
+mod pareto;
+mod plan;
+mod play;
+mod report;
+mod stage;
+mod twin;
+mod verdict;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+use relievo::Error;
+
+use crate::Context;
+use crate::terrain::Backend;
+use gates::Mode;
+use plan::Plan;
+
+/// Plays a crowd under animation level of detail, and measures what it saves and what it costs: A's experiment
+/// (section 13), with the error that A left out.
+///
+/// Every instance plays the clip from a moment of its own. A gate decides in each frame which bones are interpolated;
+/// the others keep their last local transforms. The same crowd, evaluated in full, is played beside it. For each
+/// distance of the camera this writes how many bones were interpolated and concatenated, what that took, and how far
+/// points a bone's length from each bone, along its axes, lie from where full evaluation puts them.
+///
+/// Gates (--gate):
+///   off          every bone that the clip moves
+///   skip-period  A's rule: a bone skips one update each priority · Ω · --period seconds
+///   uniform      all bones of an instance, in a share Ω of the frames: what engines do
+///   random       a share Ω of the bones, by chance
+///   budget       at most --budget bones a frame, those that have missed most on screen
+///   bounded      bones that may show an error of more than --pixels: no point is ever further off
+///
+/// Ω is 1 up to the first distance of --range, 0 from the second on, between them it falls evenly; each instance has
+/// its own, by its own distance.
+///
+/// Units: --size says how many units long, wide or tall (whichever is most) the model at rest counts; --range and
+/// --distance are in these units, as A's 200 to 1700 are. The picture is 1080 pixels high with a field of view of 60
+/// degrees. The camera looks at the crowd's centre at half its height, --distance units before its nearest instance,
+/// so that all of it is in front: from the second distance of --range on, Ω is 0 for all.
+///
+/// DIR/report.json: "adapter", "driver" (null on the CPU), "backend", "timed_by" (timestamp: the device's clock; wall:
+/// the host's), "model", "clip", "gate" {"mode", "period", "budget", "pixels", "weights"}, "instances", "layout",
+/// "seed", "bones", "moving_bones" (those of an instance that the clip moves), "size", "metres_a_unit", "spacing",
+/// "range", "frames", "rate", "focal_pixels", and "distances", a list of
+///   "distance"; "mean_omega"
+///   "interpolated", "skipped": bones of instances, of all moving ones in all frames but the first, which is full
+///   "share": interpolated / moving; "concatenated": bones whose matrices were computed; "concatenated_share": of all
+///   "nanoseconds_per_bone" {"gate", "sample", "concat", "total"}: medians over frames, divided by all bones of the
+///     crowd; gate is the search for phases, the decision and the lists; on the CPU the total alone
+///   "full_nanoseconds_per_bone" {"sample", "concat", "total"}: the same crowd without a gate
+///   "error" {"rms_metres", "p99_metres", "max_metres", "rms_pixels", "p99_pixels", "max_pixels", "points", "unseen"}:
+///     over all points and frames; metres are the model's; points nearer than the near plane are unseen, and have no
+///     pixels
+///   "jump" {"max_metres", "max_pixels"}: the largest change of a point's error from one frame to the next
+/// and cost.png, interpolations.png, error.png: the same against distance.
+///
+/// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
+/// {"model", …, "points": [{"gate", "parameter", "cost", "share of …", the errors}], "verdicts"}, pareto_max.png,
+/// pareto_rms.png. "cost" is interpolated / moving. Every gate sweeps its parameter: Ω of uniform, random and
+/// skip-period, the share of the moving bones of budget, the pixels of bounded.
+#[derive(Args)]
+#[command(verbatim_doc_comment)]
+pub struct Crowd {
+    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    #[arg(long, value_name = "FILE|builtin")]
+    model: PathBuf,
+    /// The clip: its name, or its number, counted from 0.
+    #[arg(long, value_name = "NAME|INDEX")]
+    clip: String,
+    /// How many. Default: 100, with --pareto 25.
+    #[arg(long, value_name = "N")]
+    instances: Option<usize>,
+    /// Rows and columns that face the camera; or anywhere in the same square, turned any way.
+    #[arg(long, default_value = "grid")]
+    layout: Layout,
+    /// Another number, other places and moments.
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u32,
+    /// Who decides. Not with --pareto, which compares them all.
+    #[arg(long, value_name = "MODE", required_unless_present = "pareto", conflicts_with = "pareto")]
+    gate: Option<Mode>,
+    /// skip-period: seconds between two skipped updates at priority 1 and Ω = 1.
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_hyphen_values = true)]
+    period: f64,
+    /// budget: the most bones a frame, over the whole crowd.
+    #[arg(long, value_name = "N")]
+    budget: Option<u32>,
+    /// bounded: the error that may show.
+    #[arg(long, value_name = "EPS", default_value_t = 1.0, allow_hyphen_values = true)]
+    pixels: f32,
+    /// skip-period: weights of the priorities, as for `relievo priorities`.
+    #[arg(long, value_name = "W,W,W,W,W,W|analyze", allow_hyphen_values = true)]
+    weights: Option<String>,
+    /// Units between which detail falls from full to none.
+    #[arg(long, value_name = "MIN,MAX", default_value = "200,1700", allow_hyphen_values = true)]
+    range: String,
+    /// Units from the camera to the nearest instance. Default: seven, over --range.
+    #[arg(long, value_name = "D[,D…]", allow_hyphen_values = true)]
+    distance: Option<String>,
+    /// Units that the model's largest extent counts: 180 is a person in centimetres.
+    #[arg(long, value_name = "UNITS", default_value_t = 180.0, allow_hyphen_values = true)]
+    size: f32,
+    /// Between neighbours of a grid, in sizes of the model.
+    #[arg(long, value_name = "SIZES", default_value_t = 0.5, allow_hyphen_values = true)]
+    spacing: f32,
+    /// Frames that are measured, after a first one that is full.
+    #[arg(long, value_name = "F", default_value_t = 240)]
+    frames: u32,
+    /// Frames a second.
+    #[arg(long, value_name = "HZ", default_value_t = 60.0, allow_hyphen_values = true)]
+    rate: f64,
+    /// What computes; gpu reads the palettes back from the device.
+    #[arg(long, default_value_t, value_enum)]
+    backend: Backend,
+    /// Error against cost for every gate, on the CPU.
+    #[arg(long)]
+    pareto: bool,
+    /// --pareto: pixels that the model's largest extent takes.
+    #[arg(long, value_name = "PIXELS", default_value_t = 100.0, allow_hyphen_values = true)]
+    tall: f32,
+    /// The folder.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Layout {
+    Grid,
+    Random,
+}
+
+impl Crowd {
+    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+        let plan = Plan::new(self)?;
+        if self.pareto {
+            pareto::run(&plan, &self.out)?;
+        } else {
+            report::run(&plan, context, &self.out)?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

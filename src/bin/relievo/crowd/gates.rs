@@ -1,0 +1,89 @@
+//! Gates by name, with their tables.
+
+use clap::ValueEnum;
+use relievo::InputError;
+use relievo::animation::priority::{self, USER_DEFAULT, Weights};
+use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Order, RotationPath, Skeleton};
+use relievo::reference::animation::crowd::Choice;
+use serde::Serialize;
+
+/// Ticks a second.
+pub const TICKS: u32 = 1 << 16;
+
+/// How rotations are sampled.
+pub const PATH: RotationPath = RotationPath::Slerp;
+
+/// The gates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    Off,
+    SkipPeriod,
+    Uniform,
+    Random,
+    Budget,
+    Bounded,
+}
+
+impl Mode {
+    /// The name on command lines and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::SkipPeriod => "skip-period",
+            Self::Uniform => "uniform",
+            Self::Random => "random",
+            Self::Budget => "budget",
+            Self::Bounded => "bounded",
+        }
+    }
+
+    /// The gate itself; `period` in seconds, `budget` in bones.
+    pub fn choice(self, period: f64, budget: u32) -> Choice {
+        Choice::Gate(match self {
+            Self::Budget => return Choice::Budget(budget),
+            Self::Off => Gate::Off,
+            Self::SkipPeriod => Gate::SkipPeriod { period: (period * f64::from(TICKS)).round() as u32 },
+            Self::Uniform => Gate::Uniform,
+            Self::Random => Gate::Random,
+            Self::Bounded => Gate::Bounded,
+        })
+    }
+}
+
+/// What gates are made from.
+pub struct Source<'a> {
+    pub skeleton: &'a Skeleton,
+    pub clip: &'a Clip,
+    pub order: &'a Order,
+    pub set: &'a ClipSet,
+    /// For each bone, how far points that follow it lie from its origin.
+    pub reaches: &'a [f32],
+    pub weights: &'a Weights,
+}
+
+impl Source<'_> {
+    /// What a gate decides by.
+    pub fn table(&self, mode: Mode) -> Result<GateTable, InputError> {
+        let Self { skeleton, clip, order, set, reaches, weights } = self;
+        let clips = [*clip];
+        match mode {
+            Mode::Off | Mode::Uniform | Mode::Random => GateTable::of_movers(order, set, &clips),
+            Mode::SkipPeriod => {
+                let user = vec![USER_DEFAULT; skeleton.len()];
+                let priorities = priority::Priorities::new(skeleton, clip, true, weights, &user)?;
+                GateTable::of_priorities(order, set, &clips, &[priorities])
+            }
+            Mode::Budget => GateTable::of_expectations(skeleton, set, &clips, reaches, PATH),
+            Mode::Bounded => GateTable::of_bounds(skeleton, set, &clips, reaches, PATH),
+        }
+    }
+}
+
+/// When a frame is, at a rate; and its seconds.
+pub fn frame(number: u32, rate: f64) -> (Frame, f32) {
+    let seconds = |number: u32| f64::from(number) / rate;
+    let ticks = |number: u32| (seconds(number) * f64::from(TICKS)).round() as u64 as u32;
+    let frame_ticks = ticks(number).wrapping_sub(number.checked_sub(1).map_or(0, ticks));
+    (Frame { ticks: ticks(number), frame_ticks, frame: number }, seconds(number) as f32)
+}

@@ -1,0 +1,126 @@
+//! Playing a crowd: what a frame does and takes, on the device or the CPU.
+
+use relievo::Error;
+use relievo::animation::Affine;
+use serde::Serialize;
+
+use super::errors::{Errors, Jump, Meter};
+use super::gates::Mode;
+use super::plan::Plan;
+use super::stage::{Scene, Stage};
+
+/// Frames of a run that are timed.
+const TIMED: u32 = 40;
+
+/// What a frame did.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Played {
+    /// Bones that were sampled.
+    pub interpolated: usize,
+    /// Bones whose matrices were computed.
+    pub concatenated: usize,
+    /// What it took, where that was asked for.
+    pub times: Option<Times>,
+}
+
+/// Nanoseconds of a frame.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Times {
+    /// With the gate.
+    pub gated: Stages,
+    /// Without.
+    pub full: Stages,
+}
+
+/// Nanoseconds by stage; on the CPU the total alone.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Stages {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gate: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub concat: Option<f64>,
+    pub total: f64,
+}
+
+/// A crowd under a gate, and the same in full.
+pub trait Play {
+    /// Brings both to a frame.
+    fn play(&mut self, number: u32, is_timed: bool) -> Result<Played, Error>;
+    /// The gated crowd's palettes.
+    fn stale(&self) -> &[Affine];
+    /// The full crowd's.
+    fn fresh(&self) -> &[Affine];
+}
+
+/// What a run found.
+pub struct Found {
+    pub interpolated: u64,
+    pub concatenated: u64,
+    pub errors: Errors,
+    pub jump: Jump,
+    /// Medians.
+    pub gated: Stages,
+    pub full: Stages,
+}
+
+/// Plays all frames, and measures all but the first. `step` is called after each.
+pub fn run(
+    play: &mut impl Play,
+    stage: &Stage<'_>,
+    scene: &Scene,
+    is_timed: bool,
+    step: impl Fn(),
+) -> Result<Found, Error> {
+    let mut meter = Meter::new(stage, scene);
+    let (mut interpolated, mut concatenated, mut times) = (0, 0, Vec::new());
+    let frames = stage.plan.frames;
+    for number in 0..=frames {
+        let is_timed = is_timed && number > 0 && number % frames.div_ceil(TIMED) == 0;
+        let played = play.play(number, is_timed)?;
+        if number > 0 {
+            interpolated += played.interpolated as u64;
+            concatenated += played.concatenated as u64;
+            times.extend(played.times);
+            meter.add(play.stale(), play.fresh());
+        }
+        step();
+    }
+    let (errors, jump) = meter.finish();
+    let [gated, full] = [|times: &Times| times.gated, |times: &Times| times.full]
+        .map(|of| medians(&times.iter().map(of).collect::<Vec<_>>()));
+    Ok(Found { interpolated, concatenated, errors, jump, gated, full })
+}
+
+fn medians(times: &[Stages]) -> Stages {
+    let median = |of: &dyn Fn(&Stages) -> Option<f64>| {
+        let mut all: Vec<f64> = times.iter().filter_map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied()
+    };
+    Stages {
+        gate: median(&|times| times.gate),
+        sample: median(&|times| times.sample),
+        concat: median(&|times| times.concat),
+        total: median(&|times| Some(times.total)).unwrap_or(0.0),
+    }
+}
+
+impl Stages {
+    /// Divided by so many bones.
+    pub fn a_bone(&self, bones: usize) -> Self {
+        let each = |time: Option<f64>| time.map(|time| time / bones as f64);
+        Self {
+            gate: each(self.gate),
+            sample: each(self.sample),
+            concat: each(self.concat),
+            total: self.total / bones as f64,
+        }
+    }
+}
+
+/// The plan's gate, and the most bones that it may sample.
+pub fn gate_of(plan: &Plan) -> (Mode, u32) {
+    (plan.gate.unwrap_or(Mode::Off), plan.budget.unwrap_or(0))
+}

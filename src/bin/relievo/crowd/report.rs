@@ -1,0 +1,301 @@
+//! A crowd at several distances: report, table and plots.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use relievo::terrain::export::write_bytes;
+use relievo::{Error, InputError};
+use serde::Serialize;
+
+use super::errors::{Errors, Jump};
+use super::gates::Mode;
+use super::plan::Plan;
+use super::play::{Found, Stages, gate_of, run as play};
+use super::stage::{Stage, mean_omega, moving_bones};
+use super::twin::Twins;
+use super::{Layout, pareto};
+use crate::Context;
+use crate::output::{Staged, json, say};
+use crate::plot::{Chart, Series, grid};
+use crate::progress::bar;
+use crate::terrain::{Backend, save};
+
+/// Pixels of a plot.
+const SIZE: (u32, u32) = (800, 500);
+
+/// The gate and its parameters.
+#[derive(Serialize)]
+struct GateReport {
+    mode: Mode,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    period: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weights: Option<[f64; 6]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    budget: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pixels: Option<f32>,
+}
+
+impl GateReport {
+    fn new(plan: &Plan) -> Self {
+        let (mode, _) = gate_of(plan);
+        let is_periodic = mode == Mode::SkipPeriod;
+        Self {
+            mode,
+            period: is_periodic.then_some(plan.period),
+            weights: is_periodic.then_some(plan.weights.0),
+            budget: plan.budget.filter(|_| mode == Mode::Budget),
+            pixels: (mode == Mode::Bounded).then_some(plan.pixels),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    adapter: Option<String>,
+    driver: Option<String>,
+    backend: Backend,
+    timed_by: &'static str,
+    model: &'a str,
+    clip: &'a str,
+    gate: GateReport,
+    instances: usize,
+    layout: Layout,
+    seed: u32,
+    bones: usize,
+    moving_bones: usize,
+    size: f32,
+    metres_a_unit: f32,
+    spacing: f32,
+    range: [f32; 2],
+    frames: u32,
+    rate: f64,
+    focal_pixels: f32,
+    distances: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    distance: f32,
+    mean_omega: f64,
+    interpolated: u64,
+    skipped: u64,
+    share: f64,
+    concatenated: u64,
+    concatenated_share: f64,
+    nanoseconds_per_bone: Stages,
+    full_nanoseconds_per_bone: Stages,
+    error: Errors,
+    jump: Jump,
+}
+
+/// What plays.
+enum On {
+    #[cfg(feature = "gpu")]
+    Device(relievo::gpu::Gpu),
+    Cpu,
+}
+
+impl On {
+    #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
+    fn new(plan: &Plan, context: &Context) -> Result<Self, Error> {
+        Ok(match plan.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu => Self::Device(context.gpu()?),
+            Backend::Cpu => Self::Cpu,
+        })
+    }
+
+    fn timed_by(&self) -> Result<&'static str, Error> {
+        Ok(match self {
+            #[cfg(feature = "gpu")]
+            Self::Device(gpu) => match super::device::Device::timed_by(gpu)? {
+                relievo::gpu::TimedBy::Timestamp => "timestamp",
+                relievo::gpu::TimedBy::Wall => "wall",
+            },
+            Self::Cpu => "wall",
+        })
+    }
+
+    /// Adapter and driver.
+    fn names(&self) -> [Option<String>; 2] {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Device(gpu) => [&gpu.adapter().name, &gpu.adapter().driver].map(|name| Some(name.clone())),
+            Self::Cpu => [None, None],
+        }
+    }
+}
+
+pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
+    let mut staged = Staged::new(out)?;
+    let report = measured(plan, context)?;
+    write_bytes(&staged.path("report.json"), &json(&report)?)?;
+    for (name, chart) in charts(&report) {
+        save(&staged.path(name), &picture(chart)?)?;
+    }
+    staged.remove_stale(|name| pareto::FILES.contains(&name));
+    staged.publish()?;
+    say(table(&report).trim_end())
+}
+
+fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> {
+    let stage = Stage::new(plan)?;
+    let on = On::new(plan, context)?;
+    let (mode, budget) = gate_of(plan);
+    let (table, movers) = (stage.table(mode)?, stage.table(Mode::Off)?);
+    let choice = mode.choice(plan.period, budget);
+    let progress = bar(plan.distances.len() as u64 * u64::from(plan.frames + 1), mode.name());
+    let mut rows = Vec::with_capacity(plan.distances.len());
+    for distance in &plan.distances {
+        let scene = stage.scene(*distance);
+        let lods = stage.lods(&scene, &table, plan.pixels);
+        let omega = mean_omega(&lods);
+        let step = || progress.inc(1);
+        let found = match &on {
+            #[cfg(feature = "gpu")]
+            On::Device(gpu) => {
+                let mut device = super::device::Device::new(gpu, &stage, &table, choice, &lods)?;
+                play(&mut device, &stage, &scene, true, step)?
+            }
+            On::Cpu => {
+                let mut twins = Twins::new(&stage, &table, &movers, choice, lods);
+                play(&mut twins, &stage, &scene, true, step)?
+            }
+        };
+        rows.push(row(&stage, *distance, omega, moving_bones(&movers), &found));
+    }
+    progress.finish_and_clear();
+    let [adapter, driver] = on.names();
+    Ok(Report {
+        adapter,
+        driver,
+        backend: plan.backend,
+        timed_by: on.timed_by()?,
+        model: &plan.name,
+        clip: plan.clip.name(),
+        gate: GateReport::new(plan),
+        instances: plan.instances,
+        layout: plan.layout,
+        seed: plan.seed,
+        bones: stage.set.bones(),
+        moving_bones: moving_bones(&movers),
+        size: plan.size,
+        metres_a_unit: stage.metres_a_unit,
+        spacing: plan.spacing,
+        range: [plan.range.min, plan.range.max],
+        frames: plan.frames,
+        rate: plan.rate,
+        focal_pixels: stage.lens.focal_pixels,
+        distances: rows,
+    })
+}
+
+fn row(stage: &Stage<'_>, distance: f32, mean_omega: f64, moving_bones: usize, found: &Found) -> Row {
+    let frames = u64::from(stage.plan.frames);
+    let moving = (stage.instances.len() * moving_bones) as u64 * frames;
+    let pairs = stage.pairs();
+    Row {
+        distance,
+        mean_omega,
+        interpolated: found.interpolated,
+        skipped: moving.saturating_sub(found.interpolated),
+        share: found.interpolated as f64 / moving.max(1) as f64,
+        concatenated: found.concatenated,
+        concatenated_share: found.concatenated as f64 / (pairs as u64 * frames) as f64,
+        nanoseconds_per_bone: found.gated.a_bone(pairs),
+        full_nanoseconds_per_bone: found.full.a_bone(pairs),
+        error: found.errors,
+        jump: found.jump,
+    }
+}
+
+fn table(report: &Report<'_>) -> String {
+    let mut text = format!(
+        "{} × {} bones, {} of them move in {:?}; {}, {}; {} frames at {} Hz; times by {}, of all bones.\n\n\
+         | distance | Ω | interpolated | concatenated | gate + sample + concat ns/bone | full | error rms, p99, max \
+         px | max m | jump px |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        report.instances,
+        report.bones,
+        report.moving_bones,
+        report.clip,
+        report.gate.mode.name(),
+        report.adapter.as_deref().unwrap_or("CPU"),
+        report.frames,
+        report.rate,
+        report.timed_by,
+    );
+    for row in &report.distances {
+        let times = &row.nanoseconds_per_bone;
+        let parts = match (times.gate, times.sample, times.concat) {
+            (Some(gate), Some(sample), Some(concat)) => {
+                format!("{gate:.2} + {sample:.2} + {concat:.2} = {:.2}", times.total)
+            }
+            _ => format!("{:.2}", times.total),
+        };
+        let Errors { rms_pixels, p99_pixels, max_pixels, max_metres, .. } = row.error;
+        writeln!(
+            text,
+            "| {} | {:.3} | {:.1} % | {:.1} % | {parts} | {:.2} | {rms_pixels:.3}, {p99_pixels:.3}, {max_pixels:.3} \
+             | {max_metres:.4} | {:.3} |",
+            row.distance,
+            row.mean_omega,
+            100.0 * row.share,
+            100.0 * row.concatenated_share,
+            row.full_nanoseconds_per_bone.total,
+            row.jump.max_pixels,
+        )
+        .expect("a string");
+    }
+    text
+}
+
+/// File names and what they show.
+fn charts(report: &Report<'_>) -> [(&'static str, Chart); 3] {
+    let series = |name: &str, of: &dyn Fn(&Row) -> Option<f64>| Series {
+        name: name.to_owned(),
+        points: (report.distances.iter())
+            .filter_map(|row| Some((f64::from(row.distance), of(row)?)))
+            .collect(),
+        labels: Vec::new(),
+    };
+    let chart = |title: &str, y_label: &str, log_y: bool, series: Vec<Series>| Chart {
+        title: format!("{title}, {} × {:?}, {}", report.instances, report.clip, report.gate.mode.name()),
+        x_label: "distance in units".to_owned(),
+        y_label: y_label.to_owned(),
+        log_x: false,
+        log_y,
+        series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
+    };
+    let cost = vec![
+        series("without a gate", &|row| Some(row.full_nanoseconds_per_bone.total)),
+        series("with the gate", &|row| Some(row.nanoseconds_per_bone.total)),
+        series("gate", &|row| row.nanoseconds_per_bone.gate),
+        series("sample", &|row| row.nanoseconds_per_bone.sample),
+        series("concat", &|row| row.nanoseconds_per_bone.concat),
+    ];
+    let share = vec![
+        series("interpolated, of moving bones", &|row| Some(row.share)),
+        series("concatenated, of all bones", &|row| Some(row.concatenated_share)),
+        series("mean Ω", &|row| Some(row.mean_omega)),
+    ];
+    let error = vec![
+        series("largest", &|row| Some(row.error.max_pixels)),
+        series("99 of 100 below", &|row| Some(row.error.p99_pixels)),
+        series("rms", &|row| Some(row.error.rms_pixels)),
+    ];
+    [
+        ("cost.png", chart("Cost", "nanoseconds a bone", false, cost)),
+        ("interpolations.png", chart("Work", "share", false, share)),
+        ("error.png", chart("Error", "pixels", true, error)),
+    ]
+}
+
+/// A chart by itself.
+pub fn picture(chart: Chart) -> Result<image::RgbaImage, InputError> {
+    Ok(image::DynamicImage::ImageRgb8(grid("", &[chart], 1, SIZE)?).into_rgba8())
+}
+
+/// Files of this command without `--pareto`.
+pub const FILES: [&str; 4] = ["report.json", "cost.png", "interpolations.png", "error.png"];

@@ -1,0 +1,61 @@
+//! The crowd on the CPU.
+
+use std::time::Instant;
+
+use relievo::Error;
+use relievo::animation::{Affine, GateTable, Lod};
+use relievo::reference::animation::crowd::{Choice, Crowd};
+
+use super::gates::{Mode, PATH, frame};
+use super::play::{Play, Played, Stages, Times};
+use super::stage::Stage;
+
+/// Both crowds.
+pub struct Twins<'a> {
+    gated: Crowd<'a>,
+    full: Crowd<'a>,
+    choice: Choice,
+    rate: f64,
+}
+
+impl<'a> Twins<'a> {
+    /// `table` is the choice's, `movers` that of [`Mode::Off`].
+    pub fn new(
+        stage: &'a Stage<'_>,
+        table: &'a GateTable,
+        movers: &'a GateTable,
+        choice: Choice,
+        lods: Vec<Lod>,
+    ) -> Self {
+        let crowd = |table| Crowd::new(&stage.order, &stage.set, table, PATH, stage.instances.clone());
+        let mut gated = crowd(table);
+        gated.lods = lods;
+        Self { gated, full: crowd(movers), choice, rate: stage.plan.rate }
+    }
+}
+
+impl Play for Twins<'_> {
+    fn play(&mut self, number: u32, is_timed: bool) -> Result<Played, Error> {
+        let (frame, elapsed) = frame(number, self.rate);
+        let start = Instant::now();
+        let work = self.gated.advance(self.choice, &frame, elapsed);
+        let gated = start.elapsed();
+        self.full.advance(Mode::Off.choice(0.0, 0), &frame, elapsed);
+        let full = start.elapsed() - gated;
+        let [gated, full] =
+            [gated, full].map(|time| Stages { total: time.as_nanos() as f64, ..Stages::default() });
+        Ok(Played {
+            interpolated: work.pairs.len(),
+            concatenated: work.dirty.iter().map(|word| word.count_ones() as usize).sum(),
+            times: is_timed.then_some(Times { gated, full }),
+        })
+    }
+
+    fn stale(&self) -> &[Affine] {
+        &self.gated.models
+    }
+
+    fn fresh(&self) -> &[Affine] {
+        &self.full.models
+    }
+}
