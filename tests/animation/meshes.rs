@@ -230,7 +230,7 @@ fn skin_all(model: &Model) {
     assert_eq!(reaches(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
     for mesh in &model.meshes {
         assert_eq!(mesh.validate(&model.skins), Ok(()));
-        assert!(Clusters::new(mesh, &model.skins, model.skeleton.len()).is_ok());
+        assert!(Clusters::new(mesh, &model.skins, &model.skeleton).is_ok());
         let weights = mesh.weights_at(0, 0.5);
         let large = |weights: &[f32]| weights.iter().any(|weight| weight.abs() > 1e6);
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
