@@ -5,6 +5,8 @@ pub mod buffers;
 pub mod clusters;
 pub mod collapse;
 pub mod export;
+#[cfg(feature = "gpu")]
+pub mod frame;
 pub mod lod;
 pub mod mesh;
 pub mod morph;

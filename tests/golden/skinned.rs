@@ -10,12 +10,9 @@ use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::sample::sample;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
-use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LodPass, LodView, ball, standing};
-use relievo::skinning::palette::PalettePass;
 use relievo::skinning::picture::Light;
-use relievo::skinning::select::{SelectBuffers, SelectPass};
-use relievo::skinning::skin::{SkinPass, Vertex};
 use relievo::skinning::{Blend, Influence, Influences, Mesh, Reduction};
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
@@ -92,25 +89,19 @@ fn draw(gpu: &Gpu, scene: &mut SkinnedScene, clip_from_world: Mat4, size: [u32; 
 /// Six limbs in one picture: from left to right λ = 0, ½ and 1; above linear, below dual quaternions.
 fn limbs(lower: Mat4) -> RgbaImage {
     let (gpu, model) = (gpu(), limb());
-    let (mesh, _) = MeshBuffers::new(&gpu, &model, &model.meshes[0]).expect("uploaded");
     let size = [192, 112];
     let mut all = RgbaImage::new(size[0], 2 * size[1] / 2);
     for (row, blend) in (0..).zip([Blend::Linear, Blend::DualQuaternion]) {
-        let crowd = SkinnedCrowd::new(&gpu, &mesh, 3, blend).expect("allocated");
-        let fades = [0.0, 0.5, 1.0].map(|fade| Reduction::fade(fade).expect("in range"));
-        crowd.reductions.write(&gpu, &fades).expect("written");
         let pose = [rows(Mat4::IDENTITY), rows(lower)];
         let models = Buffer::from_slice(&gpu, "models", &pose.repeat(3)).expect("uploaded");
-        let skinned: Buffer<Vertex> =
-            Buffer::new(&gpu, "skinned", 3 * mesh.vertices.len()).expect("allocated");
-        let palette = PalettePass::new(&gpu).expect("compiled").prepare(&gpu, &mesh, &models, &crowd);
-        let skin = SkinPass::new(&gpu, blend).expect("compiled").prepare(&gpu, &mesh, &crowd, 0..3, &skinned);
-        let (palette, skin) = (palette.expect("prepared"), skin.expect("prepared"));
-        gpu.run("skin", |encoder| [&palette, &skin].iter().for_each(|job| job.record(encoder))).expect("run");
+        let frame = SkinFrame::new(&gpu, &model, 0, &models, 3, blend).expect("prepared");
+        let fades = [0.0, 0.5, 1.0].map(|fade| Reduction::fade(fade).expect("in range"));
+        frame.crowd.reductions.write(&gpu, &fades).expect("written");
+        gpu.run("skin", |encoder| frame.record_all(encoder)).expect("run");
         let places = [-2.2, 0.0, 2.2].map(|x| standing(Vec3::X * x, 0.0, 1.0));
         let instances = SkinnedInstances {
-            mesh: &mesh,
-            skinned: &skinned,
+            mesh: &frame.mesh,
+            skinned: &frame.skinned,
             placements: &Buffer::from_slice(&gpu, "placements", &places).expect("uploaded"),
             drawn: &Buffer::from_slice(&gpu, "drawn", &[0, 1, 2]).expect("uploaded"),
             albedo: &checks(&gpu),
@@ -151,7 +142,6 @@ fn a_twisted_limb() {
 #[test]
 fn a_crowd_near_and_far() {
     let (gpu, model) = (gpu(), creature().expect("valid"));
-    let (mesh, clusters) = MeshBuffers::new(&gpu, &model, &model.meshes[0]).expect("uploaded");
     let walk = model.clip("walk").expect("there");
     let place = |index: usize| {
         let (row, column) = (index / 6, index % 6);
@@ -167,13 +157,12 @@ fn a_crowd_near_and_far() {
     };
     let models: Vec<Affine> = (0..36).flat_map(pose).collect();
     let models = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
-    let crowd = SkinnedCrowd::new(&gpu, &mesh, 36, Blend::Linear).expect("allocated");
-    let skinned: Buffer<Vertex> = Buffer::new(&gpu, "skinned", 36 * mesh.vertices.len()).expect("allocated");
+    let skin = SkinFrame::new(&gpu, &model, 0, &models, 36, Blend::Linear).expect("prepared");
     let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
     let drawn = Buffer::new(&gpu, "drawn", 36).expect("allocated");
     let instances = SkinnedInstances {
-        mesh: &mesh,
-        skinned: &skinned,
+        mesh: &skin.mesh,
+        skinned: &skin.skinned,
         placements: &placements,
         drawn: &drawn,
         albedo: &checks(&gpu),
@@ -189,37 +178,23 @@ fn a_crowd_near_and_far() {
     let view = LodView { clip_from_world, eye, near: 5.0, far: 30.0, steps: 64, center, radius };
     let lod = LodPass::new(&gpu)
         .expect("compiled")
-        .prepare(&gpu, &view, &placements, &crowd.reductions, &drawn, &scene.arguments)
-        .expect("prepared");
-    let palette =
-        PalettePass::new(&gpu).expect("compiled").prepare(&gpu, &mesh, &models, &crowd).expect("prepared");
-    let bits = SelectBuffers::new(&gpu, &mesh, &crowd).expect("allocated");
-    let active = ActiveClusters::new(&gpu, &mesh, &crowd).expect("allocated");
-    let select = SelectPass::new(&gpu)
-        .expect("compiled")
-        .prepare(&gpu, &mesh, &crowd, &bits, &active)
-        .expect("prepared");
-    let skin = SkinPass::new(&gpu, Blend::Linear)
-        .expect("compiled")
-        .prepare_active(&gpu, &mesh, &crowd, &skinned, &active)
+        .prepare(&gpu, &view, &placements, &skin.crowd.reductions, &drawn, &scene.arguments)
         .expect("prepared");
     let frame = || {
         gpu.run("frame", |encoder| {
             lod.record(encoder);
-            palette.record(encoder);
-            select.record(encoder);
-            skin.record(encoder);
+            skin.record_moved(encoder);
         })
         .expect("run");
-        active.dispatched.read_blocking(&gpu).expect("read")[3] as usize
+        skin.active.dispatched.read_blocking(&gpu).expect("read")[3] as usize
     };
     // Everything once; then, as nothing moves, nothing.
-    assert_eq!(frame(), 36 * clusters.len());
+    assert_eq!(frame(), 36 * skin.clusters.len());
     assert_eq!(frame(), 0);
     // One bone of one instance: the clusters that follow it.
-    let mut moved = vec![0; 36 * mesh.mask_words];
-    moved[7 * mesh.mask_words] = 1 << 4;
-    bits.moved.write(&gpu, &moved).expect("written");
+    let mut moved = vec![0; 36 * skin.mesh.mask_words];
+    moved[7 * skin.mesh.mask_words] = 1 << 4;
+    skin.select.moved.write(&gpu, &moved).expect("written");
     assert!((1..20).contains(&frame()));
     let seen = scene.arguments.read_blocking(&gpu).expect("read")[1];
     assert!((12..34).contains(&seen), "{seen} of 36");

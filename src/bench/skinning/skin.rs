@@ -55,7 +55,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             bench.case(case, (all, "vertex"), (4 * words * all) as u64, contenders)?;
         }
     }
-    some(bench, &pass)
+    some(bench, &pass)?;
+    faded(bench, &pass)
 }
 
 /// Every eighth cluster of a hundred instances.
@@ -82,6 +83,32 @@ fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
         }),
     ];
     bench.case("an eighth of 4, 10k × 100", (vertices, "vertex"), 292 * vertices as u64, contenders)
+}
+
+/// A hundred instances at full fade: the weight that decides is read, and one bone.
+fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
+    let rigid = Reduction { fade: 1.0, ..Reduction::FULL };
+    scene.crowd.reductions.write(gpu, &[rigid; CROWDS[1]])?;
+    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
+    let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
+    let all = CROWDS[1] * RING * RING;
+    // A vertex, a bone and a weight in, the bone's rows, a vertex out.
+    let copied = copy_of(gpu, 34 * all / 2)?;
+    let mesh = &scene.model.meshes[0];
+    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+    let unskinned = morph(mesh, &[]);
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            for _ in 0..CROWDS[1] {
+                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, rigid)));
+            }
+        }),
+    ];
+    bench.case("4 faded to 1, 10k × 100", (all, "vertex"), 136 * all as u64, contenders)
 }
 
 /// Instances of which a buffer holds so many bytes a vertex, a divisor of them all.

@@ -179,10 +179,7 @@ mod device {
     use relievo::render::ColorTexture;
     use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
     use relievo::render::target::{LINEAR_FORMAT, Target};
-    use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-    use relievo::skinning::morph::MorphPass;
-    use relievo::skinning::palette::PalettePass;
-    use relievo::skinning::skin::SkinPass;
+    use relievo::skinning::frame::SkinFrame;
     use relievo::surface::mips::Mips;
 
     /// A crowd of one.
@@ -190,8 +187,8 @@ mod device {
         let crowd = posed(gpu, moment)?;
         let (mut all, mut scenes) = (Vec::new(), Vec::new());
         let color = ColorTexture::linear(gpu, &clay(), true)?;
-        for (index, mesh) in moment.model.meshes.iter().enumerate() {
-            let (vertices, scene) = skinned_mesh(gpu, moment, mesh, &crowd, &color)?;
+        for index in 0..moment.model.meshes.len() {
+            let (vertices, scene) = skinned_mesh(gpu, moment, index, &crowd, &color)?;
             check_range(index, &vertices)?;
             all.push(vertices);
             scenes.push(scene);
@@ -223,29 +220,24 @@ mod device {
     fn skinned_mesh(
         gpu: &Gpu,
         moment: &Moment<'_>,
-        mesh: &Mesh,
+        mesh: usize,
         posed: &Crowd,
         color: &ColorTexture,
     ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
-        let (buffers, clusters) = MeshBuffers::new(gpu, moment.model, mesh)?;
-        let crowd = SkinnedCrowd::new(gpu, &buffers, 1, moment.blend)?;
-        crowd.reductions.write(gpu, &[moment.reduction])?;
-        crowd.weights.write(gpu, &moment.weights(mesh))?;
-        let skinned = Buffer::new(gpu, "skinned", mesh.vertices())?;
-        let palette = PalettePass::new(gpu)?.prepare(gpu, &buffers, &posed.models, &crowd)?;
-        let morph = MorphPass::new(gpu)?.prepare(gpu, &buffers, &crowd)?;
-        let skin = SkinPass::new(gpu, moment.blend)?.prepare(gpu, &buffers, &crowd, 0..1, &skinned)?;
-        gpu.run("skin", |encoder| [&palette, &morph, &skin].iter().for_each(|job| job.record(encoder)))?;
+        let frame = SkinFrame::new(gpu, moment.model, mesh, &posed.models, 1, moment.blend)?;
+        frame.crowd.reductions.write(gpu, &[moment.reduction])?;
+        frame.crowd.weights.write(gpu, &moment.weights(&moment.model.meshes[mesh]))?;
+        gpu.run("skin", |encoder| frame.record_all(encoder))?;
         let instances = SkinnedInstances {
-            mesh: &buffers,
-            skinned: &skinned,
+            mesh: &frame.mesh,
+            skinned: &frame.skinned,
             placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY])?,
             drawn: &Buffer::from_slice(gpu, "drawn", &[0])?,
             albedo: color,
             light: Light::default(),
         };
         let scene = SkinnedRenderer::new(gpu, LINEAR_FORMAT)?.scene(gpu, &instances)?;
-        Ok((clusters.in_mesh_order(&skinned.read_blocking(gpu)?), scene))
+        Ok((frame.read(gpu, 0)?, scene))
     }
 
     fn clay() -> Mips {

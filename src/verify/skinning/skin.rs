@@ -173,3 +173,43 @@ fn lengths(matrix: &Affine, vertex: &Vertex) -> [f32; 2] {
     let [tx, ty, tz, _] = vertex.tangent;
     [(cofactors * glam::Vec3::from(vertex.normal)).length(), (linear * glam::vec3(tx, ty, tz)).length()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::Options;
+
+    /// The twin's own vertices hold; one of them elsewhere, turned, or mirrored does not.
+    #[test]
+    fn vertices_that_go_astray_are_seen() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        for blend in [Blend::Linear, Blend::DualQuaternion] {
+            let scene = Scene::new(&gpu, 3, SHAPES[3], blend).expect("made");
+            let vertices = SHAPES[3].vertices;
+            let placed = |instance: usize| {
+                let expected = &scene.expected[instance * vertices..][..vertices];
+                scene
+                    .clusters
+                    .order
+                    .iter()
+                    .map(|vertex| expected[*vertex as usize].vertex)
+                    .collect::<Vec<_>>()
+            };
+            let right: Vec<Vertex> = (0..INSTANCES).flat_map(placed).collect();
+            assert!(scene.compare(&right, &scene.expected).holds);
+            let wrong = |change: &dyn Fn(&mut Vertex)| {
+                let mut changed = right.clone();
+                change(&mut changed[300]);
+                scene.compare(&changed, &scene.expected)
+            };
+            for axis in 0..3 {
+                assert!(!wrong(&|vertex| vertex.position[axis] += 4e-3).holds);
+                assert!(!wrong(&|vertex| vertex.normal[axis] += 0.05).holds);
+                assert!(!wrong(&|vertex| vertex.tangent[axis] += 0.05).holds);
+                assert!(!wrong(&|vertex| vertex.position[axis] = f32::NAN).holds);
+            }
+            assert!(!wrong(&|vertex| vertex.tangent[3] *= -1.0).holds);
+            assert!(!scene.compare(&right[1..], &scene.expected).holds);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! A crowd's skinning in one piece: everything between its bones' matrices and vertices that can be drawn.
+
+use super::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use super::clusters::Clusters;
+use super::morph::MorphPass;
+use super::palette::PalettePass;
+use super::select::{SelectBuffers, SelectPass};
+use super::skin::{Blend, SkinActiveJob, SkinPass, Vertex};
+use crate::animation::Model;
+use crate::animation::transform::Affine;
+use crate::gpu::{Buffer, Gpu, Job};
+use crate::{Error, InputError};
+
+/// Prepared skinning of all instances of one mesh.
+#[derive(Debug, Clone)]
+pub struct SkinFrame {
+    /// The mesh on the device.
+    pub mesh: MeshBuffers,
+    /// Which vertex lies where in it.
+    pub clusters: Clusters,
+    /// Reductions and weights of targets, which the caller may write.
+    pub crowd: SkinnedCrowd,
+    /// The bones that moved, which a gate may write.
+    pub select: SelectBuffers,
+    /// The clusters of the last [`SkinFrame::record_moved`].
+    pub active: ActiveClusters,
+    /// `instance · vertices + place`.
+    pub skinned: Buffer<Vertex>,
+    /// Palette and morph targets.
+    before: [Job; 2],
+    selection: Job,
+    all: Job,
+    some: SkinActiveJob,
+}
+
+impl SkinFrame {
+    /// Prepares a model's mesh for so many instances, from `models` as [`crate::animation::concat`] writes them.
+    ///
+    /// # Errors
+    /// [`InputError`] for a mesh that the model lacks or that does not fit it, no instances, and fewer models than they
+    /// need; [`crate::gpu::GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        model: &Model,
+        mesh: usize,
+        models: &Buffer<Affine>,
+        instances: usize,
+        blend: Blend,
+    ) -> Result<Self, Error> {
+        let Some(mesh) = model.meshes.get(mesh) else {
+            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
+        };
+        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+        let crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
+        let select = SelectBuffers::new(gpu, &mesh, &crowd)?;
+        let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
+        let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
+        let before = [
+            PalettePass::new(gpu)?.prepare(gpu, &mesh, models, &crowd)?,
+            MorphPass::new(gpu)?.prepare(gpu, &mesh, &crowd)?,
+        ];
+        let selection = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
+        let pass = SkinPass::new(gpu, blend)?;
+        let all = pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?;
+        let some = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
+        Ok(Self { mesh, clusters, crowd, select, active, skinned, before, selection, all, some })
+    }
+
+    /// Records the skinning of every vertex.
+    pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.before.iter().chain([&self.all]).for_each(|job| job.record(encoder));
+    }
+
+    /// Records the skinning of clusters with a bone that moved, and of instances whose reduction changed. The first time
+    /// that is every cluster. Whoever changes weights of targets says that all bones have moved.
+    pub fn record_moved(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.before.iter().chain([&self.selection]).for_each(|job| job.record(encoder));
+        self.some.record(encoder);
+    }
+
+    /// The vertices of an instance, in the mesh's own order. Waits for the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that there is not; [`crate::gpu::GpuError`].
+    pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Vertex>, Error> {
+        if instance >= self.crowd.instances {
+            let bound = format!("must be below {}", self.crowd.instances);
+            return Err(InputError::new("instance", instance, bound).into());
+        }
+        let vertices = self.mesh.vertices.len();
+        let all = self.skinned.read_blocking(gpu)?;
+        Ok(self.clusters.in_mesh_order(&all[instance * vertices..][..vertices]))
+    }
+}
