@@ -64,9 +64,13 @@ use plan::Plan;
 /// and cost.png, interpolations.png, error.png: the same against distance.
 ///
 /// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
-/// {"model", …, "points": [{"gate", "parameter", "cost", "share of …", the errors}], "verdicts"}, pareto_max.png,
-/// pareto_rms.png. "cost" is interpolated / moving. Every gate sweeps its parameter: Ω of uniform, random and
-/// skip-period, the share of the moving bones of budget, the pixels of bounded.
+/// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
+/// "points", "verdicts"}, pareto_max.png, pareto_rms.png. Instances stand at one place, turned every way. A point is
+/// {"gate", "parameter", "cost", "concatenated_share", the fields of "error", "jump"}: "cost" is interpolated /
+/// moving, "parameter" what the gate sweeps: Ω of uniform, random and skip-period, the share of the moving bones of
+/// budget, the pixels of bounded. Verdicts compare along these curves: "bounded_max_pixels" and "budget_rms_pixels"
+/// [{"cost", "gate", "uniform", "random", "ratio"}], errors at equal cost, ratio to the better rival;
+/// "bounded_cost" [{"max_pixels", "uniform", "bounded", "ratio"}], costs at equal largest error.
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub struct Crowd {
@@ -148,5 +152,11 @@ impl Crowd {
             report::run(&plan, context, &self.out)?;
         }
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// The largest errors of `--pareto` alone, for the demonstration.
+    #[cfg(feature = "gpu")]
+    pub fn comparison(&self) -> Result<image::RgbaImage, Error> {
+        pareto::largest_errors(&Plan::new(self)?)
     }
 }

@@ -1,5 +1,6 @@
 //! `relievo demo`
 
+mod crowd;
 mod relief;
 mod terrain;
 
@@ -46,12 +47,13 @@ impl Demo {
             context,
             staged: Staged::new(&self.out)?,
             inputs: inputs.path(),
-            progress: bar((terrain::COUNT + relief::COUNT) as u64, "drawing"),
+            progress: bar((terrain::COUNT + relief::COUNT + crowd::COUNT) as u64, "drawing"),
             figures: String::new(),
             count: 0,
         };
         terrain::draw(&mut page, &self.size)?;
         relief::draw(&mut page, &self.size)?;
+        crowd::draw(&mut page)?;
         page.progress.finish_and_clear();
         let adapter = context.gpu()?.adapter().to_string();
         write_bytes(&page.staged.path("index.html"), html(&adapter, &page.figures).as_bytes())?;

@@ -83,14 +83,18 @@ pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
     };
     let [pareto, largest, rms] = FILES;
     write_bytes(&staged.path(pareto), &json(&report)?)?;
-    let title = |what: &str| {
-        format!("{what} error, {} × {:?} at {} pixels", plan.instances, plan.clip.name(), plan.tall)
-    };
-    save(&staged.path(largest), &picture(chart(&points, title("Largest"), |error| error.max_pixels))?)?;
-    save(&staged.path(rms), &picture(chart(&points, title("Rms"), |error| error.rms_pixels))?)?;
+    save(&staged.path(largest), &picture(chart(plan, &points, "Largest", |error| error.max_pixels))?)?;
+    save(&staged.path(rms), &picture(chart(plan, &points, "Rms", |error| error.rms_pixels))?)?;
     staged.remove_stale(|name| report::FILES.contains(&name));
     staged.publish()?;
     say(format_args!("{}\n{}", table(&points), verdict_table(&verdicts).trim_end()))
+}
+
+/// The plot of the largest errors alone, for the demonstration.
+#[cfg(feature = "gpu")]
+pub fn largest_errors(plan: &Plan) -> Result<image::RgbaImage, Error> {
+    let points = points(&Stage::new(plan)?)?;
+    Ok(picture(chart(plan, &points, "Largest", |error| error.max_pixels))?)
 }
 
 /// What every gate tries.
@@ -107,7 +111,7 @@ fn parameters(mode: Mode) -> Vec<f64> {
             all
         }
         Mode::SkipPeriod => (1..=14).rev().map(|half| 0.5_f64.powf(f64::from(half) / 2.0 - 0.4)).collect(),
-        Mode::Bounded => (-12..=12).map(|half| 2.0_f64.powf(f64::from(half) / 2.0)).collect(),
+        Mode::Bounded => (-12..=16).map(|half| 2.0_f64.powf(f64::from(half) / 2.0)).collect(),
     }
 }
 
@@ -161,7 +165,7 @@ fn point(
     })
 }
 
-fn chart(points: &[Point], title: String, error: impl Fn(&Errors) -> f64) -> Chart {
+fn chart(plan: &Plan, points: &[Point], what: &str, error: impl Fn(&Errors) -> f64) -> Chart {
     let series = |mode: Mode| {
         let mut points: Vec<(f64, f64)> = (points.iter())
             .filter(|point| point.gate == mode)
@@ -172,7 +176,7 @@ fn chart(points: &[Point], title: String, error: impl Fn(&Errors) -> f64) -> Cha
         Series { name: mode.name().to_owned(), points, labels: Vec::new() }
     };
     Chart {
-        title,
+        title: format!("{what} error, {} × {:?} at {} pixels", plan.instances, plan.clip.name(), plan.tall),
         x_label: "interpolations, of moving bones".to_owned(),
         y_label: "pixels".to_owned(),
         log_x: true,
