@@ -101,9 +101,12 @@ fn rank_of(missed: u32, weight: u32) -> u32 {
 }
 
 fn motion_now(place: Place, bit: u32) -> u32 {
-    let slot = place.slot + bit;
-    let period = table[place.periods * params.stride + slot].x;
-    return motion_at(table[place.phase.row * params.stride + slot], period, place.phase);
+    return motion_at(table[place.phase.row * params.stride + place.slot + bit], place.phase);
+}
+
+fn missed_by(place: Place, bit: u32, last: u32) -> u32 {
+    let period = table[place.periods * params.stride + place.slot + bit].x;
+    return motion_between(motion_now(place, bit), last, period);
 }
 
 fn rank(index: u32) {
@@ -125,7 +128,7 @@ fn rank(index: u32) {
             if (place.candidates & (1u << bit)) == 0u {
                 continue;
             }
-            let missed = motion_between(motion_now(place, bit), sampled[own + bit]);
+            let missed = missed_by(place, bit, sampled[own + bit]);
             if missed > 0u {
                 let rank = rank_of(missed, weight);
                 both |= rank << (16u * (bit & 1u));

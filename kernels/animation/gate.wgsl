@@ -124,10 +124,10 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, phase: Phas
         rest &= rest - 1u;
         // The clip's sum, and what its rounding may hide.
         let whole = table[last + bit];
-        let now = motion_at(table[row + bit], whole.x, phase);
-        let missed = motion_between(now, sampled[own + bit]);
+        let now = motion_at(table[row + bit], phase);
+        let missed = motion_between(now, sampled[own + bit], whole.x);
         let is_forced = (forced & (1u << bit)) != 0u;
-        if is_forced || (missed > 0u && missed + whole.y > allowed) {
+        if is_forced || missed + whole.y > allowed {
             chosen |= 1u << bit;
             sampled[own + bit] = now;
         }

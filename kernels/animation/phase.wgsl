@@ -1,7 +1,7 @@
 // Where instances stand on the common timeline of their clip, in whole numbers, and whether anything but
 // the time asks for a new pose: what gates decide by. A thread looks at one instance.
 import package::wgsl::animation::clip::ClipEntry;
-import package::wgsl::animation::clock::clock;
+import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::gating::{Lod, Phase, LOD_HIDDEN, LOD_REFRESH, PHASE_BLENDED, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN};
 import package::wgsl::animation::timeline::place;
@@ -23,21 +23,22 @@ struct PhaseParams {
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;
 // Weights of the layers above the base, layer by layer.
 @group(0) @binding(6) var<storage, read> shares: array<f32>;
-// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; its turns; as bits, the time
-// inside the clip.
+// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; what these layers played; as
+// bits, the time inside the clip.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read_write> phases: array<Phase>;
 
-// After as many turns every bone is sampled again: sums of motion would overflow.
-const TURNS_SHIFT = 4u;
 const BLENDED = 0x80000000u;
 
-fn is_blended(instance: u32) -> bool {
-    var sum = 0.0;
+// A number of the clips that play above the base; 0 where none does.
+fn clips_above(instance: u32) -> u32 {
+    var clips = 0u;
     for (var layer = 0u; layer < params.layers; layer++) {
-        sum += shares[layer * params.instances + instance];
+        let is_heard = shares[layer * params.instances + instance] > 0.0;
+        let clip = instances[(layer + 1u) * params.instances + instance].clip;
+        clips = 31u * clips + select(0u, clip + 1u, is_heard);
     }
-    return sum > 0.0;
+    return clips;
 }
 
 @compute @workgroup_size(64)
@@ -52,14 +53,13 @@ fn main(
     }
     let instance = instances[index];
     let clip = clips[instance.clip];
-    let now = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
+    let time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
     let timeline = timelines[clip.first_timeline];
-    let place = place(timeline.x, timeline.y, now.inside);
+    let found = place(timeline.x, timeline.y, time);
     let flags = lods[index].flags;
-    let blended = is_blended(index);
-    let clip_layers = (instance.clip + 1u) | select(0u, BLENDED, blended);
-    let known = vec4<u32>(
-        clip_layers, bitcast<u32>(now.turns >> TURNS_SHIFT), bitcast<u32>(now.inside), 0u);
+    let above = clips_above(index);
+    let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
+    let known = vec4<u32>(base, above, bitcast<u32>(time), 0u);
     let last = history[index];
     var verdict = PHASE_FREE;
     if (flags & LOD_HIDDEN) != 0u {
@@ -68,11 +68,11 @@ fn main(
     } else {
         if (flags & LOD_REFRESH) != 0u || last.x != known.x || last.y != known.y {
             verdict = PHASE_FORCED;
-        } else if blended {
+        } else if above != 0u {
             verdict = PHASE_BLENDED;
         }
         history[index] = known;
     }
-    let fraction = u32(clamp(bitcast<f32>(place.y), 0.0, 1.0) * 65536.0);
-    phases[index] = Phase(clip.first_row + place.x, (verdict << 20u) | fraction, now.turns, instance.clip);
+    let fraction = u32(clamp(bitcast<f32>(found.y), 0.0, 1.0) * 65536.0);
+    phases[index] = Phase(clip.first_row + found.x, (verdict << 20u) | fraction, instance.clip);
 }

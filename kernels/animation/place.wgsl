@@ -1,7 +1,7 @@
 // Where instances stand in their clips: for each instance and timeline of its clip the key before, and the way to the
 // next. A thread finds one of them. With COMPACTED, only for instances of a list, all their layers included.
 import package::wgsl::animation::clip::ClipEntry;
-import package::wgsl::animation::clock::clock;
+import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::place;
 
@@ -59,7 +59,7 @@ fn main(
         return;
     }
     let timeline = timelines[clip.first_timeline + timeline_index];
-    var time = clock(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed).inside;
+    var time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
     if COMPACTED && entry < params.instances {
         // To the bit what the gate decided by: a key is passed for both or for neither.
         time = bitcast<f32>(history[entry].z);

@@ -133,8 +133,9 @@ impl ClipSet {
         let mut common: Vec<f32> = moving().flat_map(|track| clip.times_of(track)).copied().collect();
         common.sort_by(f32::total_cmp);
         common.dedup();
-        if common.is_empty() {
-            common.push(0.0);
+        // Before the first key is a row of its own: a jump may be at that key.
+        if common.first().is_none_or(|first| *first > 0.0) {
+            common.insert(0, 0.0);
         }
         let same = moving().find(|track| clip.times_of(track) == common);
         let timeline = Timeline {

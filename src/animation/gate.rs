@@ -4,7 +4,8 @@
 //! neither sampled nor, unless a bone above them is active, concatenated. A bone that is left out keeps its last local
 //! transform. Bones that their clip does not move cost nothing in any mode.
 //!
-//! The order of a frame: `place`, `phase`, `gate` (or `budget`), `compact`, `sample`, `concat`.
+//! The order of a frame: `phase`, `gate` (or `budget`), `compact`, `place`, `sample`, `concat`, the latter three prepared
+//! for what is active. Only so `bounded` keeps its promise: places are then looked up at the times that the gate saw.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -25,11 +26,12 @@ pub enum Gate {
     },
     /// All bones of an instance together, in a share Ω of the frames: what engines call update-rate optimization.
     Uniform,
-    /// A share Ω of all bones, by a hash of frame and bone.
+    /// A share Ω of all bones, by a hash of frame and bone: as many as [`Gate::Uniform`], on average.
     Random,
     /// Bones that may have moved further than the instance allows. Its table is
     /// [`GateTable::of_bounds`](super::gate_table::GateTable::of_bounds): no point is ever further from its place than
-    /// [`Lod::allowed`](super::lod::Lod::allowed).
+    /// [`Lod::allowed`](super::lod::Lod::allowed), nor any vertex that bones blend linearly. Dual quaternions are no
+    /// convex mean: the promise does not hold for them.
     Bounded,
 }
 

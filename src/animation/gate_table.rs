@@ -10,9 +10,11 @@ use super::sample::RotationPath;
 use super::skeleton::Skeleton;
 use crate::InputError;
 
-/// The largest sum of motion of a whole clip. 17 of them, as many as can pass between two samples of a bone, are below
-/// 2³¹.
-const MOST_MOTION: f64 = (1 << 26) as f64;
+/// The largest sum of motion of a whole clip, in units.
+const MOST_MOTION: f64 = (1 << 30) as f64;
+
+/// What rounding may hide of a bone that nothing bounds: more than is ever allowed.
+const EVERYTHING: f64 = (1 << 30) as f64;
 
 /// Power of the rates of motion that shares are made of. 1 needs the fewest samples for a bound, 0 takes all moving bones
 /// alike. But bounds add up what in truth points many ways, and fast bones are sampled every frame in any case: on walks
@@ -23,9 +25,33 @@ const EVENNESS: f64 = 0.2;
 /// The most entries.
 const MOST_ENTRIES: usize = 1 << 27;
 
+/// What a table tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// [`GateTable::of_movers`].
+    Movers,
+    /// [`GateTable::of_priorities`].
+    Priorities,
+    /// [`GateTable::of_bounds`].
+    Bounds,
+    /// [`GateTable::of_expectations`].
+    Expectations,
+}
+
+impl Kind {
+    /// Refuses a table of another kind than is needed.
+    pub(crate) fn check(self, needed: Self) -> Result<(), InputError> {
+        if self == needed {
+            return Ok(());
+        }
+        Err(InputError::new("table.kind", format!("{self:?}"), format!("must be {needed:?} for this gate")))
+    }
+}
+
 /// A gate's table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GateTable {
+    kind: Kind,
     bones: usize,
     words: usize,
     stride: usize,
@@ -61,7 +87,8 @@ impl GateTable {
             }
         }
         let bones = order.slots.len();
-        Ok(Self { bones, words, stride: 0, movers, rows: vec![[0; 2]], unit: 0.0, radius: 0.0 })
+        let kind = Kind::Movers;
+        Ok(Self { kind, bones, words, stride: 0, movers, rows: vec![[0; 2]], unit: 0.0, radius: 0.0 })
     }
 
     /// Each clip's priorities: what [`Gate::SkipPeriod`](super::gate::Gate::SkipPeriod) needs. Before a bone's first key
@@ -80,6 +107,7 @@ impl GateTable {
             let bound = format!("must be {}, one a clip", clips.len());
             return Err(InputError::new("priorities.len", priorities.len(), bound));
         }
+        table.kind = Kind::Priorities;
         table.make_room(set, table.bones.div_ceil(4))?;
         for (entry, priorities) in set.clips().iter().zip(priorities) {
             for (slot, bone) in order.slots.iter().enumerate() {
@@ -149,6 +177,7 @@ impl GateTable {
         let order = Order::new(skeleton);
         let mut table = Self::of_movers(&order, set, clips)?;
         check_reaches(skeleton, reaches)?;
+        table.kind = if is_bound { Kind::Bounds } else { Kind::Expectations };
         table.make_room(set, table.bones)?;
         let columns = set.clips().iter().zip(clips).map(|(entry, clip)| {
             let motions = motions(set, entry, clip, path);
@@ -165,6 +194,12 @@ impl GateTable {
             columns
         });
         let columns: Vec<Vec<Column>> = columns.collect();
+        for (clip, columns) in columns.iter().enumerate() {
+            if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
+                let bound = "must be finite: the scales above it are too large";
+                return Err(InputError::new(format!("clips[{clip}].bones[{bone}].motion"), "inf", bound));
+            }
+        }
         let largest = columns.iter().flatten().map(Column::total).fold(0.0, f64::max);
         table.unit = if largest > 0.0 { largest / MOST_MOTION } else { 1.0 };
         for (entry, columns) in set.clips().iter().zip(&columns) {
@@ -190,6 +225,11 @@ impl GateTable {
                 Err(InputError::new("table.rows", rows, bound))
             }
         }
+    }
+
+    /// What it tells.
+    pub fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// Columns: slots of the skeleton's order.
@@ -239,11 +279,14 @@ impl GateTable {
         self.radius
     }
 
-    /// [`Lod::allowed`](super::lod::Lod::allowed) for a way in metres in the model's space; of
-    /// [`GateTable::of_bounds`].
+    /// [`Lod::allowed`](super::lod::Lod::allowed) for a way in metres in the model's space: divide metres in the world by
+    /// the instance's scale. 0 of a table that is not [`GateTable::of_bounds`].
     pub fn units(&self, metres: f32) -> u32 {
-        // At most what sums can reach.
-        (f64::from(metres) / self.unit).min((1_u32 << 31) as f64 - 1.0).floor() as u32
+        if self.kind != Kind::Bounds {
+            return 0;
+        }
+        // A clip's whole motion is less than everything.
+        (f64::from(metres) / self.unit).clamp(0.0, EVERYTHING - 1.0).floor() as u32
     }
 }
 
@@ -267,12 +310,19 @@ fn moves(clip: &Clip, bone: usize) -> bool {
         let track = clip.track(bone, *part);
         let is_spline = track.interpolation() == Interpolation::CubicSpline;
         let each = if is_spline { 3 } else { 1 };
-        let values = &clip.values()[track.first_value as usize..][..each * track.keys as usize];
-        track.keys > 1
-            && values.chunks_exact(each).any(|key| {
-                let (tangents, value) =
-                    if is_spline { ([key[0], key[2]], key[1]) } else { ([[0.0; 4]; 2], key[0]) };
-                value != clip.key(track, 0) || tangents != [[0.0; 4]; 2]
+        let keys = track.keys as usize;
+        let values = &clip.values()[track.first_value as usize..][..each * keys];
+        let same = |value: [f32; 4], other: [f32; 4]| {
+            value == other || *part == Part::Rotation && value == other.map(|component| -component)
+        };
+        keys > 1
+            && values.chunks_exact(each).enumerate().any(|(at, key)| {
+                if !is_spline {
+                    return !same(key[0], clip.key(track, 0));
+                }
+                // The first key's in-tangent and the last one's out-tangent bend nothing.
+                let bends = |tangent: [f32; 4], is_used: bool| is_used && tangent != [0.0; 4];
+                key[1] != clip.key(track, 0) || bends(key[0], at > 0) || bends(key[2], at + 1 < keys)
             })
     })
 }
@@ -282,6 +332,7 @@ struct Column {
     rises: Vec<f64>,
     jumps: Vec<f64>,
     wrap: f64,
+    is_boundless: bool,
 }
 
 impl Column {
@@ -294,6 +345,7 @@ impl Column {
             rises: (0..times).map(|at| weighed(&|path| path.rises[at])).collect(),
             jumps: (0..times).map(|at| weighed(&|path| path.jumps[at])).collect(),
             wrap: weighed(&|path| path.wrap),
+            is_boundless: bone.parts.iter().any(|path| path.is_boundless),
         }
     }
 
@@ -308,9 +360,9 @@ impl Column {
 
     /// Writes it down a table.
     ///
-    /// Starts are rounded to the nearest unit, rises up: what two sums differ by is at most 2 units too small, and 1
-    /// more for each fraction cut to 16 bits. The times that gates and samplers see differ by at most 2⁻¹² of a
-    /// stretch (times up to 64 s, stretches of 1/64 s: see `PLACE_BOUND`).
+    /// Starts are rounded to the nearest unit, rises up, and sums down: what two sums differ by is at most 4 units too
+    /// small. Fractions are cut to 16 bits, 2⁻¹⁶ of a stretch, and may be off by rounding of their division: 2⁻¹² of
+    /// the steepest stretch is more than either costs for two sums.
     fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;
@@ -320,7 +372,7 @@ impl Column {
             sum += rise;
             steepest = steepest.max(rise / unit);
         }
-        let slack = 4.0 + (steepest / 4096.0).ceil();
+        let slack = if self.is_boundless { EVERYTHING } else { 4.0 + (steepest / 4096.0).ceil() };
         table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, slack as u32];
     }
 }

@@ -9,8 +9,8 @@
 //!
 //! - linear: the way between the keys, evenly; rotations at constant speed;
 //! - nlerp: the arc's largest speed, `tan(θ/4)/(θ/4)` of the mean;
-//! - cubic: at most the longest edge of the control polygon times 3, a unit of the way between the keys; for rotations
-//!   twice that divided by the spline's least length;
+//! - cubic: at most the longest edge of the control polygon times 3, for each unit of the fraction between the keys; for
+//!   rotations twice that divided by the spline's least length, and nothing bounds them where that is about 0;
 //! - step, and repeated times: a jump at the later key;
 //! - a loop: a jump from the last pose to the first.
 
@@ -22,8 +22,8 @@ use super::skeleton::Skeleton;
 /// Moments at which a spline of rotations is measured between two keys.
 const MOMENTS: usize = 64;
 
-/// A rotation that may be anything: far more than half a turn.
-const ANY_TURN: f64 = 1e3;
+/// A spline of rotations that comes nearer to zero than this may turn by anything in no time.
+const SHORTEST: f64 = 0.01;
 
 /// Path lengths of one part of one bone: at the times of the common timeline.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -34,11 +34,13 @@ pub struct Path {
     pub jumps: Vec<f64>,
     /// From the end of the clip to its start.
     pub wrap: f64,
+    /// Somewhere it moves as fast as it likes: nothing bounds it.
+    pub is_boundless: bool,
 }
 
 impl Path {
     fn still(times: usize) -> Self {
-        Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0 }
+        Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0, is_boundless: false }
     }
 
     /// Of the whole clip, the way back to its start included.
@@ -140,6 +142,8 @@ impl<'a> Keys<'a> {
                 continue;
             }
             let speed = self.speed(key, way);
+            path.is_boundless |= speed.is_none();
+            let speed = speed.unwrap_or(std::f64::consts::PI);
             for at in row(from)..row(to) {
                 let share = f64::from(times[at + 1] - times[at]) / f64::from(to - from);
                 path.rises[at] += speed * share;
@@ -149,23 +153,24 @@ impl<'a> Keys<'a> {
         path
     }
 
-    /// The largest way a unit of the stretch between a key and the next, whose values are `way` apart.
-    fn speed(&self, key: usize, way: f64) -> f64 {
+    /// The largest way a unit of the stretch between a key and the next, whose values are `way` apart; `None` if nothing
+    /// bounds it.
+    fn speed(&self, key: usize, way: f64) -> Option<f64> {
         if self.is_spline() {
             let bezier = self.bezier(key);
-            let edges = (0..3)
-                .map(|edge| -> Value { std::array::from_fn(|i| bezier[edge + 1][i] - bezier[edge][i]) });
+            let edges: [Value; 3] =
+                std::array::from_fn(|edge| std::array::from_fn(|i| bezier[edge + 1][i] - bezier[edge][i]));
+            let longest =
+                |norm: fn(&Value) -> f64| 3.0 * edges.each_ref().map(norm).into_iter().fold(0.0, f64::max);
             return match self.part {
-                Part::Scale => 3.0 * edges.map(|edge| largest(&edge)).fold(0.0, f64::max),
-                Part::Translation => 3.0 * edges.map(|edge| length(&edge)).fold(0.0, f64::max),
-                Part::Rotation => {
-                    turn_of_spline(&bezier, 3.0 * edges.map(|e| length(&e)).fold(0.0, f64::max))
-                }
+                Part::Scale => Some(longest(largest)),
+                Part::Translation => Some(longest(length)),
+                Part::Rotation => turn_of_spline(&bezier, longest(length)),
             };
         }
         let quarter = way / 4.0;
         let is_chord = self.part == Part::Rotation && self.path == RotationPath::Nlerp;
-        if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way }
+        Some(if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way })
     }
 
     /// The control points of a spline between two keys; its tangents are already in units of the stretch.
@@ -190,7 +195,7 @@ impl<'a> Keys<'a> {
 }
 
 /// The largest angle a unit of a spline of quaternions, whose largest speed is `speed`, turns after normalization.
-fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> f64 {
+fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> Option<f64> {
     let at = |t: f64| -> Value {
         let u = 1.0 - t;
         let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
@@ -199,7 +204,7 @@ fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> f64 {
     let moments = (0..=MOMENTS).map(|moment| length(&at(moment as f64 / MOMENTS as f64)));
     // Between two moments it is at most half a step from one of them.
     let least = moments.fold(f64::INFINITY, f64::min) - speed / (2 * MOMENTS) as f64;
-    if least <= 1e-3 { ANY_TURN } else { (2.0 * speed / least).min(ANY_TURN) }
+    (least > SHORTEST).then(|| 2.0 * speed / least)
 }
 
 fn length(value: &Value) -> f64 {

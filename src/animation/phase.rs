@@ -1,18 +1,14 @@
 //! Where instances stand on the timeline that all bones of their clip share, in whole numbers: what gates decide by.
-//! Comes after `animation/place`, before `animation/gate`. Whether an instance has to be sampled in full is found here
+//! Comes before `animation/gate`. Whether an instance has to be sampled in full is found here
 //! too: at its first frame, after it was hidden, when its clip changed, when the host asks for it
-//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), every 16 turns of a loop, before sums of motion overflow, and when
-//! layers above its clip begin or end to count. While they do, sums of motion, which know of one clip alone, mean
-//! nothing.
+//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
+//! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
 #[cfg(feature = "gpu")]
 mod pass;
 
 #[cfg(feature = "gpu")]
 pub use pass::{PhaseJob, PhasePass};
-
-/// After 2⁴ turns an instance is sampled in full.
-pub const TURNS_SHIFT: u32 = 4;
 
 /// In an instance's history: layers lay above its clip.
 pub const BLENDED: u32 = 1 << 31;
@@ -40,16 +36,14 @@ pub struct Phase {
     pub row: u32,
     /// In the lower 20 bits the way to the next row, 0 to 65536; above them the [`Verdict`].
     pub fraction_and_verdict: u32,
-    /// How often the clip began again.
-    pub turns: i32,
     /// The clip.
     pub clip: u32,
 }
 
 impl Phase {
     /// A phase from its parts.
-    pub fn new(row: u32, fraction: u32, verdict: Verdict, turns: i32, clip: u32) -> Self {
-        Self { row, fraction_and_verdict: (verdict as u32) << 20 | fraction, turns, clip }
+    pub fn new(row: u32, fraction: u32, verdict: Verdict, clip: u32) -> Self {
+        Self { row, fraction_and_verdict: (verdict as u32) << 20 | fraction, clip }
     }
 
     /// The way to the next row, 0 to 65536.

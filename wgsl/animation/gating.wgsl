@@ -20,7 +20,6 @@ struct Phase {
     row: u32,
     // The way to the next row, 0 to 65536; above 20 bits what else asks for a pose.
     fraction_and_verdict: u32,
-    turns: i32,
     clip: u32,
 }
 

@@ -6,6 +6,7 @@ use crate::Error;
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::Gating;
+use crate::animation::gate_table::Kind;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 
 /// Words of the tally before those of the instances.
@@ -41,7 +42,7 @@ impl BudgetPass {
     /// all bones until it is set.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`crate::InputError`] for a table of another kind than expectations; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -49,6 +50,7 @@ impl BudgetPass {
         gating: &Gating,
         active: &Active,
     ) -> Result<BudgetJob, Error> {
+        gating.kind.check(Kind::Expectations)?;
         let params = BudgetParams {
             instances: gating.lods.len() as u32,
             bones: crowd.bones as u32,

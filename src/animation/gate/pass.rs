@@ -5,7 +5,7 @@ use encase::ShaderType;
 use super::{Frame, Gate};
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate_table::{GateTable, Kind};
 use crate::animation::lod::Lod;
 use crate::animation::phase::Phase;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
@@ -31,8 +31,8 @@ pub struct Gating {
     pub lods: Buffer<Lod>,
     /// Written by [`crate::animation::phase::PhasePass`].
     pub phases: Buffer<Phase>,
-    /// Each instance's last clip + 1, with the highest bit where layers lay above it; its last turns / 16; as bits, its
-    /// last time inside the clip; and nothing. Zeros: no pose is stored.
+    /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
+    /// bits, its last time inside the clip; and nothing. Zeros: no pose is stored.
     pub history: Buffer<[u32; 4]>,
     /// For each slot of each instance, the sum of motion when it was sampled last.
     pub sampled: Buffer<u32>,
@@ -42,6 +42,7 @@ pub struct Gating {
     pub(crate) table: Buffer<[u32; 2]>,
     pub(crate) words: u32,
     pub(crate) stride: u32,
+    pub(crate) kind: Kind,
 }
 
 impl Gating {
@@ -64,6 +65,7 @@ impl Gating {
             table: Buffer::from_slice(gpu, "gate table", table.rows())?,
             words: table.words() as u32,
             stride: table.stride() as u32,
+            kind: table.kind(),
         })
     }
 }
@@ -94,7 +96,7 @@ impl GatePass {
     /// Prepares the decision, from a crowd's phases.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`InputError`] for a table of another kind than the gate needs; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -102,6 +104,11 @@ impl GatePass {
         gating: &Gating,
         active: &Active,
     ) -> Result<GateJob, Error> {
+        match self.gate {
+            Gate::SkipPeriod { .. } => gating.kind.check(Kind::Priorities)?,
+            Gate::Bounded => gating.kind.check(Kind::Bounds)?,
+            Gate::Off | Gate::Uniform | Gate::Random => {}
+        }
         let params = GateParams {
             instances: gating.lods.len() as u32,
             bones: crowd.bones as u32,

@@ -33,7 +33,7 @@ impl PhasePass {
     /// Prepares the phases of a crowd.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`InputError`] for a table of other clips; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -41,6 +41,11 @@ impl PhasePass {
         crowd: &Crowd,
         gating: &Gating,
     ) -> Result<PhaseJob, Error> {
+        let clips_len = gating.movers.len() / (gating.words as usize + 1);
+        if clips_len != clips.clips.len() {
+            let bound = format!("must be {}, those of the set", clips.clips.len());
+            return Err(InputError::new("table.clips", clips_len, bound).into());
+        }
         let params = PhaseParams {
             instances: gating.lods.len() as u32,
             elapsed: 0.0,

@@ -35,7 +35,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
         let lods = vec![Lod::FULL; count];
         let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
-        let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0, 0);
+        let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
         let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
         gating.phases.write(gpu, &phases)?;
         let job = pass.prepare(gpu, &scene.crowd, &gating, &active)?;

@@ -34,7 +34,7 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
     let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
     let lods = vec![Lod { omega: OMEGA_ONE / 2, allowed: 1 << 16, ..Lod::FULL }; count];
     let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
-    let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0, 0);
+    let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
     let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
     gating.lods.write(gpu, &lods)?;
     gating.phases.write(gpu, &phases)?;

@@ -30,7 +30,7 @@ pub fn budget(
             continue;
         }
         for slot in movers(table, phase) {
-            let missed = motion_between(motion_now(table, phase, slot), sampled[first + slot]);
+            let missed = missed_by(table, phase, slot, sampled[first + slot]);
             if missed > 0 || is_unlimited {
                 ranked.push((rank_of(missed, lod.weight), first + slot));
             }
@@ -56,9 +56,13 @@ fn movers(table: &GateTable, phase: &Phase) -> impl Iterator<Item = usize> {
 }
 
 fn motion_now(table: &GateTable, phase: &Phase, slot: usize) -> u32 {
+    motion_at(table.motion(phase.row, slot), phase)
+}
+
+fn missed_by(table: &GateTable, phase: &Phase, slot: usize, last: u32) -> u32 {
     let (periods, _) = table.record(phase.clip);
     let [period, _] = table.motion(periods, slot);
-    motion_at(table.motion(phase.row, slot), period, phase)
+    motion_between(motion_now(table, phase, slot), last, period)
 }
 
 /// 1 to 768, by the logarithm of `missed · weight`: sixteen an octave.

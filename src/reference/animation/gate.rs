@@ -123,9 +123,9 @@ fn by_motion(
     let mut active = forced;
     for bit in bits_of(candidates | forced) {
         let [period, slack] = table.motion(periods, at.first + bit);
-        let now = motion_at(table.motion(phase.row, at.first + bit), period, phase);
-        let missed = motion_between(now, sampled[bit]);
-        if forced >> bit & 1 != 0 || (missed > 0 && missed.wrapping_add(slack) > lod.allowed) {
+        let now = motion_at(table.motion(phase.row, at.first + bit), phase);
+        let missed = motion_between(now, sampled[bit], period);
+        if forced >> bit & 1 != 0 || missed.wrapping_add(slack) > lod.allowed {
             active |= 1 << bit;
             sampled[bit] = now;
         }
@@ -138,15 +138,13 @@ pub fn share_of(value: u32, fraction: u32) -> u32 {
     ((u64::from(value) * u64::from(fraction)) >> 16) as u32
 }
 
-/// How far a bone has moved along its clip, modulo 2³²: `row` is the sum at the row's start and its rise to the next,
-/// `period` that of the whole clip.
-pub fn motion_at([start, rise]: [u32; 2], period: u32, phase: &Phase) -> u32 {
-    start
-        .wrapping_add(share_of(rise, phase.fraction()))
-        .wrapping_add((phase.turns as u32).wrapping_mul(period))
+/// How far a bone has moved along its clip: `row` is the sum at the row's start and its rise to the next.
+pub fn motion_at([start, rise]: [u32; 2], phase: &Phase) -> u32 {
+    start.wrapping_add(share_of(rise, phase.fraction()))
 }
 
-/// On either way.
-pub fn motion_between(now: u32, last: u32) -> u32 {
-    (now.wrapping_sub(last) as i32).unsigned_abs()
+/// The shorter way between two sums: directly, or over the clip's end. `period`: that of the whole clip.
+pub fn motion_between(now: u32, last: u32, period: u32) -> u32 {
+    let direct = now.abs_diff(last);
+    direct.min(period.max(direct) - direct)
 }

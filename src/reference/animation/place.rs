@@ -4,26 +4,23 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::Wrap;
 
-/// The seconds since the clip's start, inside the clip, and how often it began again before: in the order of
-/// `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more exact where times are large.
-pub fn clock(wrap: Wrap, duration: f32, time: f32) -> (f32, i32) {
+/// Seconds since the clip's start, inside the clip, in the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more
+/// exact where times are large.
+pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
-        return (0.0, 0);
+        return 0.0;
     }
     if wrap == Wrap::Clamp {
-        return (time.max(0.0).min(duration), 0);
+        return time.max(0.0).min(duration);
     }
-    let mut turns = (time / duration).floor();
-    let mut inside = time - turns * duration;
+    let mut inside = time - (time / duration).floor() * duration;
     if inside < 0.0 {
         inside += duration;
-        turns -= 1.0;
     }
     if inside >= duration {
         inside -= duration;
-        turns += 1.0;
     }
-    (inside, turns.clamp(-1e9, 1e9) as i32)
+    inside
 }
 
 /// Where a time lies among key times. The last of equal times counts.
@@ -68,7 +65,7 @@ pub fn places(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<Place>
 pub fn places_into(set: &ClipSet, instances: &[Instance], elapsed: f32, places: &mut [Place]) {
     for (instance, places) in instances.iter().zip(places.chunks_mut(set.timelines_a_clip())) {
         let clip = &set.clips()[instance.clip as usize];
-        let (time, _) = clock(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
+        let time = inside_clip(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
         let timelines = &set.timelines()[clip.first_timeline as usize..][..clip.timelines as usize];
         let (used, rest) = places.split_at_mut(timelines.len());
         for (timeline, found) in timelines.iter().zip(used) {

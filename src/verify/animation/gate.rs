@@ -18,8 +18,7 @@ use crate::reference::animation::gate::gate;
 use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
-/// Every mode, frame after frame, with whole numbers of every size: Ω from 0 to 1, phases at both ends of rows, turns
-/// in both directions, ticks before and after they begin again, all verdicts. Equal integers decide alike: to the bit.
+/// Every mode, frame after frame, with whole numbers of every size: Ω from 0 to 1, phases at both ends of rows, ticks before and after they begin again, all verdicts. Equal integers decide alike: to the bit.
 ///
 /// # Errors
 /// What the device reports.
@@ -119,7 +118,7 @@ pub(super) fn random_state(
             2 => Verdict::Blended,
             _ => Verdict::Free,
         };
-        Phase::new(row, fraction, verdict, draw.word() as i32 >> (draw.word() % 32), clip)
+        Phase::new(row, fraction, verdict, clip)
     };
     (0..count).map(|_| (lod(draw), phase(draw))).unzip()
 }

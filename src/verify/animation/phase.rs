@@ -15,7 +15,7 @@ use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
 /// Frame after frame: the first, some hidden and some refreshed, others' clips and layers changed, and a leap
-/// of many turns. Times are whole 64ths of a second and clips too, so that all devices agree on every turn and
+/// of many turns. Times are whole 64ths of a second and clips too, so that all devices agree on every
 /// key; on a fraction they may differ by 1, from rounding of its division.
 ///
 /// # Errors

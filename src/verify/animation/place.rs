@@ -11,7 +11,7 @@ use crate::animation::gate_table::GateTable;
 use crate::animation::layers::{Layer, all_instances};
 use crate::animation::place::{Instance, PLACE_BOUND, Place, PlacePass};
 use crate::animation::sample::Wrap;
-use crate::reference::animation::place::{clock, places};
+use crate::reference::animation::place::{inside_clip, places};
 use crate::verify::compare::Comparison;
 use crate::verify::poison::{POISON, Poisoned};
 use crate::verify::{Cases, compare};
@@ -72,7 +72,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
         active.dispatches.write(gpu, &dispatches)?;
         let seen: Vec<f32> = base
             .iter()
-            .map(|instance| clock(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25).0)
+            .map(|instance| inside_clip(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25))
             .collect();
         gating.history.write(gpu, &seen.iter().map(|time| [1, 0, time.to_bits(), 0]).collect::<Vec<_>>())?;
         let job = pass.prepare_active(gpu, &clips, &crowd, &gating, &active)?;
