@@ -1,5 +1,7 @@
 //! Skeletons, clips, their import and their sampling, against code of its own in double precision.
 
+#[cfg(feature = "gpu")]
+mod bounded;
 mod bounds;
 mod concatenation;
 #[cfg(feature = "gpu")]

@@ -9,7 +9,7 @@ use crate::animation::phase::{Phase, Verdict};
 /// instance, the sum of motion when it was sampled last.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need.
+/// With fewer levels or sums than the phases need, and with a table without motion.
 pub fn budget(
     table: &GateTable,
     budget: u32,

@@ -9,7 +9,7 @@ use crate::animation::phase::{Phase, Verdict};
 /// instance, the sum of motion when it was sampled last; [`Gate::Bounded`] alone uses it.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need.
+/// With fewer levels or sums than the phases need, and with a table of another kind than the gate needs.
 pub fn gate(
     table: &GateTable,
     gate: Gate,
