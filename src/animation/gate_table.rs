@@ -14,6 +14,12 @@ use crate::InputError;
 /// 2³¹.
 const MOST_MOTION: f64 = (1 << 26) as f64;
 
+/// Power of the rates of motion that shares are made of. 1 needs the fewest samples for a bound, 0 takes all moving bones
+/// alike. But bounds add up what in truth points many ways, and fast bones are sampled every frame in any case: on walks
+/// and runs (`relievo crowd --pareto`) 0.2 needs 0.7 to 1 times the samples of 1 for the same largest error, and 0 a
+/// little more.
+const EVENNESS: f64 = 0.2;
+
 /// The most entries.
 const MOST_ENTRIES: usize = 1 << 27;
 
@@ -321,7 +327,7 @@ impl Column {
 
 /// Divides each bone's motion by its share of what is allowed.
 fn share_out(skeleton: &Skeleton, columns: &mut [Column]) {
-    let rates: Vec<f64> = columns.iter().map(Column::total).collect();
+    let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
     for (column, share) in columns.iter_mut().zip(shares(skeleton, &rates)) {
         if share > 0.0 {
             column.scale(share.recip());

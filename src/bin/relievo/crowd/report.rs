@@ -140,6 +140,10 @@ impl On {
         Ok(match plan.backend {
             #[cfg(feature = "gpu")]
             Backend::Gpu => Self::Device(context.gpu()?),
+            #[cfg(not(feature = "gpu"))]
+            Backend::Gpu => {
+                return Err(InputError::new("backend", "gpu", "must be cpu: built without gpu").into());
+            }
             Backend::Cpu => Self::Cpu,
         })
     }
