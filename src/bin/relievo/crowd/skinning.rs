@@ -44,6 +44,7 @@ pub enum Skinning {
 }
 
 /// Every influence of every instance.
+#[cfg(feature = "gpu")]
 pub const FULL: Skinning = Skinning::All(Reduction::FULL);
 
 impl Skinning {
