@@ -57,6 +57,15 @@ impl Timer {
         Ok(Self { queries: Some((set, Buffer::new(gpu, "timer", 2)?, resolved)) })
     }
 
+    /// A timer around work that draws too: wall time on processors, as lavapipe's timestamps around compute work are too
+    /// short once a picture has been drawn.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`].
+    pub fn for_drawing(gpu: &Gpu) -> Result<Self, GpuError> {
+        if gpu.adapter().kind == "cpu" { Ok(Self { queries: None }) } else { Self::new(gpu) }
+    }
+
     /// What [`Timer::measure`] measures with.
     pub fn timed_by(&self) -> TimedBy {
         if self.queries.is_some() { TimedBy::Timestamp } else { TimedBy::Wall }

@@ -66,6 +66,18 @@ impl SkinFrame {
         Ok(Self { mesh, clusters, crowd, select, active, skinned, before, selection, all, some })
     }
 
+    /// The same, with the bones that moved where somebody else writes them: a gate's
+    /// [`Active::dirty`](crate::animation::compact::Active::dirty), of as many instances.
+    ///
+    /// # Errors
+    /// [`InputError`] for fewer bits than the skeletons of all instances need; [`crate::gpu::GpuError`].
+    pub fn with_moved(mut self, gpu: &Gpu, moved: &Buffer<u32>) -> Result<Self, Error> {
+        self.select.moved = moved.clone();
+        self.selection =
+            SelectPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &self.select, &self.active)?;
+        Ok(self)
+    }
+
     /// Records the skinning of every vertex.
     pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder) {
         self.before.iter().chain([&self.all]).for_each(|job| job.record(encoder));

@@ -7,6 +7,7 @@ mod harness;
 mod bad_input;
 mod commands;
 mod crowd;
+mod crowd_drawn;
 mod pose;
 mod priorities;
 mod relief;

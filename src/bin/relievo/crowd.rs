@@ -2,15 +2,22 @@
 
 #[cfg(feature = "gpu")]
 mod device;
+#[cfg(feature = "gpu")]
+mod drawn;
 mod errors;
 mod gates;
 mod pareto;
 mod plan;
 mod play;
 mod report;
+#[cfg(feature = "gpu")]
+mod scene;
+mod skinning;
 mod stage;
 mod twin;
 mod verdict;
+#[cfg(feature = "gpu")]
+mod vertices;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -22,6 +29,11 @@ use crate::Context;
 use crate::terrain::Backend;
 use gates::Mode;
 use plan::Plan;
+#[cfg(feature = "gpu")]
+use {relievo::reference::animation::crowd::Choice, skinning::Drawn};
+
+/// Files of `--scene`, besides pictures.
+const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 
 /// Plays a crowd under animation level of detail, and measures what it saves and what it costs: A's experiment
 /// (section 13), with the error that A left out.
@@ -62,6 +74,24 @@ use plan::Plan;
 ///     pixels
 ///   "jump" {"max_metres", "max_pixels"}: the largest change of a point's error from one frame to the next
 /// and cost.png, interpolations.png, error.png: the same against distance.
+///
+/// With --image, on the GPU, DIR/crowd_<distance>.png too: the last frame of the gated crowd, its skin textured and lit,
+/// 1920 × 1080 pixels. Clusters of 64 vertices with a bone that moved are skinned, once, in compute, and drawn from
+/// there; morph targets stay as at rest; the gate watches every vertex. "skinning" is what vertices follow (--skinning),
+/// and "distances" also have
+///   "nanoseconds_per_vertex": palettes, the choice of clusters and vertices, divided by all vertices of the crowd
+///   "frame_nanoseconds": gate, places, sampling, concatenation, who is seen, skinning, and the drawing, in one
+///     submission; "compute_nanoseconds", "draw_nanoseconds": what precedes the drawing, and the drawing, each alone
+///   "full_…" of each: the same crowd without a gate, fully skinned
+///   "skinned_share": clusters that were skinned, of all, in the frames that were timed
+///   "drawn_timed_by": as "timed_by", of these; on a processor wall
+///   "vertex_error": as "error", of all skinned vertices from those of the full crowd, in the frames that were timed
+///
+/// With --scene, instead: the whole frame at each distance in four ways, which differ in nothing else: "off" (all bones,
+/// all influences), "animation" (the gate), "skinning" (--skinning), "both". DIR/scene.json: what report.json says of
+/// the crowd, "vertices", and "distances": "distance", "tall_pixels" (size of the nearest instance), "mean_omega", for
+/// each way the fields above, and "cheaper" {"frame", "compute"}, off divided by both. scene.png: "frame_nanoseconds"
+/// against distance; crowd_<distance>.png: both.
 ///
 /// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
 /// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
@@ -131,6 +161,16 @@ pub struct Crowd {
     /// --pareto: pixels that the model's largest extent takes.
     #[arg(long, value_name = "PIXELS", default_value_t = 100.0, allow_hyphen_values = true)]
     tall: f32,
+    /// Draws the crowd, and times the whole frame.
+    #[arg(long, conflicts_with = "pareto")]
+    image: bool,
+    /// Draws the crowd with and without level of detail in animation and skinning.
+    #[arg(long, conflicts_with_all = ["pareto", "image"])]
+    scene: bool,
+    /// Which bones vertices follow: all of theirs; the K strongest; or all, fading to one over --range. Default: full,
+    /// with --scene fade.
+    #[arg(long, value_name = "full|truncate:K|fade")]
+    skinning: Option<String>,
     /// The folder.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -146,10 +186,11 @@ enum Layout {
 impl Crowd {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let plan = Plan::new(self)?;
-        if self.pareto {
-            pareto::run(&plan, &self.out)?;
-        } else {
-            report::run(&plan, context, &self.out)?;
+        match plan.drawn {
+            _ if self.pareto => pareto::run(&plan, &self.out)?,
+            #[cfg(feature = "gpu")]
+            Some(Drawn::Scene) => scene::run(&plan, context, &self.out)?,
+            _ => report::run(&plan, context, &self.out)?,
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -22,16 +22,16 @@ pub struct Device {
     gpu: Gpu,
     timer: Timer,
     rate: f64,
-    gated: Gated,
-    full: Full,
+    pub(super) gated: Gated,
+    pub(super) full: Full,
     stale: Vec<Affine>,
     fresh: Vec<Affine>,
 }
 
 /// The crowd under a gate.
-struct Gated {
-    crowd: Crowd,
-    active: Active,
+pub(super) struct Gated {
+    pub(super) crowd: Crowd,
+    pub(super) active: Active,
     place: PlaceJob,
     phase: PhaseJob,
     decide: Decide,
@@ -55,8 +55,8 @@ impl Decide {
 }
 
 /// Everything of everybody.
-struct Full {
-    crowd: Crowd,
+pub(super) struct Full {
+    pub(super) crowd: Crowd,
     place: PlaceJob,
     sample: Job,
     concat: ConcatJob,
@@ -87,6 +87,13 @@ impl Device {
         Ok(Timer::new(gpu)?.timed_by())
     }
 
+    /// Chooses the frame that is recorded next.
+    pub fn set(&self, number: u32) -> Result<(), Error> {
+        let (frame, elapsed) = frame(number, self.rate);
+        self.gated.set(&self.gpu, &frame, elapsed)?;
+        self.full.place.set(&self.gpu, elapsed)
+    }
+
     fn timed(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<f64, Error> {
         Ok(self.timer.measure(&self.gpu, record)?.nanoseconds)
     }
@@ -111,9 +118,7 @@ impl Device {
 
 impl Play for Device {
     fn play(&mut self, number: u32, is_timed: bool) -> Result<Played, Error> {
-        let (frame, elapsed) = frame(number, self.rate);
-        self.gated.set(&self.gpu, &frame, elapsed)?;
-        self.full.place.set(&self.gpu, elapsed)?;
+        self.set(number)?;
         let times = if is_timed {
             Some(self.play_timed()?)
         } else {
@@ -204,7 +209,7 @@ impl Gated {
         self.sample.record(encoder);
     }
 
-    fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.record_gate(encoder);
         self.record_sample(encoder);
         self.concat.record(encoder);
@@ -227,7 +232,7 @@ impl Full {
         self.sample.record(encoder);
     }
 
-    fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.record_sample(encoder);
         self.concat.record(encoder);
     }

@@ -91,25 +91,30 @@ impl<'a> Meter<'a> {
             sum.jump.max_metres = sum.jump.max_metres.max(share.jump.max_metres);
             sum.jump.max_pixels = sum.jump.max_pixels.max(share.jump.max_pixels);
         }
-        let errors = Errors {
-            rms_metres: sum.metres.rms(),
-            p99_metres: sum.metres.percentile(0.99),
-            max_metres: sum.metres.max,
-            rms_pixels: sum.pixels.rms(),
-            p99_pixels: sum.pixels.percentile(0.99),
-            max_pixels: sum.pixels.max,
-            points: sum.metres.count,
-            unseen: sum.unseen,
-        };
-        (errors, sum.jump)
+        (Errors::of(&sum.metres, &sum.pixels, sum.unseen), sum.jump)
+    }
+}
+
+impl Errors {
+    pub(super) fn of(metres: &Tally, pixels: &Tally, unseen: u64) -> Self {
+        Self {
+            rms_metres: metres.rms(),
+            p99_metres: metres.percentile(0.99),
+            max_metres: metres.max,
+            rms_pixels: pixels.rms(),
+            p99_pixels: pixels.percentile(0.99),
+            max_pixels: pixels.max,
+            points: metres.count,
+            unseen,
+        }
     }
 }
 
 /// An instance as the camera has it.
-struct View {
-    origin: [f32; 3],
-    turn: [f32; 2],
-    lens: Lens,
+pub(super) struct View {
+    pub(super) origin: [f32; 3],
+    pub(super) turn: [f32; 2],
+    pub(super) lens: Lens,
 }
 
 impl View {
@@ -120,7 +125,7 @@ impl View {
     }
 
     /// Pixels between a point and another, `way` off; and pixels of a metre there.
-    fn pixels(&self, point: [f64; 3], way: [f64; 3]) -> Option<[f64; 2]> {
+    pub(super) fn pixels(&self, point: [f64; 3], way: [f64; 3]) -> Option<[f64; 2]> {
         let (turned, way) = (self.turned(point), self.turned(way));
         let [x, y, z]: [f64; 3] = std::array::from_fn(|i| turned[i] + f64::from(self.origin[i]));
         let [x2, y2, z2] = [x + way[0], y + way[1], z + way[2]];
@@ -163,12 +168,13 @@ impl Share {
     }
 }
 
-fn length([x, y, z]: [f64; 3]) -> f64 {
+pub(super) fn length([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
 /// Values, counted by size: percentiles are at most a 64th too large.
-struct Tally {
+#[derive(Clone)]
+pub(super) struct Tally {
     count: u64,
     squares: f64,
     max: f64,
@@ -177,11 +183,11 @@ struct Tally {
 }
 
 impl Tally {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { count: 0, squares: 0.0, max: 0.0, bins: vec![0; 1 << (31 - BIN_SHIFT)] }
     }
 
-    fn add(&mut self, value: f64) {
+    pub(super) fn add(&mut self, value: f64) {
         self.count += 1;
         self.squares += value * value;
         self.max = self.max.max(value);
@@ -190,7 +196,7 @@ impl Tally {
         }
     }
 
-    fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         self.count += other.count;
         self.squares += other.squares;
         self.max = self.max.max(other.max);

@@ -85,7 +85,7 @@ pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
     write_bytes(&staged.path(pareto), &json(&report)?)?;
     save(&staged.path(largest), &picture(chart(plan, &points, "Largest", |error| error.max_pixels))?)?;
     save(&staged.path(rms), &picture(chart(plan, &points, "Rms", |error| error.rms_pixels))?)?;
-    staged.remove_stale(|name| report::FILES.contains(&name));
+    staged.remove_stale(report::is_ours);
     staged.publish()?;
     say(format_args!("{}\n{}", table(&points), verdict_table(&verdicts).trim_end()))
 }

@@ -6,16 +6,17 @@ use relievo::animation::{Clip, Model, Range};
 use relievo::{Error, animation::lod::Lens};
 
 use super::gates::{Mode, TICKS};
+use super::skinning::{Drawn, Skinning};
 use super::{Crowd, Layout};
 use crate::pose::{find, open};
 use crate::priorities;
 use crate::terrain::Backend;
 
 /// Lines of the picture.
-const LINES: u32 = 1080;
+pub const LINES: u32 = 1080;
 
 /// Radians, vertical.
-const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
+pub const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
 
 /// The near plane, in units.
 const NEAR: f32 = 1.0;
@@ -47,6 +48,8 @@ pub struct Plan {
     pub rate: f64,
     pub backend: Backend,
     pub tall: f32,
+    pub drawn: Option<Drawn>,
+    pub skinning: Skinning,
 }
 
 impl Plan {
@@ -72,6 +75,20 @@ impl Plan {
         if a.gate == Some(Mode::Budget) && a.budget.is_none() {
             return Err(InputError::new("budget", "nothing", "must be the most bones a frame").into());
         }
+        let drawn = match (a.scene, a.image) {
+            (true, _) => Some(Drawn::Scene),
+            (false, true) => Some(Drawn::Image),
+            (false, false) => None,
+        };
+        if drawn.is_some() && a.backend == Backend::Cpu {
+            return Err(InputError::new("backend", "cpu", "must be gpu, as the crowd is drawn").into());
+        }
+        drawn.map_or(Ok(()), |drawn| drawn.check(a.frames))?;
+        if drawn.is_none() && a.skinning.is_some() {
+            return Err(InputError::new("skinning", "given", "must come with --image or --scene").into());
+        }
+        let faded = if a.scene { "fade" } else { "full" };
+        let skinning = a.skinning.as_deref().unwrap_or(faded);
         let model = open(&a.model)?;
         let clip = find(&model, &a.model, &a.clip)?.clone();
         let weights = priorities::weights(a.weights.as_deref(), &model.skeleton, &clip, true)?;
@@ -95,6 +112,8 @@ impl Plan {
             rate: a.rate,
             backend: a.backend,
             tall: a.tall,
+            drawn,
+            skinning: Skinning::new(skinning, range)?,
         })
     }
 

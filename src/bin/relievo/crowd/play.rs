@@ -93,12 +93,14 @@ pub fn run(
     Ok(Found { interpolated, concatenated, errors, jump, gated, full })
 }
 
+/// The median, where there is one.
+pub fn middle(mut times: Vec<f64>) -> Option<f64> {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied()
+}
+
 fn medians(times: &[Stages]) -> Stages {
-    let median = |of: &dyn Fn(&Stages) -> Option<f64>| {
-        let mut all: Vec<f64> = times.iter().filter_map(of).collect();
-        all.sort_by(f64::total_cmp);
-        all.get(all.len() / 2).copied()
-    };
+    let median = |of: &dyn Fn(&Stages) -> Option<f64>| middle(times.iter().filter_map(of).collect());
     Stages {
         gate: median(&|times| times.gate),
         sample: median(&|times| times.sample),

@@ -25,7 +25,7 @@ const SIZE: (u32, u32) = (800, 500);
 
 /// The gate and its parameters.
 #[derive(Serialize)]
-struct GateReport {
+pub struct GateReport {
     mode: Mode,
     #[serde(skip_serializing_if = "Option::is_none")]
     period: Option<f64>,
@@ -38,7 +38,7 @@ struct GateReport {
 }
 
 impl GateReport {
-    fn new(plan: &Plan) -> Self {
+    pub fn new(plan: &Plan) -> Self {
         let (mode, _) = gate_of(plan);
         let is_periodic = mode == Mode::SkipPeriod;
         Self {
@@ -48,6 +48,21 @@ impl GateReport {
             budget: plan.budget.filter(|_| mode == Mode::Budget),
             pixels: (mode == Mode::Bounded).then_some(plan.pixels),
         }
+    }
+
+    /// The gate's name.
+    #[cfg(feature = "gpu")]
+    pub fn mode(&self) -> &'static str {
+        self.mode.name()
+    }
+}
+
+/// What the times are taken by.
+#[cfg(feature = "gpu")]
+pub fn clock(timed_by: relievo::gpu::TimedBy) -> &'static str {
+    match timed_by {
+        relievo::gpu::TimedBy::Timestamp => "timestamp",
+        relievo::gpu::TimedBy::Wall => "wall",
     }
 }
 
@@ -72,7 +87,13 @@ struct Report<'a> {
     frames: u32,
     rate: f64,
     focal_pixels: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skinning: Option<String>,
     distances: Vec<Row>,
+    /// By the names of their files.
+    #[cfg(feature = "gpu")]
+    #[serde(skip)]
+    pictures: Vec<(String, image::RgbaImage)>,
 }
 
 #[derive(Serialize)]
@@ -88,6 +109,22 @@ struct Row {
     full_nanoseconds_per_bone: Stages,
     error: Errors,
     jump: Jump,
+    #[cfg(feature = "gpu")]
+    #[serde(flatten)]
+    drawn: Option<DrawnRow>,
+}
+
+/// What `--image` adds.
+#[cfg(feature = "gpu")]
+#[derive(Serialize)]
+struct DrawnRow {
+    drawn_timed_by: &'static str,
+    #[serde(flatten)]
+    gated: super::vertices::Figures,
+    full_nanoseconds_per_vertex: f64,
+    full_frame_nanoseconds: f64,
+    full_compute_nanoseconds: f64,
+    full_draw_nanoseconds: f64,
 }
 
 /// What plays.
@@ -114,10 +151,7 @@ impl On {
     fn timed_by(&self) -> Result<&'static str, Error> {
         Ok(match self {
             #[cfg(feature = "gpu")]
-            Self::Device(gpu) => match super::device::Device::timed_by(gpu)? {
-                relievo::gpu::TimedBy::Timestamp => "timestamp",
-                relievo::gpu::TimedBy::Wall => "wall",
-            },
+            Self::Device(gpu) => clock(super::device::Device::timed_by(gpu)?),
             Self::Cpu => "wall",
         })
     }
@@ -139,7 +173,11 @@ pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     for (name, chart) in charts(&report) {
         save(&staged.path(name), &picture(chart)?)?;
     }
-    staged.remove_stale(|name| pareto::FILES.contains(&name));
+    #[cfg(feature = "gpu")]
+    for (name, picture) in &report.pictures {
+        save(&staged.path(name), picture)?;
+    }
+    staged.remove_stale(is_ours);
     staged.publish()?;
     say(table(&report).trim_end())
 }
@@ -171,6 +209,11 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
         rows.push(row(&stage, *distance, omega, moving_bones(&movers), &found));
     }
     progress.finish_and_clear();
+    #[cfg(feature = "gpu")]
+    let pictures = match &on {
+        On::Device(gpu) if plan.drawn.is_some() => draw(gpu, &stage, (&table, choice), &mut rows)?,
+        _ => Vec::new(),
+    };
     let [adapter, driver] = on.names();
     Ok(Report {
         adapter,
@@ -192,7 +235,10 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
         frames: plan.frames,
         rate: plan.rate,
         focal_pixels: stage.lens.focal_pixels,
+        skinning: plan.drawn.map(|_| plan.skinning.to_string()),
         distances: rows,
+        #[cfg(feature = "gpu")]
+        pictures,
     })
 }
 
@@ -212,7 +258,42 @@ fn row(stage: &Stage<'_>, distance: f32, mean_omega: f64, moving_bones: usize, f
         full_nanoseconds_per_bone: found.full.a_bone(pairs),
         error: found.errors,
         jump: found.jump,
+        #[cfg(feature = "gpu")]
+        drawn: None,
     }
+}
+
+/// The crowd with its skin beside the full one, at each of these distances.
+#[cfg(feature = "gpu")]
+fn draw(
+    gpu: &relievo::gpu::Gpu,
+    stage: &Stage<'_>,
+    (table, choice): (&relievo::animation::GateTable, super::Choice),
+    rows: &mut [Row],
+) -> Result<Vec<(String, image::RgbaImage)>, Error> {
+    use super::drawn::{By, Drawing};
+    let plan = stage.plan;
+    let ways = [(By::All, super::skinning::FULL), (By::Gate, plan.skinning)];
+    let progress = bar(rows.len() as u64 * u64::from(plan.frames + 1), "drawing");
+    let mut pictures = Vec::with_capacity(rows.len());
+    for row in rows {
+        let scene = stage.scene(row.distance);
+        let lods = stage.lods(&scene, table, plan.pixels);
+        let mut drawing = Drawing::new(gpu, stage, &scene, (table, choice, &lods), &ways)?;
+        let figures = drawing.run(|| progress.inc(1))?;
+        let (full, gated) = (figures[0], figures[1]);
+        row.drawn = Some(DrawnRow {
+            drawn_timed_by: clock(Drawing::timed_by(gpu)?),
+            gated,
+            full_nanoseconds_per_vertex: full.nanoseconds_per_vertex,
+            full_frame_nanoseconds: full.frame_nanoseconds,
+            full_compute_nanoseconds: full.compute_nanoseconds,
+            full_draw_nanoseconds: full.draw_nanoseconds,
+        });
+        pictures.push((file_name(row.distance), drawing.picture(1)?));
+    }
+    progress.finish_and_clear();
+    Ok(pictures)
 }
 
 fn table(report: &Report<'_>) -> String {
@@ -302,4 +383,17 @@ pub fn picture(chart: Chart) -> Result<image::RgbaImage, InputError> {
 }
 
 /// Files of this command without `--pareto`.
-pub const FILES: [&str; 4] = ["report.json", "cost.png", "interpolations.png", "error.png"];
+const FILES: [&str; 4] = ["report.json", "cost.png", "interpolations.png", "error.png"];
+
+/// The picture of a distance.
+#[cfg(feature = "gpu")]
+pub fn file_name(distance: f32) -> String {
+    format!("crowd_{distance}.png")
+}
+
+/// Whether this command writes files of this name.
+pub fn is_ours(name: &str) -> bool {
+    let is_picture = name.strip_prefix("crowd_").and_then(|name| name.strip_suffix(".png"));
+    [&FILES[..], &pareto::FILES, &super::SCENE_FILES].concat().contains(&name)
+        || is_picture.is_some_and(|distance| distance.parse::<f32>().is_ok())
+}

@@ -4,6 +4,7 @@ use relievo::InputError;
 use relievo::animation::{ClipSet, GateTable, Instance, Lens, Lod, Order, lod::OMEGA_ONE, sample::Wrap};
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::gate::scramble;
+use relievo::skinning;
 
 use super::Layout;
 use super::gates::{Mode, Source};
@@ -16,6 +17,8 @@ pub struct Stage<'a> {
     pub set: ClipSet,
     /// Metres from each bone, along its axes, where errors are measured: its length.
     pub reaches: Vec<f32>,
+    /// How far gates keep watch: as far, and where the crowd is drawn, to the last vertex.
+    watched: Vec<f32>,
     pub instances: Vec<Instance>,
     pub metres_a_unit: f32,
     pub lens: Lens,
@@ -43,11 +46,15 @@ impl<'a> Stage<'a> {
         }
         let metres_a_unit = (extent / f64::from(plan.size)) as f32;
         let starts = (0..plan.instances as u32).map(|at| plan.clip.duration() * chance(plan.seed, at, 0));
+        // Up, so that it reaches all the points.
+        let reaches: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
+        let meshes = if plan.drawn.is_some() { &plan.model.meshes[..] } else { &[] };
+        let vertices = skinning::reaches(skeleton.len(), &plan.model.skins, meshes);
         Ok(Self {
             order: Order::new(skeleton),
             set,
-            // Up, so that it reaches all the points.
-            reaches: lengths.iter().map(|length| (*length as f32).next_up()).collect(),
+            watched: reaches.iter().zip(&vertices).map(|(bone, vertex)| bone.max(*vertex)).collect(),
+            reaches,
             instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
             metres_a_unit,
             lens: plan.lens(metres_a_unit),
@@ -62,7 +69,7 @@ impl<'a> Stage<'a> {
             clip: &self.plan.clip,
             order: &self.order,
             set: &self.set,
-            reaches: &self.reaches,
+            reaches: &self.watched,
             weights: &self.plan.weights,
         };
         source.table(mode)

@@ -1,0 +1,345 @@
+//! The crowd with its skin, on screen: looks at the same frames, each with what it takes and how far its vertices lie
+//! from where full animation and full skinning put them.
+
+use glam::{Mat4, Vec3, camera};
+use image::{Rgba, RgbaImage};
+use relievo::animation::{Affine, GateTable, Lod};
+use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
+use relievo::reference::animation::crowd::Choice;
+use relievo::render::ColorTexture;
+use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
+use relievo::render::target::{COLOR_FORMAT, Target};
+use relievo::skinning::frame::SkinFrame;
+use relievo::skinning::lod::{LodJob, LodPass, LodView, ball};
+use relievo::skinning::picture::Light;
+use relievo::skinning::{Blend, Reduction};
+use relievo::surface::mips::Mips;
+use relievo::{Error, InputError};
+
+use super::device::Device;
+use super::plan::{FIELD_OF_VIEW, LINES};
+use super::play::middle;
+use super::skinning::Skinning;
+use super::stage::{Scene, Stage};
+use super::vertices::{Figures, Spread};
+
+/// Frames of a run that are timed.
+const TIMED: u32 = 45;
+
+/// Steps of the fade.
+const STEPS: u32 = 64;
+
+/// Linear.
+const SKY: [f64; 3] = [0.02, 0.025, 0.03];
+
+/// Width of the picture over its height.
+const ASPECT: [u32; 2] = [16, 9];
+
+/// Who animates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// The crowd under the gate; clusters with a bone that moved are skinned.
+    Gate,
+    /// Everything of everybody, in animation and skinning.
+    All,
+}
+
+/// Looks at a crowd. The first is what the others are compared with.
+pub struct Drawing<'a> {
+    gpu: &'a Gpu,
+    stage: &'a Stage<'a>,
+    scene: &'a Scene,
+    device: Device,
+    timer: Timer,
+    target: Target,
+    looks: Vec<Look>,
+}
+
+/// A way to animate and skin, and its own vertices.
+struct Look {
+    by: By,
+    meshes: Vec<Drawable>,
+    times: Times,
+    spread: Spread,
+    clusters: [u64; 2],
+}
+
+/// Nanoseconds, frame by frame.
+#[derive(Default)]
+struct Times {
+    frame: Vec<f64>,
+    compute: Vec<f64>,
+    draw: Vec<f64>,
+    skin: Vec<f64>,
+}
+
+struct Drawable {
+    skin: SkinFrame,
+    lod: LodJob,
+    scene: SkinnedScene,
+}
+
+impl<'a> Drawing<'a> {
+    /// A look for each of `ways`.
+    pub fn new(
+        gpu: &'a Gpu,
+        stage: &'a Stage<'a>,
+        scene: &'a Scene,
+        (table, choice, lods): (&GateTable, Choice, &[Lod]),
+        ways: &[(By, Skinning)],
+    ) -> Result<Self, Error> {
+        let device = Device::new(gpu, stage, table, choice, lods)?;
+        let world = World::new(gpu, stage, scene)?;
+        let look = |(by, skinning): &(By, Skinning)| world.look(&device, *by, *skinning);
+        Ok(Self {
+            looks: ways.iter().map(look).collect::<Result<_, Error>>()?,
+            target: Target::new(gpu, [LINES * ASPECT[0] / ASPECT[1], LINES])?,
+            timer: Timer::for_drawing(gpu)?,
+            gpu,
+            stage,
+            scene,
+            device,
+        })
+    }
+
+    /// Plays all frames, and says of each look what it took. `step` is called after each frame.
+    pub fn run(&mut self, step: impl Fn()) -> Result<Vec<Figures>, Error> {
+        let frames = self.stage.plan.frames;
+        let mut turns = 0..;
+        for number in 0..=frames {
+            self.device.set(number)?;
+            if number > 0 && number % frames.div_ceil(TIMED) == 0 {
+                let turn = turns.next().unwrap_or(0) % (2 * self.looks.len() + 1);
+                self.play_timed(turn)?;
+                self.compare()?;
+            } else {
+                self.gpu.run("frame", |encoder| {
+                    self.device.gated.record(encoder);
+                    self.looks.iter().filter(|look| look.by == By::Gate).for_each(|look| look.skin(encoder));
+                })?;
+            }
+            step();
+        }
+        Ok(self.looks.iter().map(Look::figures).collect())
+    }
+
+    /// What clock takes the times.
+    pub fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
+        Ok(Timer::for_drawing(gpu)?.timed_by())
+    }
+
+    /// A picture of the last frame.
+    pub fn picture(&self, look: usize) -> Result<RgbaImage, Error> {
+        let look = &self.looks[look];
+        self.target.draw(self.gpu, SKY, |pass| look.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)))?;
+        Ok(self.target.read(self.gpu)?)
+    }
+
+    /// A frame of all looks. The gated crowd can be stepped once alone, so that looks take turns: one is timed as a
+    /// whole, or what is computed and what is drawn apart; in the last turn, of each look its skinning.
+    fn play_timed(&mut self, turn: usize) -> Result<(), Error> {
+        let Self { gpu, timer, target, device, looks, .. } = self;
+        let animate = |by: By, encoder: &mut wgpu::CommandEncoder| match by {
+            By::Gate => device.gated.record(encoder),
+            By::All => device.full.record(encoder),
+        };
+        let timed = |record: &dyn Fn(&mut wgpu::CommandEncoder)| -> Result<f64, Error> {
+            Ok(timer.measure(gpu, record)?.nanoseconds)
+        };
+        let chosen = (turn < 2 * looks.len()).then_some(turn / 2);
+        for by in [By::Gate, By::All] {
+            if chosen.is_none_or(|chosen| looks[chosen].by != by) {
+                gpu.run("animation", |encoder| animate(by, encoder))?;
+            }
+        }
+        if let Some(chosen) = chosen {
+            let look = &looks[chosen];
+            let compute = |encoder: &mut wgpu::CommandEncoder| {
+                animate(look.by, encoder);
+                look.compute(encoder);
+            };
+            let draw = |encoder: &mut wgpu::CommandEncoder| look.draw(target, encoder);
+            if turn.is_multiple_of(2) {
+                let frame = timed(&|encoder| {
+                    compute(encoder);
+                    draw(encoder);
+                })?;
+                looks[chosen].times.frame.push(frame);
+            } else {
+                let [compute, draw] = [timed(&compute)?, timed(&draw)?];
+                looks[chosen].times.compute.push(compute);
+                looks[chosen].times.draw.push(draw);
+            }
+        }
+        for (index, look) in looks.iter_mut().enumerate() {
+            match chosen {
+                None => look.times.skin.push(timed(&|encoder| look.skin(encoder))?),
+                Some(chosen) if chosen == index => {}
+                Some(_) => gpu.run("skinning", |encoder| look.skin(encoder))?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads all looks back, and compares them with the first.
+    fn compare(&mut self) -> Result<(), Error> {
+        for mesh in 0..self.stage.plan.model.meshes.len() {
+            let fresh = self.looks[0].meshes[mesh].skin.skinned.read_blocking(self.gpu)?;
+            for look in &mut self.looks {
+                let skin = &look.meshes[mesh].skin;
+                let own = skin.skinned.read_blocking(self.gpu)?;
+                look.spread.add(self.stage, self.scene, &own, &fresh);
+                let all = skin.crowd.instances * skin.clusters.len();
+                let some = match look.by {
+                    By::All => all,
+                    By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3] as usize,
+                };
+                look.clusters = [look.clusters[0] + some as u64, look.clusters[1] + all as u64];
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Look {
+    /// Palettes, the choice of clusters, and vertices.
+    fn skin(&self, encoder: &mut wgpu::CommandEncoder) {
+        for mesh in &self.meshes {
+            match self.by {
+                By::Gate => mesh.skin.record_moved(encoder),
+                By::All => mesh.skin.record_all(encoder),
+            }
+        }
+    }
+
+    /// Who is seen and how far they fade, and skinning.
+    fn compute(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.meshes.iter().for_each(|mesh| mesh.lod.record(encoder));
+        self.skin(encoder);
+    }
+
+    fn draw(&self, target: &Target, encoder: &mut wgpu::CommandEncoder) {
+        target.record(encoder, SKY, |pass| self.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)));
+    }
+
+    fn figures(&self) -> Figures {
+        let vertices: usize = self.meshes.iter().map(|mesh| mesh.skin.skinned.len()).sum();
+        let Times { frame, compute, draw, skin } = &self.times;
+        let [frame, compute, draw, skin] =
+            [frame, compute, draw, skin].map(|times| middle(times.clone()).unwrap_or(0.0));
+        Figures {
+            frame_nanoseconds: frame,
+            compute_nanoseconds: compute,
+            draw_nanoseconds: draw,
+            nanoseconds_per_vertex: skin / vertices as f64,
+            skinned_share: self.clusters[0] as f64 / self.clusters[1].max(1) as f64,
+            vertex_error: self.spread.errors(),
+        }
+    }
+}
+
+/// What all looks share.
+struct World<'a> {
+    gpu: &'a Gpu,
+    stage: &'a Stage<'a>,
+    placements: Buffer<Affine>,
+    clip_from_world: Mat4,
+    renderer: SkinnedRenderer,
+    albedo: ColorTexture,
+}
+
+impl<'a> World<'a> {
+    fn new(gpu: &'a Gpu, stage: &'a Stage<'a>, scene: &Scene) -> Result<Self, Error> {
+        if stage.plan.model.meshes.is_empty() {
+            let bound = "must be at least one that follows a skin, and is not compressed with Draco";
+            return Err(InputError::new("model.meshes", "none", bound).into());
+        }
+        let deepest = scene.origins.iter().map(|origin| origin[2]).fold(0.0, f32::max);
+        let far = 2.0 * deepest + 4.0 * stage.plan.size * stage.metres_a_unit;
+        let aspect = ASPECT[0] as f32 / ASPECT[1] as f32;
+        let lens = camera::rh::proj::directx::perspective(FIELD_OF_VIEW, aspect, stage.lens.near, far);
+        Ok(Self {
+            placements: Buffer::from_slice(gpu, "placements", &placements(scene))?,
+            // The camera is at the origin and looks along -Z.
+            clip_from_world: lens,
+            renderer: SkinnedRenderer::new(gpu, COLOR_FORMAT)?,
+            albedo: ColorTexture::new(gpu, &checks(), true)?,
+            gpu,
+            stage,
+        })
+    }
+
+    fn look(&self, device: &Device, by: By, skinning: Skinning) -> Result<Look, Error> {
+        let meshes = 0..self.stage.plan.model.meshes.len();
+        Ok(Look {
+            by,
+            meshes: meshes.map(|mesh| self.drawable(device, by, skinning, mesh)).collect::<Result<_, _>>()?,
+            times: Times::default(),
+            spread: Spread::default(),
+            clusters: [0; 2],
+        })
+    }
+
+    fn drawable(&self, device: &Device, by: By, skinning: Skinning, mesh: usize) -> Result<Drawable, Error> {
+        let Self { gpu, stage, placements, .. } = self;
+        let (model, count) = (&stage.plan.model, stage.instances.len());
+        let skin = match by {
+            By::All => SkinFrame::new(gpu, model, mesh, &device.full.crowd.models, count, Blend::Linear)?,
+            By::Gate => SkinFrame::new(gpu, model, mesh, &device.gated.crowd.models, count, Blend::Linear)?
+                .with_moved(gpu, &device.gated.active.dirty)?,
+        };
+        let mesh = &model.meshes[mesh];
+        // Morph targets stay as they are at rest.
+        skin.crowd.weights.write(gpu, &mesh.weights.repeat(count))?;
+        let drawn = Buffer::new(gpu, "drawn", count)?;
+        let instances = SkinnedInstances {
+            mesh: &skin.mesh,
+            skinned: &skin.skinned,
+            placements,
+            drawn: &drawn,
+            albedo: &self.albedo,
+            light: Light::default(),
+        };
+        let mut scene = self.renderer.scene(gpu, &instances)?;
+        scene.set_camera(gpu, self.clip_from_world)?;
+        // Where nothing fades, nobody reads what the kernel writes here.
+        let (reductions, range) = match skinning {
+            Skinning::Fade(range) => (skin.crowd.reductions.clone(), range),
+            Skinning::All(reduction) => {
+                skin.crowd.reductions.write(gpu, &vec![reduction; count])?;
+                (Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?, stage.plan.range)
+            }
+        };
+        let (center, radius) = ball(mesh.positions.iter().map(|position| Vec3::from(*position)));
+        let view = LodView {
+            clip_from_world: self.clip_from_world,
+            eye: Vec3::ZERO,
+            near: range.min * stage.metres_a_unit,
+            far: range.max * stage.metres_a_unit,
+            steps: STEPS,
+            center,
+            // Clips move vertices out of the ball at rest.
+            radius: 2.0 * radius,
+        };
+        let lod =
+            LodPass::new(gpu)?.prepare(gpu, &view, placements, &reductions, &drawn, &scene.arguments)?;
+        Ok(Drawable { skin, lod, scene })
+    }
+}
+
+/// From the model's space to the world, whose z comes towards the camera.
+fn placements(scene: &Scene) -> Vec<Affine> {
+    let place = |([x, y, z], [sine, cosine]): (&[f32; 3], &[f32; 2])| {
+        [[*cosine, 0.0, *sine, *x], [0.0, 1.0, 0.0, *y], [-sine, 0.0, *cosine, -z]]
+    };
+    scene.origins.iter().zip(&scene.turns).map(place).collect()
+}
+
+/// Clay in two colours.
+fn checks() -> Mips {
+    let square = |x: u32, y: u32| match (x / 16 + y / 16) % 2 {
+        0 => Rgba([214, 150, 104, 255]),
+        _ => Rgba([150, 82, 52, 255]),
+    };
+    Mips::of_color(RgbaImage::from_fn(64, 64, square))
+}

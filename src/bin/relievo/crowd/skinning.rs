@@ -1,0 +1,91 @@
+//! `--skinning`, and what is drawn.
+
+use std::fmt;
+
+use relievo::animation::Range;
+use relievo::skinning::Reduction;
+use relievo::{Error, InputError};
+
+/// What is drawn, besides what is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawn {
+    /// `--image`
+    Image,
+    /// `--scene`
+    Scene,
+}
+
+impl Drawn {
+    /// Frames that show each time at least once.
+    fn least_frames(self) -> u32 {
+        match self {
+            Self::Image => 5,
+            Self::Scene => 9,
+        }
+    }
+
+    /// Refuses too few frames.
+    pub fn check(self, frames: u32) -> Result<(), Error> {
+        if frames >= self.least_frames() {
+            return Ok(());
+        }
+        let bound = format!("must be at least {}, as the crowd is drawn", self.least_frames());
+        Err(InputError::new("frames", frames, bound).into())
+    }
+}
+
+/// Which bones a crowd's vertices follow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Skinning {
+    /// The same of every instance.
+    All(Reduction),
+    /// All of them at the first of these distances, in units, one from the second on.
+    Fade(Range),
+}
+
+/// Every influence of every instance.
+#[cfg(feature = "gpu")]
+pub const FULL: Skinning = Skinning::All(Reduction::FULL);
+
+impl Skinning {
+    /// From the command line, with the distances of the fade.
+    pub fn new(text: &str, range: Range) -> Result<Self, InputError> {
+        let refused = || InputError::new("skinning", text, "must be full, truncate:K or fade");
+        match text.split_once(':') {
+            None if text == "full" => Ok(Self::All(Reduction::FULL)),
+            None if text == "fade" => Ok(Self::Fade(range)),
+            Some(("truncate", most)) => {
+                Reduction::truncate(most.parse().map_err(|_| refused())?).map(Self::All).map_err(|error| {
+                    InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
+                })
+            }
+            _ => Err(refused()),
+        }
+    }
+}
+
+impl fmt::Display for Skinning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All(Reduction::FULL) => f.write_str("full"),
+            Self::All(reduction) => write!(f, "truncate:{}", reduction.most),
+            Self::Fade(_) => f.write_str("fade"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        let range = Range { min: 1.0, max: 2.0 };
+        for name in ["full", "fade", "truncate:2"] {
+            assert_eq!(Skinning::new(name, range).expect("valid").to_string(), name);
+        }
+        for name in ["", "truncate", "truncate:0", "truncate:x", "fade:1", "half"] {
+            assert_eq!(Skinning::new(name, range).expect_err("refused").field, "skinning", "{name}");
+        }
+    }
+}

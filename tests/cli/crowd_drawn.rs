@@ -1,0 +1,129 @@
+//! `relievo crowd --image` and `--scene`
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::harness::{Run, relievo};
+
+const SMALL: [&str; 8] = ["--model", "builtin", "--clip", "walk", "--instances", "4", "--frames", "10"];
+
+/// Runs `crowd` into the folder `out` of a folder of its own.
+fn run(arguments: &[&str]) -> (Run, PathBuf, tempfile::TempDir) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("out");
+    let run = relievo(&[&["crowd", "--out", out.to_str().expect("UTF-8")], &SMALL[..], arguments].concat());
+    (run, out, folder)
+}
+
+/// The rows of a report, of a run at 300 and 2000 units.
+fn rows(name: &str, arguments: &[&str]) -> ([Value; 2], PathBuf, tempfile::TempDir) {
+    let (run, out, folder) = run(&[&["--distance", "300,2000"], arguments].concat());
+    assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
+    let text = std::fs::read(out.join(name)).expect("written");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    let [near, far] = &report["distances"].as_array().expect("a list")[..] else { panic!("two distances") };
+    ([near.clone(), far.clone()], out, folder)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// Pixels that are not as the first.
+fn covered(picture: &image::RgbaImage) -> usize {
+    picture.pixels().filter(|pixel| *pixel != picture.get_pixel(0, 0)).count()
+}
+
+#[test]
+fn crowds_are_drawn_and_timed() {
+    let ([near, far], out, _folder) = rows("report.json", &["--gate", "uniform", "--image"]);
+    for row in [&near, &far] {
+        for field in
+            ["nanoseconds_per_vertex", "frame_nanoseconds", "compute_nanoseconds", "draw_nanoseconds"]
+        {
+            assert!(number(&row[field]) > 0.0, "{field}");
+            assert!(number(&row[format!("full_{field}")]) > 0.0, "full_{field}");
+        }
+        let error = &row["vertex_error"];
+        assert_eq!((number(&error["points"]), number(&error["unseen"])), (4.0 * 5284.0 * 10.0, 0.0));
+    }
+    // Beyond the range nothing moves, so that nothing is skinned, and what is drawn is the first frame.
+    assert_eq!(number(&far["skinned_share"]), 0.0);
+    assert!(number(&near["skinned_share"]) > 0.4);
+    assert!(number(&far["vertex_error"]["max_metres"]) > 0.02);
+    let [near, far] = ["crowd_300.png", "crowd_2000.png"].map(|name| {
+        let picture = image::open(out.join(name)).expect("a PNG").into_rgba8();
+        assert_eq!(picture.dimensions(), (1920, 1080));
+        covered(&picture)
+    });
+    assert!(near > 10 * far && far > 500, "{near} and {far} pixels");
+}
+
+/// Without level of detail a gate changes nothing but the time.
+#[test]
+fn the_gate_off_is_exact() {
+    let ([near, far], ..) = rows("report.json", &["--gate", "off", "--image"]);
+    for row in [near, far] {
+        assert_eq!(number(&row["vertex_error"]["max_metres"]), 0.0);
+        assert!(number(&row["skinned_share"]) > 0.9);
+    }
+}
+
+#[test]
+fn scenes_compare_four_ways() {
+    let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
+    let ([near, far], out, _folder) = rows("scene.json", &gate);
+    let worst = |row: &Value, way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
+    for row in [&near, &far] {
+        assert_eq!(worst(row, "off"), 0.0);
+        let bound = 0.5 * 1.001;
+        assert!(worst(row, "animation") > 0.0 && worst(row, "animation") <= bound, "{row}");
+        // Stale bones move no vertex further, whichever it follows.
+        assert!(worst(row, "both") <= worst(row, "skinning") + bound, "{row}");
+        for way in ["off", "animation", "skinning", "both"] {
+            assert!(number(&row[way]["frame_nanoseconds"]) > 0.0, "{way}");
+        }
+        let cheaper = number(&row["off"]["frame_nanoseconds"]) / number(&row["both"]["frame_nanoseconds"]);
+        assert!((number(&row["cheaper"]["frame"]) - cheaper).abs() < 1e-9);
+    }
+    assert!(number(&far["tall_pixels"]) < 100.0 && number(&far["mean_omega"]) == 0.0);
+    assert!(image::open(out.join("scene.png")).expect("a PNG").width() >= 600);
+    assert!(out.join("crowd_300.png").is_file());
+    // A fade's end is the strongest bone alone.
+    let ([truncated_near, truncated], ..) =
+        rows("scene.json", &[&gate[..], &["--skinning", "truncate:1"]].concat());
+    let metres = |row: &Value| number(&row["skinning"]["vertex_error"]["max_metres"]);
+    assert!((metres(&truncated) - metres(&far)).abs() < 1e-5 && metres(&far) > 1e-3);
+    assert!(metres(&truncated_near) > metres(&near));
+}
+
+#[test]
+fn bad_input_is_refused_and_nothing_written() {
+    for (arguments, words) in [
+        (&["--image", "--frames", "4"][..], &["frames", "4", "5"][..]),
+        (&["--scene", "--frames", "8"], &["frames", "8", "9"]),
+        (&["--image", "--backend", "cpu"], &["backend", "gpu"]),
+        (&["--skinning", "fade"], &["skinning", "--image"]),
+        (&["--image", "--skinning", "half"], &["skinning", "half", "truncate:K"]),
+        (&["--image", "--skinning", "truncate:0"], &["skinning", "truncate:0"]),
+        (&["--image", "--scene"], &["--image", "--scene"]),
+        (&["--scene", "--pareto"], &["--pareto", "--scene"]),
+    ] {
+        let gate: &[&str] = if arguments.contains(&"--pareto") { &[] } else { &["--gate", "off"] };
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let out = folder.path().join("out");
+        let to = ["crowd", "--model", "builtin", "--clip", "walk", "--out", out.to_str().expect("UTF-8")];
+        let run = relievo(&[&to[..], gate, arguments].concat());
+        assert_eq!(
+            (run.code, run.stderr.trim().lines().count()),
+            (Some(2), 1),
+            "{arguments:?}: {}",
+            run.stderr
+        );
+        for word in words {
+            assert!(run.stderr.contains(word), "{arguments:?}: `{word}` is not in: {}", run.stderr);
+        }
+        assert!(!out.exists() && run.stdout.is_empty(), "{arguments:?} wrote something");
+    }
+}
