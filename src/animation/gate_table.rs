@@ -38,6 +38,7 @@ pub enum Kind {
     Expectations,
 }
 
+#[cfg(feature = "gpu")]
 impl Kind {
     /// Refuses a table of another kind than is needed.
     pub(crate) fn check(self, needed: Self) -> Result<(), InputError> {
