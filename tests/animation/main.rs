@@ -7,6 +7,8 @@ mod concatenation;
 #[cfg(feature = "gpu")]
 mod crowds;
 #[cfg(feature = "gpu")]
+mod frames;
+#[cfg(feature = "gpu")]
 mod gating;
 #[cfg(feature = "gpu")]
 #[path = "../harness/mod.rs"]
