@@ -2,6 +2,8 @@
 // active, the instances with any, and the arguments of the dispatches that serve them. Lists keep the order of the
 // instances and, within one, of its slots, on every device. Three stages, a dispatch each, or all in one.
 
+import package::wgsl::dispatch::rows_of_workgroups;
+
 // One of the constants below.
 override STAGE: u32 = 0;
 
@@ -78,11 +80,8 @@ fn spread(instance: u32) {
     counts[instance] = count;
 }
 
-// Workgroups in rows.
 fn dispatch_of(threads: u32) -> vec3<u32> {
-    let groups = threads / WIDTH + u32(threads % WIDTH > 0u);
-    let x = clamp(groups, 1u, params.most_groups);
-    return vec3<u32>(x, (groups + x - 1u) / x, 1u);
+    return rows_of_workgroups(threads / WIDTH + u32(threads % WIDTH > 0u), params.most_groups);
 }
 
 // The instances of a lane of one workgroup, from x to below y.

@@ -1,6 +1,7 @@
 // Which clusters of which instances are skinned: those with a bone that moved, and those of instances whose reduction
 // changed. A thread decides for one cluster. With FINISH, a thread takes note of one instance's reduction, and the
 // first one writes the arguments of the dispatch.
+import package::wgsl::dispatch::rows_of_workgroups;
 
 override FINISH: bool = false;
 
@@ -33,8 +34,7 @@ fn finish(index: u32) {
     }
     if index == 0u {
         let all = atomicExchange(&count, 0u);
-        let x = clamp(all, 1u, params.most);
-        dispatched = vec4<u32>(x, (all + x - 1u) / x, 1u, all);
+        dispatched = vec4<u32>(rows_of_workgroups(all, params.most), all);
     }
 }
 

@@ -139,9 +139,13 @@ impl GateTable {
         reaches: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let mut table = Self::of_motion(skeleton, set, clips, reaches, path, true)?;
+        let (mut table, order) = Self::with_room(Kind::Bounds, skeleton, set, clips, reaches)?;
+        let mut all = Vec::with_capacity(clips.len());
         for (entry, clip) in set.clips().iter().zip(clips) {
             let motions = motions(set, entry, clip, path);
+            let mut columns = columns(&motions, &bounding_levers(skeleton, &motions, reaches));
+            share_out(skeleton, &mut columns);
+            all.push(columns);
             let whole = whole_reaches(skeleton, &motions, reaches);
             let roots = skeleton.bones().iter().enumerate().filter(|(_, bone)| bone.parent.is_none());
             let radius = roots
@@ -149,7 +153,7 @@ impl GateTable {
                 .fold(0.0, f64::max);
             table.radius = table.radius.max(radius as f32 * 1.000_001);
         }
-        Ok(table)
+        table.fill(&order, set, &all)
     }
 
     /// The motion that each bone contributes to points at and below it, as a root of the sum of squares: what
@@ -164,37 +168,30 @@ impl GateTable {
         reaches: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        Self::of_motion(skeleton, set, clips, reaches, path, false)
+        let (table, order) = Self::with_room(Kind::Expectations, skeleton, set, clips, reaches)?;
+        let levers = typical_levers(skeleton, reaches);
+        let of = |(entry, clip): (_, &&Clip)| columns(&motions(set, entry, clip, path), &levers);
+        let all: Vec<_> = set.clips().iter().zip(clips).map(of).collect();
+        table.fill(&order, set, &all)
     }
 
-    fn of_motion(
+    /// A table with room for motion, and the order of its columns.
+    fn with_room(
+        kind: Kind,
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
         reaches: &[f32],
-        path: RotationPath,
-        is_bound: bool,
-    ) -> Result<Self, InputError> {
+    ) -> Result<(Self, Order), InputError> {
         let order = Order::new(skeleton);
-        let mut table = Self::of_movers(&order, set, clips)?;
+        let mut table = Self { kind, ..Self::of_movers(&order, set, clips)? };
         check_reaches(skeleton, reaches)?;
-        table.kind = if is_bound { Kind::Bounds } else { Kind::Expectations };
         table.make_room(set, table.bones)?;
-        let columns = set.clips().iter().zip(clips).map(|(entry, clip)| {
-            let motions = motions(set, entry, clip, path);
-            let levers = if is_bound {
-                bounding_levers(skeleton, &motions, reaches)
-            } else {
-                typical_levers(skeleton, reaches)
-            };
-            let mut columns: Vec<Column> =
-                (motions.iter().zip(&levers)).map(|(bone, levers)| Column::new(bone, levers)).collect();
-            if is_bound {
-                share_out(skeleton, &mut columns);
-            }
-            columns
-        });
-        let columns: Vec<Vec<Column>> = columns.collect();
+        Ok((table, order))
+    }
+
+    /// Writes the columns of every clip, in the smallest unit that they fit.
+    fn fill(mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<Self, InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
                 let bound = "must be finite: the scales above it are too large";
@@ -202,14 +199,14 @@ impl GateTable {
             }
         }
         let largest = columns.iter().flatten().map(Column::total).fold(0.0, f64::max);
-        table.unit = if largest > 0.0 { largest / MOST_MOTION } else { 1.0 };
-        for (entry, columns) in set.clips().iter().zip(&columns) {
+        self.unit = if largest > 0.0 { largest / MOST_MOTION } else { 1.0 };
+        for (entry, columns) in set.clips().iter().zip(columns) {
             for (slot, bone) in order.slots.iter().enumerate() {
-                let at = entry.first_row as usize * table.stride + slot;
-                columns[bone.bone as usize].write(&mut table.rows[at..], table.stride, table.unit);
+                let at = entry.first_row as usize * self.stride + slot;
+                columns[bone.bone as usize].write(&mut self.rows[at..], self.stride, self.unit);
             }
         }
-        Ok(table)
+        Ok(self)
     }
 
     fn make_room(&mut self, set: &ClipSet, stride: usize) -> Result<(), InputError> {
@@ -376,6 +373,10 @@ impl Column {
         let slack = if self.is_boundless { EVERYTHING } else { 4.0 + (steepest / 4096.0).ceil() };
         table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, slack as u32];
     }
+}
+
+fn columns(motions: &[BoneMotion], levers: &[[f64; 3]]) -> Vec<Column> {
+    motions.iter().zip(levers).map(|(bone, levers)| Column::new(bone, levers)).collect()
 }
 
 /// Divides each bone's motion by its share of what is allowed.

@@ -27,6 +27,13 @@ pub enum Verdict {
     Blended = 3,
 }
 
+impl Verdict {
+    /// Whether gates that decide by motion sample everything.
+    pub fn forces_motion(self) -> bool {
+        matches!(self, Self::Forced | Self::Blended)
+    }
+}
+
 /// Where an instance stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]

@@ -57,9 +57,7 @@ impl Kernel {
 
     /// Workgroups for `invocations` in one row, spread over x and y where they exceed the limit of a dimension.
     pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
-        let groups = self.groups_for(invocations).max(1);
-        let x = groups.min(gpu.device().limits().max_compute_workgroups_per_dimension);
-        [x, groups.div_ceil(x), 1]
+        rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
     /// Records a compute pass of one dispatch, whose workgroups along x, y and z are the three words of a buffer
@@ -83,6 +81,12 @@ impl Kernel {
         let width = self.shader.entry_points.first().map_or(1, |entry| entry.workgroup_size[0].max(1));
         invocations.div_ceil(width)
     }
+}
+
+/// Workgroups along x, y and z: rows as long as the device allows. For none, none along y.
+pub fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
+    let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
+    [x, groups.div_ceil(x), 1]
 }
 
 /// One dispatch with everything bound.

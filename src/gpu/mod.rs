@@ -24,6 +24,7 @@ pub use buffer::{Buffer, Uniform, storage};
 pub use error::GpuError;
 pub use kernel::{
     Group, INVOCATIONS_A_SUBMISSION, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout,
+    rows_of_workgroups,
 };
 pub use timer::{Measurement, TimedBy, Timer};
 

@@ -7,7 +7,7 @@ use super::morph::MorphTarget;
 use super::skin::{Blend, Vertex};
 use super::weights::Reduction;
 use crate::animation::Model;
-use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::reference::skinning::palette::rows;
 use crate::{Error, InputError};
 
@@ -162,7 +162,7 @@ impl ActiveClusters {
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
         let count = pairs.len() as u32;
-        let x = count.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
-        self.dispatched.write(gpu, &[x, count.div_ceil(x), 1, count])
+        let [x, y, z] = rows_of_workgroups(gpu, count);
+        self.dispatched.write(gpu, &[x, y, z, count])
     }
 }

@@ -4,7 +4,7 @@ use encase::ShaderType;
 
 use super::RotationPath;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders};
 use crate::{Error, InputError};
 
 /// `SampleParams` of the kernel.
@@ -43,8 +43,8 @@ impl ActivePairs {
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
         let groups = pairs.len().div_ceil(64) as u32;
-        let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
-        self.dispatched.write(gpu, &[x, groups.div_ceil(x), 1, pairs.len() as u32])
+        let [x, y, z] = rows_of_workgroups(gpu, groups);
+        self.dispatched.write(gpu, &[x, y, z, pairs.len() as u32])
     }
 }
 

@@ -23,7 +23,7 @@ pub fn budget(
     let is_unlimited = budget as usize >= phases.len() * bones;
     for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
         let first = instance * bones;
-        if matches!(phase.verdict(), Verdict::Forced | Verdict::Blended) {
+        if phase.verdict().forces_motion() {
             chosen.extend(first..first + bones);
         }
         if phase.verdict() != Verdict::Free {

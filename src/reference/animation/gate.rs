@@ -29,8 +29,7 @@ pub fn gate(
                 (Verdict::Hidden, _) => 0,
                 (verdict, Gate::Bounded) => {
                     // Sums of motion know of one clip alone.
-                    let is_forced = matches!(verdict, Verdict::Forced | Verdict::Blended);
-                    let forced = if is_forced { all } else { 0 };
+                    let forced = if verdict.forces_motion() { all } else { 0 };
                     let sampled = &mut sampled[instance * table.bones() + at.first..];
                     by_motion(table, &at, lod, candidates, forced, phase, periods, sampled)
                 }

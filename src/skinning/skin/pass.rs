@@ -5,7 +5,7 @@ use std::ops::Range;
 use encase::ShaderType;
 
 use super::{Blend, Vertex};
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::{Error, InputError};
 
@@ -62,10 +62,9 @@ impl SkinPass {
         let kernel = self.kernel(false, mesh);
         let pairs = (instances.len() * mesh.clusters()) as u32;
         // A workgroup a pair.
-        let x = pairs.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
         let group = self.bind(gpu, kernel, (mesh, crowd), instances, (skinned, &nothing))?;
-        let step =
-            Step { groups: vec![group], workgroups: [x, pairs.div_ceil(x), 1], kernel: kernel.clone() };
+        let workgroups = rows_of_workgroups(gpu, pairs);
+        let step = Step { groups: vec![group], workgroups, kernel: kernel.clone() };
         Ok(Job::new(gpu, "skinning/skin", vec![step])?)
     }
 

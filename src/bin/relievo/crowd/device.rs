@@ -2,7 +2,7 @@
 
 use relievo::Error;
 use relievo::animation::budget::{BudgetJob, BudgetPass};
-use relievo::animation::compact::{Active, CompactJob, CompactPass};
+use relievo::animation::compact::{self, Active, CompactJob, CompactPass};
 use relievo::animation::concat::{ConcatActiveJob, ConcatJob, ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::gate::{GateJob, GatePass, Gating};
@@ -180,7 +180,7 @@ impl Gated {
                 gpu,
                 &crowd,
                 &active,
-                relievo::animation::compact::Stages::of(gpu, &active),
+                compact::Stages::of(gpu, &active),
             )?,
             sample: SamplePass::new(gpu, PATH)?.prepare_active(gpu, clips, &crowd, &active.pairs)?,
             concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare_active(gpu, skeleton, &crowd, &active)?,
