@@ -3,12 +3,12 @@
 use super::{Backend, Row};
 use crate::gpu::TimedBy;
 
-/// The rows, with items a second, bytes a second, how a kernel compares with its case's other rows, and the
+/// The rows, with nanoseconds an item, items a second, bytes a second, how a kernel compares with its case's other rows, and the
 /// clock: the device's own, or the host's, which counts submission and waiting too.
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
-        "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11} {:>11} {:>8}  {}\n",
-        "name", "case", "backend", "median", "min", "M items/s", "GB/s", "gpu is", "clock"
+        "{:<22} {:<34} {:<13} {:>11} {:>11} {:>9} {:>11} {:>11} {:>8}  {}\n",
+        "name", "case", "backend", "median", "min", "ns/item", "M items/s", "GB/s", "gpu is", "clock"
     );
     for row in rows {
         let seconds = row.nanoseconds * 1e-9;
@@ -18,12 +18,13 @@ pub fn table(rows: &[Row]) -> String {
         let ratio = (kernel.filter(|_| row.backend != Backend::Gpu))
             .map_or(String::new(), |kernel| format!("{:.2}×", row.nanoseconds / kernel.nanoseconds));
         text += &format!(
-            "{:<22} {:<34} {:<13} {:>11} {:>11} {:>11.1} {:>11.2} {:>8}  {}\n",
+            "{:<22} {:<34} {:<13} {:>11} {:>11} {:>9.2} {:>11.1} {:>11.2} {:>8}  {}\n",
             row.name,
             row.case,
             row.backend.name(),
             duration(row.nanoseconds),
             duration(row.min),
+            row.nanoseconds / row.items as f64,
             row.items as f64 / seconds / 1e6,
             row.bytes as f64 / seconds / 1e9,
             ratio,
@@ -67,5 +68,8 @@ mod tests {
         let text = table(&rows);
         let ends: Vec<_> = text.lines().filter_map(|line| line.split_whitespace().last()).collect();
         assert_eq!(ends, ["clock", "device", "wall"], "{text}");
+        // 2 ms of 1,089 points.
+        let items: Vec<_> = text.lines().skip(1).filter_map(|line| line.split_whitespace().nth(7)).collect();
+        assert_eq!(items, ["1836.55"; 2], "{text}");
     }
 }

@@ -9,6 +9,8 @@ pub(super) struct Draws<'a> {
     pub fragment: &'a str,
     pub constants: &'a [(&'a str, f64)],
     pub topology: wgpu::PrimitiveTopology,
+    /// Triangles that are left out.
+    pub cull: Option<wgpu::Face>,
     pub vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
 }
 
@@ -29,7 +31,11 @@ impl Draws<'_> {
                     compilation_options: options(),
                     buffers: self.vertices,
                 },
-                primitive: wgpu::PrimitiveState { topology: self.topology, ..Default::default() },
+                primitive: wgpu::PrimitiveState {
+                    topology: self.topology,
+                    cull_mode: self.cull,
+                    ..Default::default()
+                },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: DEPTH_FORMAT,
                     depth_write_enabled: Some(true),

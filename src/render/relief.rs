@@ -99,6 +99,7 @@ impl ReliefRenderer {
             fragment: if options.depth { "fragment_depth" } else { "fragment" },
             constants: &constants,
             topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: None,
             vertices: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<SurfaceVertex>() as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,

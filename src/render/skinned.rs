@@ -4,7 +4,7 @@ use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
 use crate::animation::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Uniform, bind, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
 use crate::render::color::ColorTexture;
 use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
@@ -20,11 +20,11 @@ pub(crate) struct SkinnedView {
     pub vertices: u32,
 }
 
-/// The pipeline.
+/// The pipelines.
 #[derive(Debug, Clone)]
 pub struct SkinnedRenderer {
-    pipeline: wgpu::RenderPipeline,
-    layouts: Vec<wgpu::BindGroupLayout>,
+    /// Of meshes that are seen from outside, and from both sides.
+    pipelines: [RenderPipeline; 2],
 }
 
 /// What is drawn.
@@ -45,22 +45,25 @@ pub struct SkinnedInstances<'a> {
 }
 
 impl SkinnedRenderer {
-    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a
+    /// Compiles the pipelines, unless this device has them already, for targets of `color` format with a
     /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let draws = Draws {
-            shader: &shaders::RENDER_SKINNED,
-            fragment: "fragment",
-            constants: &[],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            vertices: &[],
+        let pipeline = |double_sided: bool| {
+            let draws = Draws {
+                shader: &shaders::RENDER_SKINNED,
+                fragment: "fragment",
+                constants: &[("DOUBLE_SIDED", f64::from(double_sided))],
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                cull: (!double_sided).then_some(wgpu::Face::Back),
+                vertices: &[],
+            };
+            let key = format!("{} {color:?} {double_sided}", shaders::RENDER_SKINNED.name);
+            gpu.render_pipelines.get(key, || draws.compile(gpu, color))
         };
-        let key = format!("{} {color:?}", shaders::RENDER_SKINNED.name);
-        let (pipeline, layouts) = gpu.render_pipelines.get(key, || draws.compile(gpu, color))?;
-        Ok(Self { pipeline, layouts })
+        Ok(Self { pipelines: [pipeline(false)?, pipeline(true)?] })
     }
 
     /// Binds instances; all that `drawn` has room for are drawn until [`SkinnedScene::arguments`] says otherwise.
@@ -92,11 +95,12 @@ impl SkinnedRenderer {
             wgpu::BindingResource::TextureView(&texture),
             wgpu::BindingResource::Sampler(&albedo.sampler),
         ];
-        let group = bind(gpu, &shaders::RENDER_SKINNED, &self.layouts, 0, &resources)?;
+        let (pipeline, layouts) = &self.pipelines[usize::from(mesh.double_sided)];
+        let group = bind(gpu, &shaders::RENDER_SKINNED, layouts, 0, &resources)?;
         let counts = [mesh.indices.len() as u32, drawn.len() as u32, 0, 0, 0];
         let arguments = Buffer::from_slice(gpu, "draw", &counts)?;
         let indices = mesh.indices.clone();
-        Ok(SkinnedScene { pipeline: self.pipeline.clone(), view, uniform, group, indices, arguments })
+        Ok(SkinnedScene { pipeline: pipeline.clone(), view, uniform, group, indices, arguments })
     }
 }
 

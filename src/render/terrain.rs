@@ -52,6 +52,7 @@ impl TerrainRenderer {
             fragment: "fragment",
             constants: &[("WIREFRAME", f64::from(u8::from(style == Style::Wireframe)))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
+            cull: None,
             vertices: &[],
         };
         let (pipeline, layouts) = gpu.render_pipelines.get(key, || draws.compile(gpu, color))?;

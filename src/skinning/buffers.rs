@@ -38,6 +38,8 @@ pub struct MeshBuffers {
     pub targets: usize,
     /// Bones of the skeleton.
     pub all_bones: usize,
+    /// [`Mesh::double_sided`]. Placements that mirror turn outside in: set this for them.
+    pub double_sided: bool,
 }
 
 impl MeshBuffers {
@@ -64,6 +66,7 @@ impl MeshBuffers {
             mask_words: clusters.mask_words,
             targets: mesh.targets.len(),
             all_bones,
+            double_sided: mesh.double_sided,
         };
         Ok((buffers, clusters))
     }

@@ -32,6 +32,8 @@ pub struct Mesh {
     pub uv: Vec<[f32; 2]>,
     /// Three a triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
+    /// Whether triangles are seen from inside too.
+    pub double_sided: bool,
     /// What each vertex follows.
     pub influences: Influences,
     /// What moves vertices before they are skinned.
@@ -259,6 +261,7 @@ mod tests {
             uv: vec![[0.0; 2]; 3],
             positions,
             indices: vec![0, 1, 2],
+            double_sided: false,
             influences: Influences::new("w", 2, [one(0), one(0), both]).expect("valid"),
             targets: vec![MorphTarget { vertices: vec![2], deltas: vec![delta] }],
             weights: vec![-3.0],

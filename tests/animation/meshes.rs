@@ -52,6 +52,19 @@ fn weights(mesh: &Mesh, vertex: usize) -> Vec<(u32, f32)> {
 }
 
 #[test]
+fn materials_say_whether_both_sides_are_seen() {
+    let mut skinned = Skinned::new();
+    assert!(!skinned.read().expect("valid").double_sided);
+    skinned.0.json["materials"] = json!([{}, {"doubleSided": true}]);
+    for (material, double_sided) in [(0, false), (1, true)] {
+        skinned.primitive()["material"] = json!(material);
+        assert_eq!(skinned.read().expect("valid").double_sided, double_sided);
+    }
+    skinned.primitive()["material"] = json!(2);
+    skinned.refused("meshes[0].primitives[0].material", "must lie in");
+}
+
+#[test]
 fn a_mesh_is_read() {
     let mut skinned = Skinned::new();
     let normals = skinned.0.floats("VEC3", &[[0.0, 0.0, 2.0], [0.0; 3]].concat().repeat(2));

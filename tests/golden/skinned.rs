@@ -62,6 +62,8 @@ fn limb() -> Model {
         skin: 0,
         tangents: vec![[1.0, 0.0, 0.0, 1.0]; positions.len()],
         indices: rings.collect(),
+        // Its ends are open.
+        double_sided: true,
         influences: Influences::new("limb", 2, follows).expect("valid"),
         positions,
         normals,

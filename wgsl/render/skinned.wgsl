@@ -1,5 +1,8 @@
 // Draws skinned instances of a mesh: textured, lit, each at a place of its own.
 
+// Seen from both sides: what faces away turns its normal round.
+override DOUBLE_SIDED: bool = false;
+
 struct SkinnedView {
     clip_from_world: mat4x4<f32>,
     // Unit vector towards the light; w: what faces away still gets, 0..1.
@@ -43,8 +46,12 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u3
 }
 
 @fragment
-fn fragment(in: Vertex) -> @location(0) vec4<f32> {
+fn fragment(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     let color = textureSample(albedo, filtering, in.uv).rgb;
-    let direct = max(dot(normalize(in.normal), view.light.xyz), 0.0);
+    var normal = normalize(in.normal);
+    if DOUBLE_SIDED {
+        normal = select(-normal, normal, is_front);
+    }
+    let direct = max(dot(normal, view.light.xyz), 0.0);
     return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
 }

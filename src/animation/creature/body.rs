@@ -235,6 +235,7 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
         influences: Influences::new("body.weights", bones, surface.influences.into_iter().map(strongest))?,
         positions,
         indices: surface.indices,
+        double_sided: false,
         targets: vec![],
         weights: vec![],
         weight_keys: vec![],

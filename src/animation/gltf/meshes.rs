@@ -131,11 +131,18 @@ impl Reader<'_, '_> {
             tangents,
             uv,
             indices,
+            double_sided: self.is_double_sided(),
             influences,
             targets,
             weights,
             weight_keys,
         })
+    }
+
+    /// Triangles without a material are not.
+    fn is_double_sided(&self) -> bool {
+        let material = self.primitive.material.map(|material| material.value());
+        material.is_some_and(|material| self.document.root.materials[material].double_sided)
     }
 
     fn named(&self, attribute: &str) -> String {

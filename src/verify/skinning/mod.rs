@@ -59,6 +59,7 @@ pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
         tangents: vertices.clone().map(|_| tangent(&mut draw)).collect(),
         uv: vertices.clone().map(|_| [0; 2].map(|_| draw.signed())).collect(),
         indices: (0..shape.vertices as u32 / 3 * 3).collect(),
+        double_sided: true,
         influences: influences(&mut draw, shape, skin.bones.len())?,
         targets: (0..shape.targets).map(|_| target(&mut draw, shape.vertices)).collect(),
         weights: vec![0.0; shape.targets],
