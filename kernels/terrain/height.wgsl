@@ -1,14 +1,17 @@
-// One level of diamond-square subdivision for a batch of windows onto the plane (B section 3.3.1).
+// One level of diamond-square subdivision for a batch of windows onto the plane (B section 3.3.1), or two.
 //
 // A thread owns 4 x CELL_ROWS coarse cells. It streams the coarse rows through registers and computes the
-// diamonds on its rim again, so that threads need no barrier and a level is one dispatch.
+// diamonds on its rim again, so that threads need no barrier and a level is one dispatch. With two levels the
+// rows between them stream through registers too: they are neither stored nor loaded.
 import package::wgsl::hash::threefry2x32;
-import package::wgsl::terrain::fixed::mean_of_sums;
+import package::wgsl::terrain::fixed::{HEIGHT_LIMIT, mean_of_sums};
 import package::wgsl::terrain::offset::height_offset;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_word, injected};
 
 // Rows of coarse cells a thread: many for a software adapter, few for hardware.
 override CELL_ROWS: u32 = 4u;
+// Levels a dispatch: 1, or 2 where no features are injected.
+override LEVELS: u32 = 1u;
 // Whether the coarse level is the base lattice, which is drawn here instead of loaded.
 override FIRST: bool = false;
 // OFFSET_*
@@ -24,6 +27,8 @@ struct Level {
     // World coordinates between neighbouring fine samples.
     fine_spacing: u32,
     fine_range: u32,
+    // Of the level between coarse and fine, where there are two.
+    middle_range: u32,
     base_range: u32,
     blocks_per_row: u32,
     // Threads a window, and windows.
@@ -39,7 +44,7 @@ struct Level {
 @group(0) @binding(2) var<storage, read> coarse: array<i32>;
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
-// Columns -1 .. 4 of the coarse row at the thread's cells.
+// Columns -1 .. 4 of the coarse row at four cells.
 struct CoarseRow {
     left: i32,
     inner: vec4<i32>,
@@ -52,17 +57,21 @@ struct DiamondRow {
     inner: vec4<i32>,
 }
 
-// World coordinates of a thread's fine columns: those of coarse points, and those between.
+// World coordinates of the fine columns of four cells: those of coarse points, and those between.
 struct Columns {
     even: vec4<u32>,
     odd: vec4<u32>,
 }
 
-// A place in one window: the fine sample at coarse point (0, 0) may lie one or two before the window.
+// A window at one level.
 struct Place {
     window: u32,
+    // World coordinates of its first sample, in units of spacing.
     origin: vec2<i32>,
+    // The sample at coarse point (0, 0) lies one or two before the window.
     shift: vec2<i32>,
+    spacing: u32,
+    range: u32,
 }
 
 const LANES = vec4<i32>(0, 1, 2, 3);
@@ -79,65 +88,233 @@ fn main(
     }
     let in_window = index % level.blocks;
     let block = vec2<i32>(vec2<u32>(in_window % level.blocks_per_row, in_window / level.blocks_per_row));
-    let place = place_of(index / level.blocks);
-    // Cells start at the coarse point that is, or lies one before, the window's first sample.
-    let cell = place.shift - vec2<i32>(1) + block * vec2<i32>(4, i32(CELL_ROWS));
-    subdivide(place, cell);
+    let window = index / level.blocks;
+    let place = place_of(window, origins[window], level.fine_spacing, level.fine_range);
+    // A thread's first cell starts at the coarse point that is, or lies next before, its first sample.
+    let first = block * vec2<i32>(4, i32(CELL_ROWS));
+    if LEVELS == 1u {
+        subdivide(place, first + place.shift - vec2<i32>(1));
+    } else {
+        let middle = place_of(window, coarse_origin(place.origin), 2u * level.fine_spacing, level.middle_range);
+        let shift = middle.shift + place.shift;
+        subdivide_twice(place, middle, first + vec2<i32>((shift.x + middle.shift.x) / 4, shift.y / 2));
+    }
 }
 
-fn place_of(window: u32) -> Place {
-    let origin = origins[window];
-    // The coarse origin is ceil(origin / 2) - 1.
-    let coarse_origin = ((origin + vec2<i32>(1)) >> vec2<u32>(1u)) - vec2<i32>(1);
-    return Place(window, origin, origin - 2 * coarse_origin);
+fn place_of(window: u32, origin: vec2<i32>, spacing: u32, range: u32) -> Place {
+    return Place(window, origin, origin - 2 * coarse_origin(origin), spacing, range);
+}
+
+// ceil(origin / 2) - 1
+fn coarse_origin(origin: vec2<i32>) -> vec2<i32> {
+    return ((origin + vec2<i32>(1)) >> vec2<u32>(1u)) - vec2<i32>(1);
 }
 
 fn subdivide(place: Place, cell: vec2<i32>) {
-    let columns = Columns(world_x(place, cell.x), world_x(place, cell.x) + vec4<u32>(level.fine_spacing));
+    let columns = columns_of(place, cell.x);
     var here = coarse_row(place, cell);
-    var upper = diamonds(place, columns, coarse_row(place, cell - vec2<i32>(0, 1)), here, cell - vec2<i32>(0, 1));
+    var upper = diamonds(place, columns, cell - vec2<i32>(0, 1), coarse_row(place, cell - vec2<i32>(0, 1)), here);
     let last = min(cell.y + i32(CELL_ROWS), (i32(level.fine_width) - 1 + place.shift.y) / 2 + 1);
     for (var y = cell.y; y < last; y++) {
         let at = vec2<i32>(cell.x, y);
-        let fine_at = 2 * at - place.shift;
         let below = coarse_row(place, at + vec2<i32>(0, 1));
-        let lower = diamonds(place, columns, here, below, at);
-        let beside = vec4<i32>(here.inner.yzw, here.right);
-        let top = drawn(
-            place, columns.odd, fine_at + vec2<i32>(1, 0),
-            mean_of_sums(here.inner + beside, upper.inner + lower.inner));
-        store_row(place, fine_at, here.inner, top);
-        let before = vec4<i32>(lower.left, lower.inner.xyz);
-        let left = drawn(
-            place, columns.even, fine_at + vec2<i32>(0, 1),
-            mean_of_sums(here.inner + below.inner, before + lower.inner));
-        store_row(place, fine_at + vec2<i32>(0, 1), left, lower.inner);
+        let lower = diamonds(place, columns, at, here, below);
+        write_rows(place, columns, at, here, below, upper.inner, lower);
         here = below;
         upper = lower;
     }
 }
 
-// World coordinates of the coarse points from column `x` on.
-fn world_x(place: Place, x: i32) -> vec4<u32> {
-    return vec4<u32>(vec4<i32>(place.origin.x + 2 * x - place.shift.x) + 2 * LANES) * level.fine_spacing;
+fn columns_of(place: Place, x: i32) -> Columns {
+    let even = vec4<u32>(vec4<i32>(place.origin.x + 2 * x - place.shift.x) + 2 * LANES) * place.spacing;
+    return Columns(even, even + vec4<u32>(place.spacing));
 }
 
-fn diamonds(place: Place, columns: Columns, above: CoarseRow, below: CoarseRow, cell: vec2<i32>) -> DiamondRow {
-    let fine_at = 2 * cell - place.shift + vec2<i32>(1);
+// The fine sample at a coarse point.
+fn fine_at(place: Place, cell: vec2<i32>) -> vec2<i32> {
+    return 2 * cell - place.shift;
+}
+
+fn diamonds(place: Place, columns: Columns, cell: vec2<i32>, above: CoarseRow, below: CoarseRow) -> DiamondRow {
+    let at = fine_at(place, cell) + vec2<i32>(-1, 1);
+    let mean = mean_of_sums(vec4<i32>(above.left + below.left), vec4<i32>(above.inner.x + below.inner.x)).x;
+    return DiamondRow(
+        drawn_one(place, columns.odd.x - 2u * place.spacing, at, mean),
+        inner_diamonds(place, columns, cell, above, below));
+}
+
+fn inner_diamonds(
+    place: Place, columns: Columns, cell: vec2<i32>, above: CoarseRow, below: CoarseRow,
+) -> vec4<i32> {
     let sums = above.inner + below.inner;
     let beside = vec4<i32>(sums.yzw, above.right + below.right);
-    let left = mean_of_sums(vec4<i32>(above.left + below.left), vec4<i32>(sums.x)).x;
-    return DiamondRow(
-        drawn_one(place, columns.odd.x - 2u * level.fine_spacing, fine_at - vec2<i32>(2, 0), left),
-        drawn(place, columns.odd, fine_at, mean_of_sums(sums, beside)));
+    return drawn(place, columns.odd, fine_at(place, cell) + vec2<i32>(1), mean_of_sums(sums, beside));
+}
+
+// The samples right of the coarse points of a row.
+fn squares_beside(
+    place: Place, columns: Columns, cell: vec2<i32>, here: CoarseRow, upper: vec4<i32>, lower: vec4<i32>,
+) -> vec4<i32> {
+    let beside = vec4<i32>(here.inner.yzw, here.right);
+    let at = fine_at(place, cell) + vec2<i32>(1, 0);
+    return drawn(place, columns.odd, at, mean_of_sums(here.inner + beside, upper + lower));
+}
+
+// The samples below the coarse points of a row.
+fn squares_below(
+    place: Place, columns: Columns, cell: vec2<i32>, here: CoarseRow, below: CoarseRow, lower: DiamondRow,
+) -> vec4<i32> {
+    let before = vec4<i32>(lower.left, lower.inner.xyz);
+    let at = fine_at(place, cell) + vec2<i32>(0, 1);
+    return drawn(place, columns.even, at, mean_of_sums(here.inner + below.inner, before + lower.inner));
+}
+
+// Writes the two fine rows of four cells between two coarse rows.
+fn write_rows(
+    place: Place, columns: Columns, cell: vec2<i32>, here: CoarseRow, below: CoarseRow,
+    upper: vec4<i32>, lower: DiamondRow,
+) {
+    let at = fine_at(place, cell);
+    let beside = held(squares_beside(place, columns, cell, here, upper, lower.inner));
+    let under = held(squares_below(place, columns, cell, here, below, lower));
+    store_row(place, at, here.inner, beside);
+    store_row(place, at + vec2<i32>(0, 1), under, lower.inner);
+}
+
+// The heights themselves: none is less. lavapipe stores lane by lane, and would add up what is only stored once
+// for each lane there; it does not take a maximum apart.
+fn held(heights: vec4<i32>) -> vec4<i32> {
+    return max(heights, vec4<i32>(-HEIGHT_LIMIT));
+}
+
+// Columns -1 .. 5 of a coarse row.
+struct WideRow {
+    four: CoarseRow,
+    beyond: i32,
+}
+
+// Columns -1 .. 8 of a middle row.
+struct MiddleRow {
+    left: i32,
+    first: vec4<i32>,
+    second: vec4<i32>,
+    right: i32,
+}
+
+// The middle row at a coarse row and the one below it, whose odd columns are the coarse cells' centres.
+struct MiddleRows {
+    even: MiddleRow,
+    odd: MiddleRow,
+    centres: DiamondRow,
+}
+
+// The centres of middle cells -1 .. 7.
+struct FineDiamonds {
+    first: DiamondRow,
+    second: vec4<i32>,
+}
+
+// A middle row is complete when the coarse row below it is known, and a fine row when the middle row below it is:
+// a thread writes the fine rows from the middle row above its first cell to the one at its last.
+fn subdivide_twice(place: Place, middle: Place, cell: vec2<i32>) {
+    let columns = columns_of(middle, cell.x);
+    var at = cell - vec2<i32>(0, 1);
+    var here = wide_row(middle, at);
+    var below = wide_row(middle, cell);
+    let above_here = at - vec2<i32>(0, 1);
+    let centres = diamonds(middle, columns, above_here, coarse_row(middle, above_here), here.four);
+    var rows = middle_rows(middle, columns, at, here, below, centres);
+
+    var fine_cell = fine_at(middle, at) + vec2<i32>(0, 1);
+    let first = columns_of(place, fine_cell.x);
+    let second = columns_of(place, fine_cell.x + 4);
+    var current = rows.odd;
+    var upper = fine_diamonds(place, first, second, fine_cell - vec2<i32>(0, 1), rows.even, current);
+    let last_row = (i32(level.fine_width) - 1 + place.shift.y) / 2;
+    let last = min(cell.y + i32(CELL_ROWS), (last_row + middle.shift.y + 1) / 2 + 1);
+    for (var y = cell.y; y < last; y++) {
+        at = vec2<i32>(cell.x, y);
+        here = below;
+        below = wide_row(middle, at + vec2<i32>(0, 1));
+        rows = middle_rows(middle, columns, at, here, below, rows.centres);
+        var next = rows.even;
+        for (var half = 0; half < 2; half++) {
+            let lower = fine_diamonds(place, first, second, fine_cell, current, next);
+            write_rows(
+                place, first, fine_cell, first_four(current), first_four(next), upper.first.inner, lower.first);
+            write_rows(
+                place, second, fine_cell + vec2<i32>(4, 0), second_four(current), second_four(next),
+                upper.second, DiamondRow(lower.first.inner.w, lower.second));
+            fine_cell.y++;
+            upper = lower;
+            current = next;
+            next = rows.odd;
+        }
+    }
+}
+
+fn wide_row(place: Place, cell: vec2<i32>) -> WideRow {
+    let beyond = cell + vec2<i32>(5, 0);
+    if FIRST {
+        return WideRow(coarse_row(place, cell), base_points(place, beyond).x);
+    }
+    return WideRow(coarse_row(place, cell), loaded(place, beyond));
+}
+
+// The middle rows between two coarse rows, given the centres of the cells above them.
+fn middle_rows(
+    place: Place, columns: Columns, cell: vec2<i32>, here: WideRow, below: WideRow, above: DiamondRow,
+) -> MiddleRows {
+    let inner = inner_diamonds(place, columns, cell, here.four, below.four);
+    // The rim, in one draw: the centres of cells -1 and 4, column -1 of the even row and column 8 of the odd.
+    let y = world_y(place, fine_at(place, cell));
+    let step = vec4<u32>(place.spacing);
+    let rim = offsets(
+        place,
+        vec4<u32>(columns.even.x, columns.odd.w, columns.even.x, columns.even.w) + step * vec4<u32>(~0u, 2u, ~0u, 2u),
+        y + step * vec4<u32>(1u, 1u, 0u, 1u));
+    let right = here.four.right + below.four.right;
+    let centres = rim + mean_of_sums(
+        vec4<i32>(here.four.left + below.four.left, right, 0, 0),
+        vec4<i32>(here.four.inner.x + below.four.inner.x, here.beyond + below.beyond, 0, 0));
+    let squares = rim + mean_of_sums(
+        vec4<i32>(0, 0, here.four.left + here.four.inner.x, right),
+        vec4<i32>(0, 0, above.left + centres.x, inner.w + centres.y));
+    let lower = DiamondRow(centres.x, inner);
+    return MiddleRows(
+        middle_row(
+            squares.z, here.four.inner,
+            squares_beside(place, columns, cell, here.four, above.inner, inner), here.four.right),
+        middle_row(
+            centres.x, squares_below(place, columns, cell, here.four, below.four, lower), inner, squares.w),
+        lower);
+}
+
+fn middle_row(left: i32, even: vec4<i32>, odd: vec4<i32>, right: i32) -> MiddleRow {
+    return MiddleRow(
+        left, vec4<i32>(even.x, odd.x, even.y, odd.y), vec4<i32>(even.z, odd.z, even.w, odd.w), right);
+}
+
+fn first_four(row: MiddleRow) -> CoarseRow {
+    return CoarseRow(row.left, row.first, row.second.x);
+}
+
+fn second_four(row: MiddleRow) -> CoarseRow {
+    return CoarseRow(row.first.w, row.second, row.right);
+}
+
+fn fine_diamonds(
+    place: Place, first: Columns, second: Columns, cell: vec2<i32>, above: MiddleRow, below: MiddleRow,
+) -> FineDiamonds {
+    return FineDiamonds(
+        diamonds(place, first, cell, first_four(above), first_four(below)),
+        inner_diamonds(place, second, cell + vec2<i32>(4, 0), second_four(above), second_four(below)));
 }
 
 // Adds the random offset to four means at fine samples `at`, `at` + (2, 0), … whose world coordinates are x
 // and injects features.
 fn drawn(place: Place, x: vec4<u32>, at: vec2<i32>, means: vec4<i32>) -> vec4<i32> {
-    let world_y = u32(place.origin.y + at.y) * level.fine_spacing;
-    let words = threefry2x32(level.key, x, vec4<u32>(world_y));
-    let heights = means + height_offset(DISTRIBUTION, level.fine_range, words);
+    let heights = means + offsets(place, x, world_y(place, at));
     if FEATURES == FEATURES_NONE {
         return heights;
     }
@@ -145,38 +322,42 @@ fn drawn(place: Place, x: vec4<u32>, at: vec2<i32>, means: vec4<i32>) -> vec4<i3
 }
 
 fn drawn_one(place: Place, x: u32, at: vec2<i32>, mean: i32) -> i32 {
-    let world_y = u32(place.origin.y + at.y) * level.fine_spacing;
-    let words = threefry2x32(level.key, vec4<u32>(x), vec4<u32>(world_y));
-    let height = mean + height_offset(DISTRIBUTION, level.fine_range, words).x;
+    let height = mean + offsets(place, vec4<u32>(x), world_y(place, at)).x;
     if FEATURES == FEATURES_NONE {
         return height;
     }
     return injected(level.fine_features, place.window, at, height);
 }
 
+fn offsets(place: Place, x: vec4<u32>, y: vec4<u32>) -> vec4<i32> {
+    return height_offset(DISTRIBUTION, place.range, threefry2x32(level.key, x, y));
+}
+
+fn world_y(place: Place, at: vec2<i32>) -> vec4<u32> {
+    return vec4<u32>(u32(place.origin.y + at.y) * place.spacing);
+}
+
 fn coarse_row(place: Place, cell: vec2<i32>) -> CoarseRow {
     if FIRST {
-        let inner = base_points(place, cell);
-        let rim = base_points(place, cell - vec2<i32>(1, 0)).x;
-        return CoarseRow(rim, inner, base_points(place, cell + vec2<i32>(4, 0)).x);
+        let left = base_points(place, cell - vec2<i32>(1, 0)).x;
+        return CoarseRow(left, base_points(place, cell), base_points(place, cell + vec2<i32>(4, 0)).x);
     }
-    // Points outside the window feed only samples outside it: any value will do.
-    let last = i32(level.coarse_width) - 1;
-    let row = place.window * level.coarse_points + u32(clamp(cell.y, 0, last)) * level.coarse_width;
-    let x = clamp(vec4<i32>(cell.x) + LANES, vec4<i32>(0), vec4<i32>(last));
     let inner = vec4<i32>(
-        coarse[row + u32(x.x)], coarse[row + u32(x.y)], coarse[row + u32(x.z)], coarse[row + u32(x.w)]);
-    let left = coarse[row + u32(clamp(cell.x - 1, 0, last))];
-    return CoarseRow(left, inner, coarse[row + u32(min(cell.x + 4, last))]);
+        loaded(place, cell), loaded(place, cell + vec2<i32>(1, 0)),
+        loaded(place, cell + vec2<i32>(2, 0)), loaded(place, cell + vec2<i32>(3, 0)));
+    return CoarseRow(loaded(place, cell - vec2<i32>(1, 0)), inner, loaded(place, cell + vec2<i32>(4, 0)));
+}
+
+// Points outside the window feed only samples outside it: any value will do.
+fn loaded(place: Place, cell: vec2<i32>) -> i32 {
+    let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(i32(level.coarse_width) - 1)));
+    return coarse[place.window * level.coarse_points + at.y * level.coarse_width + at.x];
 }
 
 // Four points of the base lattice from coarse point `cell` on.
 fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
-    let fine_at = place.origin + 2 * cell - place.shift;
-    let world_x = vec4<u32>(vec4<i32>(fine_at.x) + 2 * LANES) * level.fine_spacing;
-    let world_y = u32(fine_at.y) * level.fine_spacing;
-    let heights = height_offset(
-        DISTRIBUTION, level.base_range, threefry2x32(level.key, world_x, vec4<u32>(world_y)));
+    let words = threefry2x32(level.key, columns_of(place, cell.x).even, world_y(place, fine_at(place, cell)));
+    let heights = height_offset(DISTRIBUTION, level.base_range, words);
     if FEATURES == FEATURES_NONE {
         return heights;
     }

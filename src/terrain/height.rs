@@ -5,7 +5,7 @@
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub use pass::{HeightBatch, HeightJob, HeightPass, HeightScratch};
+pub use pass::{Blocks, HeightBatch, HeightJob, HeightPass, HeightScratch};
 
 use crate::InputError;
 use crate::terrain::config::{Border, Config};

@@ -6,7 +6,7 @@ use glam::UVec2;
 use super::Window;
 use crate::Error;
 use crate::InputError;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{AdapterSummary, Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::terrain::config::{Border, Config, Offset};
 use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features, Lattice};
 use crate::terrain::fields::Fields;
@@ -14,6 +14,9 @@ use crate::terrain::fields::Fields;
 /// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
 const CELL_ROWS_SOFTWARE: u32 = 32;
 const CELL_ROWS_HARDWARE: u32 = 2;
+
+/// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in four threads.
+const CELL_ROWS_TWO_LEVELS: u32 = 17;
 
 /// `Level` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -25,6 +28,7 @@ pub(crate) struct Level {
     pub coarse_points: u32,
     pub fine_spacing: u32,
     pub fine_range: u32,
+    pub middle_range: u32,
     pub base_range: u32,
     pub blocks_per_row: u32,
     pub blocks: u32,
@@ -35,13 +39,39 @@ pub(crate) struct Level {
     pub base_features: FeatureGrid,
 }
 
+/// How a dispatch is cut into threads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Blocks {
+    /// Rows of coarse cells a thread, at least one.
+    pub cell_rows: u32,
+    /// Levels a dispatch: one, or two where no features are injected. Of an odd number the first is alone.
+    pub levels: u32,
+}
+
+impl Blocks {
+    // Two levels for lavapipe alone, where memory operations cost most: SwiftShader's compiler takes too much memory for
+    // shaders of that length.
+    fn of(adapter: &AdapterSummary, features: bool) -> Self {
+        let cell_rows = if adapter.is_software() { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
+        let two = adapter.name.contains("llvmpipe") && !features;
+        if two { Self { cell_rows: CELL_ROWS_TWO_LEVELS, levels: 2 } } else { Self { cell_rows, levels: 1 } }
+    }
+}
+
 /// Diamond-square heights of `seamless` windows. Compiled for one distribution and one way of injection.
 #[derive(Debug, Clone)]
 pub struct HeightPass {
-    first: Kernel,
-    next: Kernel,
+    // For one level a dispatch and, where it is chosen, for two.
+    stages: Vec<Stage>,
     cell_rows: u32,
     with_features: bool,
+}
+
+/// The kernel for the base lattice's levels and for those after.
+#[derive(Debug, Clone)]
+struct Stage {
+    first: Kernel,
+    next: Kernel,
 }
 
 impl HeightPass {
@@ -49,31 +79,42 @@ impl HeightPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
-        let rows = if gpu.adapter().is_software() { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
-        Self::with_cell_rows(gpu, offset, features, rows)
+    pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, Error> {
+        Self::with_blocks(gpu, offset, features, Blocks::of(gpu.adapter(), features.is_some()))
     }
 
-    /// [`HeightPass::new`] with a chosen number of coarse rows a thread.
+    /// [`HeightPass::new`] with chosen blocks.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
-    pub fn with_cell_rows(
+    /// [`InputError`] for blocks out of bounds; what the driver's compiler reports.
+    pub fn with_blocks(
         gpu: &Gpu,
         offset: Offset,
         features: Option<FeatureMode>,
-        cell_rows: u32,
-    ) -> Result<Self, GpuError> {
-        let kernel = |first: bool| {
+        blocks: Blocks,
+    ) -> Result<Self, Error> {
+        let most = if features.is_some() { 1 } else { 2 };
+        if !(1..=most).contains(&blocks.levels) {
+            let bound = format!("must be 1 to {most} a dispatch");
+            return Err(InputError::new("levels", blocks.levels, bound).into());
+        }
+        if blocks.cell_rows == 0 {
+            return Err(InputError::new("cell_rows", 0, "must be at least 1").into());
+        }
+        let kernel = |levels: u32, first: bool| {
             let constants = [
-                ("CELL_ROWS", f64::from(cell_rows)),
+                ("CELL_ROWS", f64::from(blocks.cell_rows)),
+                ("LEVELS", f64::from(levels)),
                 ("FIRST", f64::from(u8::from(first))),
                 ("DISTRIBUTION", f64::from(offset.code())),
                 ("FEATURES", features.map_or(0.0, |mode| f64::from(mode.code()))),
             ];
             Kernel::new(gpu, &shaders::TERRAIN_HEIGHT, &constants)
         };
-        Ok(Self { first: kernel(true)?, next: kernel(false)?, cell_rows, with_features: features.is_some() })
+        let stages = (1..=blocks.levels)
+            .map(|levels| Ok(Stage { first: kernel(levels, true)?, next: kernel(levels, false)? }))
+            .collect::<Result<_, GpuError>>()?;
+        Ok(Self { stages, cell_rows: blocks.cell_rows, with_features: features.is_some() })
     }
 
     /// Prepares generation of `count` windows with `reach` into `output`, which holds
@@ -108,18 +149,20 @@ impl HeightPass {
         let origins: Vec<_> = (0..widths.len())
             .map(|_| Buffer::new(gpu, "window origins", count as usize))
             .collect::<Result<_, _>>()?;
+        let plan = self.plan(config.levels());
         let mut steps = Vec::new();
-        for level in 0..config.levels() as usize {
-            // The last level goes to the output, those before it to the scratch buffers in turn.
-            let below = config.levels() as usize - 1 - level;
-            let coarse = &scratch.buffers[below % 2];
-            let fine = if below == 0 { output } else { &scratch.buffers[(below + 1) % 2] };
-            let kernel = if level == 0 { &self.first } else { &self.next };
-            let params = self.level(config, &widths, level, &features, count);
+        for (index, &[level, levels]) in plan.iter().enumerate() {
+            // The last dispatch writes to the output, those before it to the scratch buffers in turn.
+            let left = plan.len() - 1 - index;
+            let coarse = &scratch.buffers[left % 2];
+            let fine = if left == 0 { output } else { &scratch.buffers[(left + 1) % 2] };
+            let stage = &self.stages[levels - 1];
+            let kernel = if level == 0 { &stage.first } else { &stage.next };
+            let params = self.level(config, &widths, [level, levels], &features, count);
             let uniform = Uniform::new(gpu, "terrain level", &params)?;
             let resources = [
                 uniform.raw().as_entire_binding(),
-                origins[level + 1].raw().as_entire_binding(),
+                origins[level + levels].raw().as_entire_binding(),
                 coarse.raw().as_entire_binding(),
                 fine.raw().as_entire_binding(),
             ];
@@ -131,16 +174,25 @@ impl HeightPass {
         Ok(HeightJob { config: config.clone(), count, reach, widths, origins, features, job })
     }
 
+    /// The coarse level and the number of levels of every dispatch.
+    fn plan(&self, levels: u32) -> Vec<[usize; 2]> {
+        let (levels, most) = (levels as usize, self.stages.len());
+        let alone = (levels % most != 0).then_some([0, levels % most]);
+        alone.into_iter().chain((levels % most..levels).step_by(most).map(|level| [level, most])).collect()
+    }
+
     fn level(
         &self,
         config: &Config,
         widths: &[u32],
-        level: usize,
+        [level, levels]: [usize; 2],
         features: &FeatureIndex,
         count: u32,
     ) -> Level {
-        let (coarse_width, fine_width) = (widths[level], widths[level + 1]);
-        let cells = fine_width / 2 + 1;
+        let fine = level + levels;
+        let (coarse_width, fine_width) = (widths[level], widths[fine]);
+        // A window starts anywhere in its first cell.
+        let cells = if levels == 1 { fine_width / 2 + 1 } else { (fine_width + 6) / 4 };
         let blocks_per_row = cells.div_ceil(4);
         Level {
             key: config.key().into(),
@@ -148,13 +200,14 @@ impl HeightPass {
             fine_points: fine_width * fine_width,
             coarse_width,
             coarse_points: coarse_width * coarse_width,
-            fine_spacing: (config.sample_spacing() << (config.levels() as usize - level - 1)) as u32,
-            fine_range: config.level_range(level as u32),
+            fine_spacing: (config.sample_spacing() << (config.levels() as usize - fine)) as u32,
+            fine_range: config.level_range(fine as u32 - 1),
+            middle_range: config.level_range(level as u32),
             base_range: config.level_range(0),
             blocks_per_row,
             blocks: blocks_per_row * cells.div_ceil(self.cell_rows),
             windows: count,
-            fine_features: features.grid(level + 1),
+            fine_features: features.grid(fine),
             base_features: features.grid(0),
         }
     }
@@ -250,7 +303,8 @@ impl HeightBatch {
 /// Room for the levels before the last: about a third of the output. Jobs of one shape may share it.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // Level L − 1, L − 3, … in the first, L − 2, L − 4, … in the second.
+    // In turn, the level that the last dispatch reads in the first. With one level a dispatch: level L − 1, L − 3, …
+    // in the first, L − 2, L − 4, … in the second; with two they hold smaller ones.
     buffers: [Buffer<i32>; 2],
 }
 
