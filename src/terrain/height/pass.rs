@@ -96,10 +96,10 @@ impl HeightPass {
         let most = if features.is_some() { 1 } else { 2 };
         if !(1..=most).contains(&blocks.levels) {
             let bound = format!("must be 1 to {most} a dispatch");
-            return Err(InputError::new("levels", blocks.levels, bound).into());
+            return Err(InputError::new("blocks.levels", blocks.levels, bound).into());
         }
         if blocks.cell_rows == 0 {
-            return Err(InputError::new("cell_rows", 0, "must be at least 1").into());
+            return Err(InputError::new("blocks.cell_rows", 0, "must be at least 1").into());
         }
         let kernel = |levels: u32, first: bool| {
             let constants = [
@@ -398,6 +398,29 @@ mod tests {
     crate::gpu::layout::layout_test!(level_layout: Level = TERRAIN_HEIGHT "Level");
     crate::gpu::layout::layout_test!(feature_grid_layout: FeatureGrid = TERRAIN_HEIGHT "FeatureGrid");
     use crate::terrain::height::Span;
+
+    #[test]
+    fn blocks_out_of_bounds_are_refused() {
+        let gpu = Gpu::headless(&crate::gpu::Options::default()).expect("the suite needs an adapter");
+        let refused = |features, cell_rows, levels| match HeightPass::with_blocks(
+            &gpu,
+            Offset::Signed,
+            features,
+            Blocks { cell_rows, levels },
+        ) {
+            Err(Error::Input(error)) => (error.field.to_string(), error.value.to_string()),
+            other => panic!("{other:?}"),
+        };
+        let [levels, rows] = ["blocks.levels", "blocks.cell_rows"].map(str::to_owned);
+        assert_eq!(refused(None, 4, 0), (levels.clone(), "0".to_owned()));
+        assert_eq!(refused(None, 4, 3), (levels.clone(), "3".to_owned()));
+        assert_eq!(
+            refused(Some(FeatureMode::Keep), 4, 2),
+            (levels, "2".to_owned()),
+            "features need every level"
+        );
+        assert_eq!(refused(None, 0, 1), (rows, "0".to_owned()));
+    }
 
     /// A scratch buffer is as large as the largest level that it ever holds.
     #[test]
