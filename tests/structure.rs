@@ -11,7 +11,7 @@ use std::path::Path;
 use relievo::bench::{self, Backend};
 use relievo::verify;
 
-use relievo::gpu::shaders::{ALL, Stage};
+use relievo::gpu::shaders::{ALL, Binding, BindingKind, Stage};
 
 fn kernels() -> Vec<&'static str> {
     let compute = |shader: &&&relievo::gpu::shaders::Shader| {
@@ -109,5 +109,23 @@ fn kernels_have_one_compute_entry_and_render_passes_none() {
         let default_limit =
             shader.entry_points.iter().map(|entry| entry.workgroup_size.iter().product::<u32>()).max();
         assert!(default_limit.unwrap_or(0) <= 256, "{} exceeds WebGPU's default workgroup", shader.name);
+    }
+}
+
+/// `Gpu::headless` opens devices that let shaders bind more, so nothing else would tell.
+#[test]
+fn shaders_bind_no_more_than_web_gpu_allows_by_default() {
+    let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage as usize;
+    for shader in ALL {
+        for stage in [Stage::Vertex, Stage::Fragment, Stage::Compute] {
+            let is_counted = |binding: &&Binding| {
+                let kinds = [BindingKind::StorageRead, BindingKind::StorageReadWrite];
+                kinds.contains(&binding.kind) && binding.stages.contains(&stage)
+            };
+            let buffers = shader.bindings.iter().filter(is_counted).count();
+            // `Dispatches::of` takes it only where the device allows it.
+            let is_optional = shader.name == "animation/decide";
+            assert!(buffers <= most || is_optional, "{} binds {buffers} in {stage:?}", shader.name);
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! every device.
 
 #[cfg(feature = "gpu")]
-mod pass;
+pub(crate) mod pass;
 
 #[cfg(feature = "gpu")]
 pub use pass::{Active, CompactJob, CompactPass, Stages};

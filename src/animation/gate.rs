@@ -4,11 +4,10 @@
 //! neither sampled nor, unless a bone above them is active, concatenated. A bone that is left out keeps its last local
 //! transform. Bones that their clip does not move cost nothing in any mode.
 //!
-//! The order of a frame: `phase`, `gate` (or `budget`), `compact`, `place`, `sample`, `concat`, the latter three prepared
-//! for what is active. Only so `bounded` keeps its promise: places are then looked up at the times that the gate saw.
+//! What precedes and follows it in a frame: `animation::frame`.
 
 #[cfg(feature = "gpu")]
-mod pass;
+pub(crate) mod pass;
 
 #[cfg(feature = "gpu")]
 pub use pass::{GateJob, GatePass, Gating};

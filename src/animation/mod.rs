@@ -12,6 +12,9 @@ pub mod concat;
 pub mod creature;
 #[cfg(feature = "gpu")]
 pub mod crowd;
+pub mod decide;
+#[cfg(feature = "gpu")]
+pub mod frame;
 pub mod gate;
 pub mod gate_table;
 pub mod gltf;
@@ -32,6 +35,7 @@ pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use clip_set::ClipSet;
 pub use concat::Order;
 pub use creature::creature;
+pub use decide::Choice;
 pub use gate::{Frame, Gate};
 pub use gate_table::GateTable;
 pub use layers::Layer;

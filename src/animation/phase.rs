@@ -5,7 +5,7 @@
 //! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
 #[cfg(feature = "gpu")]
-mod pass;
+pub(crate) mod pass;
 
 #[cfg(feature = "gpu")]
 pub use pass::{PhaseJob, PhasePass};

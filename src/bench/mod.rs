@@ -49,6 +49,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/gate", run: animation::gate::cases },
     Stem { name: "animation/budget", run: animation::budget::cases },
     Stem { name: "animation/compact", run: animation::compact::cases },
+    Stem { name: "animation/decide", run: animation::decide::cases },
     Stem { name: "animation/sample", run: animation::sample::cases },
     Stem { name: "animation/concat", run: animation::concat::cases },
     Stem { name: "animation/bounds", run: animation::bounds::cases },

@@ -60,26 +60,14 @@ impl Kernel {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
-    /// Records a compute pass of one dispatch, whose workgroups along x, y and z are the three words of a buffer
-    /// from a byte on.
-    pub fn dispatch_indirect(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        label: &'static str,
-        group: &Group,
-        (arguments, offset): (&wgpu::Buffer, u64),
-    ) {
-        let descriptor = wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None };
-        let mut pass = encoder.begin_compute_pass(&descriptor);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups_indirect(arguments, offset);
+    /// Invocations of a workgroup along x, y and z.
+    pub(super) fn workgroup_size(&self) -> [u32; 3] {
+        self.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size)
     }
 
     /// Workgroups for `invocations` along x.
     pub fn groups_for(&self, invocations: u32) -> u32 {
-        let width = self.shader.entry_points.first().map_or(1, |entry| entry.workgroup_size[0].max(1));
-        invocations.div_ceil(width)
+        invocations.div_ceil(self.workgroup_size()[0].max(1))
     }
 }
 
@@ -87,102 +75,6 @@ impl Kernel {
 pub fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]
-}
-
-/// One dispatch with everything bound.
-#[derive(Debug, Clone)]
-pub struct Step {
-    /// The pipeline.
-    pub kernel: Kernel,
-    /// Its bind groups, in order.
-    pub groups: Vec<Group>,
-    /// Workgroups along x, y and z.
-    pub workgroups: [u32; 3],
-}
-
-impl Step {
-    /// Invocations of the dispatch.
-    fn invocations(&self) -> u64 {
-        let size = self.kernel.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size);
-        self.workgroups.into_iter().chain(size).map(u64::from).fold(1, u64::saturating_mul)
-    }
-}
-
-/// Invocations after which [`Job::run`] submits what it has: some tenths of a second on a slow GPU. Watchdogs of
-/// operating systems end what takes seconds.
-pub const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
-
-/// Dispatches that belong together: prepared once, recorded as often as wanted without allocation.
-#[derive(Debug, Clone)]
-pub struct Job {
-    label: &'static str,
-    steps: Vec<Step>,
-}
-
-impl Job {
-    /// Checks the steps against the device's limits.
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`] when a dispatch is too large.
-    pub fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
-        let available = gpu.device().limits().max_compute_workgroups_per_dimension;
-        let needed = steps.iter().flat_map(|step| step.workgroups).max().unwrap_or(0);
-        if needed > available {
-            return Err(GpuError::Limit {
-                pass: label,
-                limit: "maxComputeWorkgroupsPerDimension",
-                needed: needed.into(),
-                available: available.into(),
-                remedy: "split the batch",
-            });
-        }
-        Ok(Self { label, steps })
-    }
-
-    /// Records one compute pass with all steps, in order.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.record_steps(encoder, &self.steps);
-    }
-
-    /// Runs all steps and waits. Long jobs go to the device in several submissions, each with at most `most`
-    /// invocations (see [`INVOCATIONS_A_SUBMISSION`]) or one step.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn run(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
-        self.submissions(most)
-            .into_iter()
-            .try_for_each(|steps| gpu.run(self.label, |encoder| self.record_steps(encoder, steps)))
-    }
-
-    /// The steps of each submission of [`Job::run`].
-    pub fn submissions(&self, most: u64) -> Vec<&[Step]> {
-        let mut submissions = Vec::new();
-        let (mut start, mut work) = (0, 0_u64);
-        for (index, step) in self.steps.iter().enumerate() {
-            let more = step.invocations();
-            if index > start && work.saturating_add(more) > most {
-                submissions.push(&self.steps[start..index]);
-                (start, work) = (index, 0);
-            }
-            work = work.saturating_add(more);
-        }
-        submissions.push(&self.steps[start..]);
-        submissions
-    }
-
-    fn record_steps(&self, encoder: &mut wgpu::CommandEncoder, steps: &[Step]) {
-        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: None };
-        let mut pass = encoder.begin_compute_pass(&descriptor);
-        for step in steps {
-            pass.set_pipeline(&step.kernel.pipeline);
-            for (index, group) in step.groups.iter().enumerate() {
-                pass.set_bind_group(index as u32, group, &[]);
-            }
-            let [x, y, z] = step.workgroups;
-            pass.dispatch_workgroups(x, y, z);
-        }
-    }
 }
 
 /// Compiles a shader.

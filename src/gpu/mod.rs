@@ -7,6 +7,7 @@
 mod adapter;
 mod buffer;
 mod error;
+mod job;
 mod kernel;
 #[cfg(test)]
 pub(crate) mod layout;
@@ -22,10 +23,8 @@ pub use adapter::{AdapterSummary, Options, adapters};
 pub(crate) use buffer::storage_bytes;
 pub use buffer::{Buffer, Uniform, storage};
 pub use error::GpuError;
-pub use kernel::{
-    Group, INVOCATIONS_A_SUBMISSION, Job, Kernel, Resource, Step, bind, layouts, module, pipeline_layout,
-    rows_of_workgroups,
-};
+pub use job::{INVOCATIONS_A_SUBMISSION, IndirectJob, Job, Step, compute_pass};
+pub use kernel::{Group, Kernel, Resource, bind, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use timer::{Measurement, TimedBy, Timer};
 
 use shared::Shared;
@@ -56,8 +55,8 @@ pub struct Gpu {
 pub(crate) type RenderPipeline = (wgpu::RenderPipeline, Vec<wgpu::BindGroupLayout>);
 
 impl Gpu {
-    /// Opens a device of its own, without a window, with WebGPU's default limits; storage bindings may be larger
-    /// where the adapter offers it.
+    /// Opens a device of its own, without a window, with WebGPU's default limits; storage bindings may be larger,
+    /// and there may be more of them, where the adapter offers it.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
@@ -190,15 +189,18 @@ impl Gpu {
     }
 }
 
-/// WebGPU's default limits, but for the storage bindings that the adapter offers: some buffers cannot be split.
+/// WebGPU's default limits, but for the storage bindings that the adapter offers: some buffers cannot be split, and some
+/// kernels stand for several where a shader may bind enough.
 fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
     let default = wgpu::Limits::default();
     // Shaders count words in u32 with room to spare.
     let most = u64::from(u32::MAX) / 4 * 4;
     let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
+    let buffers = offered.max_storage_buffers_per_shader_stage;
     wgpu::Limits {
         max_storage_buffer_binding_size: default.max_storage_buffer_binding_size.max(binding),
         max_buffer_size: default.max_buffer_size.max(binding),
+        max_storage_buffers_per_shader_stage: default.max_storage_buffers_per_shader_stage.max(buffers),
         ..default
     }
 }

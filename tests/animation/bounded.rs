@@ -1,11 +1,12 @@
 //! The promise of `bounded` on clips that were made to break it.
 
+use relievo::animation::Choice;
 use relievo::animation::clip::{BoneKeys, Interpolation, Keys};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::{
     Affine, Bone, Clip, ClipSet, Frame, Gate, GateTable, Instance, Order, Skeleton, Transform,
 };
-use relievo::reference::animation::crowd::{Choice, Crowd};
+use relievo::reference::animation::crowd::Crowd;
 use relievo::verify::animation::Draw;
 
 fn skeleton(parents: &[Option<u32>]) -> Skeleton {

@@ -1,15 +1,31 @@
 //! Whole frames under a gate on the device at hand, layers included, beside frames in full.
 
-use relievo::animation::compact::{Active, CompactPass, Stages};
+use relievo::animation::compact::{Active, Stages};
 use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::gate::{GatePass, Gating};
-use relievo::animation::phase::PhasePass;
+use relievo::animation::decide::{DecidePass, Dispatches};
+use relievo::animation::frame::GatedFrame;
+use relievo::animation::gate::Gating;
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, Order, creature};
+use relievo::animation::{
+    Affine, Choice, ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, Order, creature,
+};
+use relievo::gpu::{Gpu, GpuError};
 
 use crate::harness::gpu;
+
+const BOUNDED: Choice = Choice::Gate(Gate::Bounded);
+
+fn frame(number: u32) -> Frame {
+    Frame { ticks: number, frame_ticks: 1, frame: number }
+}
+
+/// The largest difference of two entries.
+fn furthest(a: &[Affine], b: &[Affine]) -> f32 {
+    let pairs = a.as_flattened().as_flattened().iter().zip(b.as_flattened().as_flattened());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
 
 /// Where nothing may be missed, a gated crowd is the full one: layers fade in and out, clips change, on both walks.
 #[test]
@@ -35,12 +51,8 @@ fn a_gate_that_misses_nothing_changes_nothing() {
         let (place, sample) = (PlacePass::new(&gpu), SamplePass::layered(&gpu, RotationPath::Slerp));
         let (place, sample) = (place.expect("compiled"), sample.expect("compiled"));
         let concat = ConcatPass::new(&gpu, walk).expect("compiled");
-        let phase = PhasePass::new(&gpu).expect("compiled").prepare(&gpu, &buffers, &lazy, &gating);
-        let gate =
-            GatePass::new(&gpu, Gate::Bounded).expect("compiled").prepare(&gpu, &lazy, &gating, &active);
-        let lists = CompactPass::new(&gpu).expect("compiled").prepare(&gpu, &lazy, &active, Stages::Three);
-        let (phase, gate, lists) =
-            (phase.expect("prepared"), gate.expect("prepared"), lists.expect("prepared"));
+        let decide = DecidePass::new(&gpu, BOUNDED, Dispatches::Each).expect("compiled");
+        let decide = decide.prepare(&gpu, &buffers, &lazy, &gating, &active).expect("prepared");
         let places = place.prepare_active(&gpu, &buffers, &lazy, &gating, &active).expect("prepared");
         let samples = sample.prepare_active(&gpu, &buffers, &lazy, &active.pairs).expect("prepared");
         let palettes = concat.prepare_active(&gpu, &model.skeleton, &lazy, &active).expect("prepared");
@@ -55,14 +67,11 @@ fn a_gate_that_misses_nothing_changes_nothing() {
                     crowd.instances.write_at(&gpu, 0, &plays(1)).expect("written");
                 }
             }
-            phase.set(&gpu, elapsed).expect("set");
-            gate.set(&gpu, &Frame { ticks: number, frame_ticks: 1, frame: number }).expect("set");
+            decide.set(&gpu, &frame(number), elapsed).expect("set");
             places.set(&gpu, elapsed).expect("set");
             all_places.set(&gpu, elapsed).expect("set");
             gpu.run("test", |encoder| {
-                phase.record(encoder);
-                gate.record(encoder);
-                lists.record(encoder);
+                decide.record(encoder);
                 places.record(encoder);
                 samples.record(encoder);
                 palettes.record(encoder);
@@ -72,9 +81,87 @@ fn a_gate_that_misses_nothing_changes_nothing() {
             })
             .expect("run");
             let [lazy, full] = [&lazy, &full].map(|crowd| crowd.models.read_blocking(&gpu).expect("read"));
-            let pairs = lazy.as_flattened().as_flattened().iter().zip(full.as_flattened().as_flattened());
-            let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            let worst = furthest(&lazy, &full);
             assert!(worst < 1e-5, "{walk:?}, frame {number}: {worst}");
         }
     }
+}
+
+/// What a gated frame leaves of a crowd of characters, every other one at half detail: active bits and palettes.
+fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
+    let model = creature().expect("valid");
+    let set = ClipSet::new(&[&model.clips[0]]).expect("one skeleton");
+    let table = match choice {
+        Choice::Gate(_) => GateTable::of_movers(&Order::new(&model.skeleton), &set, &[&model.clips[0]]),
+        Choice::Budget(_) => {
+            let reaches = vec![0.1; model.skeleton.len()];
+            GateTable::of_expectations(
+                &model.skeleton,
+                &set,
+                &[&model.clips[0]],
+                &reaches,
+                RotationPath::Slerp,
+            )
+        }
+    };
+    let buffers = ClipBuffers::new(gpu, &set).expect("uploaded");
+    let plays: Vec<_> = (0..40).map(|at| Instance::new(0, Wrap::Loop, 0.1 * at as f32, 1.0)).collect();
+    let crowd = Crowd::new(gpu, &set, &plays).expect("fits");
+    let path = RotationPath::Slerp;
+    let prepared =
+        GatedFrame::new(gpu, &model.skeleton, &buffers, &crowd, &table.expect("fits"), choice, path);
+    let prepared = prepared.expect("prepared");
+    let lod = |at: u32| Lod { omega: 65536 / (1 + at % 2), ..Lod::FULL };
+    prepared.gating.lods.write(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
+    for number in 0..4 {
+        prepared.set(gpu, &frame(number), number as f32 / 8.0).expect("set");
+        gpu.run("test", |encoder| prepared.record(encoder)).expect("run");
+    }
+    let bits = prepared.active.bits.read_blocking(gpu).expect("read");
+    (bits, crowd.models.read_blocking(gpu).expect("read"))
+}
+
+/// A device that another program opened, with WebGPU's default limits, decides in several dispatches; to the same end.
+#[test]
+fn devices_with_default_limits_play_the_same_frames() {
+    let (own, foreign) = (gpu(), foreign());
+    for choice in [Choice::Gate(Gate::Uniform), Choice::Budget(1000)] {
+        let [(bits, models), (same_bits, same_models)] = [&own, &foreign].map(|gpu| played(gpu, choice));
+        assert!(bits.iter().any(|word| *word != 0), "{choice:?}: nothing was active");
+        assert_eq!(bits, same_bits, "{choice:?}");
+        assert!(furthest(&models, &same_models) < 1e-5, "{choice:?}");
+    }
+    let refused = DecidePass::new(&foreign, BOUNDED, Dispatches::One).expect_err("too many buffers");
+    assert!(matches!(refused, GpuError::Limit { available: 8, .. }), "{refused}");
+}
+
+/// A device of the suite's adapter as another program opens it.
+fn foreign() -> Gpu {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let name = gpu().adapter().name.clone();
+    let adapter = all.into_iter().find(|adapter| adapter.get_info().name == name).expect("the suite's");
+    let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
+    let (device, queue) = opened.expect("a device");
+    Gpu::from_wgpu(device, queue)
+}
+
+/// One dispatch is chosen for small crowds on processors alone, and never for a budget.
+#[test]
+fn small_crowds_on_processors_are_decided_in_one_dispatch() {
+    let gpu = gpu();
+    let model = creature().expect("valid");
+    let set = ClipSet::new(&[&model.clips[0]]).expect("one skeleton");
+    let chosen = |instances: usize, choice| {
+        let plays = vec![Instance::new(0, Wrap::Loop, 0.0, 1.0); instances];
+        let crowd = Crowd::new(&gpu, &set, &plays).expect("fits");
+        let active = Active::new(&gpu, &Order::new(&model.skeleton), &crowd).expect("fits");
+        assert_eq!(Stages::of(&gpu, &active) == Stages::One, instances < 1000 && gpu.adapter().is_software());
+        Dispatches::of(&gpu, choice, &active)
+    };
+    let has_room = gpu.device().limits().max_storage_buffers_per_shader_stage >= 19;
+    let small = if gpu.adapter().is_software() && has_room { Dispatches::One } else { Dispatches::Each };
+    assert_eq!(chosen(100, BOUNDED), small);
+    assert_eq!(chosen(1000, BOUNDED), Dispatches::Each);
+    assert_eq!(chosen(100, Choice::Budget(5)), Dispatches::Each);
 }

@@ -1,5 +1,6 @@
 //! Gates: what they promise, on random clips and on the creature's.
 
+use relievo::animation::Choice;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::Affine;
@@ -8,7 +9,7 @@ use relievo::animation::{
 };
 use relievo::reference::animation::budget::rank_of;
 use relievo::reference::animation::compact::Work;
-use relievo::reference::animation::crowd::{Choice, Crowd};
+use relievo::reference::animation::crowd::Crowd;
 use relievo::reference::animation::gate::{gate, is_skipped, share_of};
 use relievo::verify::animation::{Draw, random_clips, random_skeleton};
 

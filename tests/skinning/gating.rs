@@ -1,9 +1,10 @@
 //! The promise of the `bounded` gate where it counts: at every vertex, on screen.
 
+use relievo::animation::Choice;
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::Affine;
 use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Instance, Lens, Model, Order};
-use relievo::reference::animation::crowd::{Choice, Crowd};
+use relievo::reference::animation::crowd::Crowd;
 use relievo::reference::skinning::morph::morph;
 use relievo::reference::skinning::palette::palette_for;
 use relievo::reference::skinning::select::select;

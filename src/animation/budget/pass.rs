@@ -107,6 +107,11 @@ impl BudgetJob {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
+
+    /// Adds the decision to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.job.dispatch(pass);
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use encase::ShaderType;
 use crate::animation::concat::Order;
 use crate::animation::crowd::Crowd;
 use crate::animation::sample::ActivePairs;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `CompactParams` of the kernel.
@@ -119,25 +119,10 @@ impl CompactPass {
         active: &Active,
         stages: Stages,
     ) -> Result<CompactJob, Error> {
-        let params = CompactParams {
-            instances: crowd.len() as u32,
-            bones: crowd.bones as u32,
-            words: active.words,
-            served: active.dispatches.len() as u32 - 1,
-            most_groups: gpu.device().limits().max_compute_workgroups_per_dimension,
-        };
+        let params = CompactParams::new(gpu, crowd, active);
         let uniform = Uniform::new(gpu, "compact", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            active.bits.raw().as_entire_binding(),
-            active.slots.raw().as_entire_binding(),
-            active.dirty.raw().as_entire_binding(),
-            active.counts.raw().as_entire_binding(),
-            active.pairs.pairs.raw().as_entire_binding(),
-            active.pairs.dispatched.raw().as_entire_binding(),
-            active.instances.raw().as_entire_binding(),
-            active.dispatches.raw().as_entire_binding(),
-        ];
+        let bits = active.bits.raw().as_entire_binding();
+        let resources: Vec<_> = [bits].into_iter().chain(resources(&uniform, active)).collect();
         let step = |kernel: &Kernel, threads: u32| {
             Ok::<_, GpuError>(Step {
                 groups: vec![kernel.bind(gpu, 0, &resources)?],
@@ -156,6 +141,32 @@ impl CompactPass {
         };
         Ok(Job::new(gpu, "animation/compact", steps)?)
     }
+}
+
+impl CompactParams {
+    pub fn new(gpu: &Gpu, crowd: &Crowd, active: &Active) -> Self {
+        Self {
+            instances: crowd.len() as u32,
+            bones: crowd.bones as u32,
+            words: active.words,
+            served: active.dispatches.len() as u32 - 1,
+            most_groups: gpu.device().limits().max_compute_workgroups_per_dimension,
+        }
+    }
+}
+
+/// What is bound besides the bits, in the order of `wgsl/animation/compact.wgsl`.
+pub(crate) fn resources<'a>(uniform: &'a Uniform<CompactParams>, active: &'a Active) -> [Resource<'a>; 8] {
+    [
+        uniform.raw().as_entire_binding(),
+        active.slots.raw().as_entire_binding(),
+        active.dirty.raw().as_entire_binding(),
+        active.counts.raw().as_entire_binding(),
+        active.pairs.pairs.raw().as_entire_binding(),
+        active.pairs.dispatched.raw().as_entire_binding(),
+        active.instances.raw().as_entire_binding(),
+        active.dispatches.raw().as_entire_binding(),
+    ]
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::{Order, Slot};
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::skeleton::Skeleton;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `ConcatParams` of the kernel.
@@ -46,6 +46,9 @@ pub struct ConcatPass {
 
 /// A prepared concatenation: a dispatch for each level of chains.
 pub type ConcatJob = Job;
+
+/// A prepared concatenation of what is dirty.
+pub type ConcatActiveJob = IndirectJob;
 
 impl ConcatPass {
     /// Compiles the pipelines.
@@ -98,14 +101,13 @@ impl ConcatPass {
         let binder = Binder::new(gpu, skeleton, crowd)?;
         let lists =
             Lists { dirty: &active.dirty, instances: &active.instances, dispatches: &active.dispatches };
-        let group = |level: &[u32; 2]| binder.bind(gpu, &self.compacted, level, &lists);
-        let groups = self.levels(&binder.order).iter().map(group).collect::<Result<_, _>>()?;
-        Ok(ConcatActiveJob {
-            kernel: self.compacted.clone(),
-            groups,
-            dispatches: active.dispatches.clone(),
-            first_dispatch: u64::from(self.walk == Walk::Levels),
-        })
+        let group = |(dispatch, level): (u64, &[u32; 2])| {
+            Ok((binder.bind(gpu, &self.compacted, level, &lists)?, 16 * dispatch))
+        };
+        let first_dispatch = u64::from(self.walk == Walk::Levels);
+        let levels = self.levels(&binder.order);
+        let groups = (first_dispatch..).zip(&levels).map(group).collect::<Result<_, GpuError>>()?;
+        Ok(IndirectJob::new("animation/concat", &self.compacted, active.dispatches.raw(), groups))
     }
 
     /// First and last chain of each dispatch.
@@ -181,25 +183,6 @@ impl<'a> Binder<'a> {
             crowd.models.raw().as_entire_binding(),
         ];
         kernel.bind(gpu, 0, &resources)
-    }
-}
-
-/// A prepared concatenation of what is dirty.
-#[derive(Debug, Clone)]
-pub struct ConcatActiveJob {
-    kernel: Kernel,
-    groups: Vec<Group>,
-    dispatches: Buffer<[u32; 4]>,
-    first_dispatch: u64,
-}
-
-impl ConcatActiveJob {
-    /// Records the concatenation.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        for (dispatch, group) in (self.first_dispatch..).zip(&self.groups) {
-            let arguments = (self.dispatches.raw(), 16 * dispatch);
-            self.kernel.dispatch_indirect(encoder, "animation/concat", group, arguments);
-        }
     }
 }
 

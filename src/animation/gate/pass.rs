@@ -8,7 +8,7 @@ use crate::animation::crowd::Crowd;
 use crate::animation::gate_table::{GateTable, Kind};
 use crate::animation::lod::Lod;
 use crate::animation::phase::Phase;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `GateParams` of the kernel.
@@ -83,14 +83,7 @@ impl GatePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, gate: Gate) -> Result<Self, GpuError> {
-        let mode = match gate {
-            Gate::Off => 0,
-            Gate::SkipPeriod { .. } => 1,
-            Gate::Uniform => 2,
-            Gate::Random => 3,
-            Gate::Bounded => 4,
-        };
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_GATE, &[("MODE", mode.into())])?, gate })
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_GATE, &[("MODE", mode(gate))])?, gate })
     }
 
     /// Prepares the decision, from a crowd's phases.
@@ -104,7 +97,51 @@ impl GatePass {
         gating: &Gating,
         active: &Active,
     ) -> Result<GateJob, Error> {
-        match self.gate {
+        let time = GateTime::new(gpu, self.gate, crowd, gating)?;
+        let [params, rest @ ..] = resources(&time, gating, active);
+        let shared = [&gating.lods.raw().as_entire_binding(), &gating.phases.raw().as_entire_binding()];
+        let resources: Vec<_> = shared.into_iter().chain([&params]).chain(&rest).cloned().collect();
+        let step = Step {
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: self.kernel.spread(gpu, time.params.instances * time.params.words),
+            kernel: self.kernel.clone(),
+        };
+        Ok(GateJob { time, job: Job::new(gpu, "animation/gate", vec![step])? })
+    }
+}
+
+/// `MODE` of the kernel.
+pub(crate) fn mode(gate: Gate) -> f64 {
+    match gate {
+        Gate::Off => 0.0,
+        Gate::SkipPeriod { .. } => 1.0,
+        Gate::Uniform => 2.0,
+        Gate::Random => 3.0,
+        Gate::Bounded => 4.0,
+    }
+}
+
+/// What is bound besides levels of detail and phases, in the order of `wgsl/animation/gate.wgsl`.
+pub(crate) fn resources<'a>(time: &'a GateTime, gating: &'a Gating, active: &'a Active) -> [Resource<'a>; 5] {
+    [
+        time.uniform.raw().as_entire_binding(),
+        gating.movers.raw().as_entire_binding(),
+        gating.table.raw().as_entire_binding(),
+        gating.sampled.raw().as_entire_binding(),
+        active.bits.raw().as_entire_binding(),
+    ]
+}
+
+/// The frame of the next submission.
+#[derive(Debug, Clone)]
+pub(crate) struct GateTime {
+    params: GateParams,
+    uniform: Uniform<GateParams>,
+}
+
+impl GateTime {
+    pub fn new(gpu: &Gpu, gate: Gate, crowd: &Crowd, gating: &Gating) -> Result<Self, Error> {
+        match gate {
             Gate::SkipPeriod { .. } => gating.kind.check(Kind::Priorities)?,
             Gate::Bounded => gating.kind.check(Kind::Bounds)?,
             Gate::Off | Gate::Uniform | Gate::Random => {}
@@ -116,33 +153,23 @@ impl GatePass {
             stride: gating.stride,
             ticks: 0,
             frame_ticks: 0,
-            period: if let Gate::SkipPeriod { period } = self.gate { period } else { 0 },
+            period: if let Gate::SkipPeriod { period } = gate { period } else { 0 },
             frame: 0,
         };
-        let uniform = Uniform::new(gpu, "gate", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            gating.lods.raw().as_entire_binding(),
-            gating.phases.raw().as_entire_binding(),
-            gating.movers.raw().as_entire_binding(),
-            gating.table.raw().as_entire_binding(),
-            gating.sampled.raw().as_entire_binding(),
-            active.bits.raw().as_entire_binding(),
-        ];
-        let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-            workgroups: self.kernel.spread(gpu, params.instances * params.words),
-            kernel: self.kernel.clone(),
-        };
-        Ok(GateJob { params, uniform, job: Job::new(gpu, "animation/gate", vec![step])? })
+        Ok(Self { params, uniform: Uniform::new(gpu, "gate", &params)? })
+    }
+
+    /// As [`GateJob::set`].
+    pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
+        let Frame { ticks, frame_ticks, frame } = *frame;
+        self.uniform.write(gpu, &GateParams { ticks, frame_ticks, frame, ..self.params })
     }
 }
 
 /// A prepared decision: set the frame, then record.
 #[derive(Debug, Clone)]
 pub struct GateJob {
-    params: GateParams,
-    uniform: Uniform<GateParams>,
+    time: GateTime,
     job: Job,
 }
 
@@ -152,13 +179,17 @@ impl GateJob {
     /// # Errors
     /// [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
-        let Frame { ticks, frame_ticks, frame } = *frame;
-        self.uniform.write(gpu, &GateParams { ticks, frame_ticks, frame, ..self.params })
+        self.time.set(gpu, frame)
     }
 
     /// Records the decision.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
+    }
+
+    /// Adds the decision to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.job.dispatch(pass);
     }
 }
 

@@ -4,7 +4,7 @@ use encase::ShaderType;
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
 /// `PhaseParams` of the kernel.
@@ -41,6 +41,45 @@ impl PhasePass {
         crowd: &Crowd,
         gating: &Gating,
     ) -> Result<PhaseJob, Error> {
+        let time = PhaseTime::new(gpu, clips, crowd, gating)?;
+        let step = Step {
+            groups: vec![self.kernel.bind(gpu, 0, &resources(&time, clips, crowd, gating))?],
+            workgroups: self.kernel.spread(gpu, time.params.instances),
+            kernel: self.kernel.clone(),
+        };
+        Ok(PhaseJob { time, job: Job::new(gpu, "animation/phase", vec![step])? })
+    }
+}
+
+/// What is bound, in the order of `wgsl/animation/phase.wgsl`.
+pub(crate) fn resources<'a>(
+    time: &'a PhaseTime,
+    clips: &'a ClipBuffers,
+    crowd: &'a Crowd,
+    gating: &'a Gating,
+) -> [Resource<'a>; 9] {
+    [
+        time.uniform.raw().as_entire_binding(),
+        crowd.instances.raw().as_entire_binding(),
+        clips.clips.raw().as_entire_binding(),
+        clips.timelines.raw().as_entire_binding(),
+        clips.times.raw().as_entire_binding(),
+        gating.lods.raw().as_entire_binding(),
+        crowd.shares.raw().as_entire_binding(),
+        gating.history.raw().as_entire_binding(),
+        gating.phases.raw().as_entire_binding(),
+    ]
+}
+
+/// The time of the next submission.
+#[derive(Debug, Clone)]
+pub(crate) struct PhaseTime {
+    params: PhaseParams,
+    uniform: Uniform<PhaseParams>,
+}
+
+impl PhaseTime {
+    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, gating: &Gating) -> Result<Self, Error> {
         let clips_len = gating.movers.len() / (gating.words as usize + 1);
         if clips_len != clips.clips.len() {
             let bound = format!("must be {}, those of the set", clips.clips.len());
@@ -51,32 +90,22 @@ impl PhasePass {
             elapsed: 0.0,
             layers: crowd.layers as u32 - 1,
         };
-        let uniform = Uniform::new(gpu, "phase", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            crowd.instances.raw().as_entire_binding(),
-            clips.clips.raw().as_entire_binding(),
-            clips.timelines.raw().as_entire_binding(),
-            clips.times.raw().as_entire_binding(),
-            gating.lods.raw().as_entire_binding(),
-            crowd.shares.raw().as_entire_binding(),
-            gating.history.raw().as_entire_binding(),
-            gating.phases.raw().as_entire_binding(),
-        ];
-        let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-            workgroups: self.kernel.spread(gpu, params.instances),
-            kernel: self.kernel.clone(),
-        };
-        Ok(PhaseJob { params, uniform, job: Job::new(gpu, "animation/phase", vec![step])? })
+        Ok(Self { params, uniform: Uniform::new(gpu, "phase", &params)? })
+    }
+
+    /// As [`PhaseJob::set`].
+    pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
+        if !elapsed.is_finite() {
+            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
+        }
+        Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ..self.params })?)
     }
 }
 
 /// Prepared phases: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct PhaseJob {
-    params: PhaseParams,
-    uniform: Uniform<PhaseParams>,
+    time: PhaseTime,
     job: Job,
 }
 
@@ -86,15 +115,17 @@ impl PhaseJob {
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
-        if !elapsed.is_finite() {
-            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
-        }
-        Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ..self.params })?)
+        self.time.set(gpu, elapsed)
     }
 
     /// Records the pass.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
+    }
+
+    /// Adds the pass to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.job.dispatch(pass);
     }
 }
 

@@ -7,7 +7,9 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{
+    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass, shaders,
+};
 use crate::{Error, InputError};
 
 /// `PlaceParams` of the kernel.
@@ -73,10 +75,10 @@ impl PlacePass {
         let listed =
             Listed { instances: &active.instances, dispatches: &active.dispatches, history: &gating.history };
         let group = bind(&self.compacted, gpu, &uniform, clips, crowd, &listed)?;
-        let dispatches = active.dispatches.clone();
-        let offset = 16 * (dispatches.len() as u64 - 1);
-        let work = Work::Active { kernel: self.compacted.clone(), group, dispatches, offset };
-        Ok(PlaceJob { params, uniform, work })
+        let offset = 16 * (active.dispatches.len() as u64 - 1);
+        let arguments = active.dispatches.raw();
+        let job = IndirectJob::new("animation/place", &self.compacted, arguments, vec![(group, offset)]);
+        Ok(PlaceJob { params, uniform, work: Work::Active(job) })
     }
 }
 
@@ -123,7 +125,7 @@ fn bind(
 #[derive(Debug, Clone)]
 enum Work {
     All(Job),
-    Active { kernel: Kernel, group: Group, dispatches: Buffer<[u32; 4]>, offset: u64 },
+    Active(IndirectJob),
 }
 
 /// Prepared places: set the time, then record.
@@ -149,11 +151,14 @@ impl PlaceJob {
 
     /// Records the search.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.dispatch(&mut compute_pass(encoder, "animation/place"));
+    }
+
+    /// Adds the search to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         match &self.work {
-            Work::All(job) => job.record(encoder),
-            Work::Active { kernel, group, dispatches, offset } => {
-                kernel.dispatch_indirect(encoder, "animation/place", group, (dispatches.raw(), *offset));
-            }
+            Work::All(job) => job.dispatch(pass),
+            Work::Active(job) => job.dispatch(pass),
         }
     }
 }

@@ -4,7 +4,9 @@ use encase::ShaderType;
 
 use super::RotationPath;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders};
+use crate::gpu::{
+    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
+};
 use crate::{Error, InputError};
 
 /// `SampleParams` of the kernel.
@@ -56,6 +58,9 @@ pub struct SamplePass {
     compacted: [Kernel; 2],
     is_layered: bool,
 }
+
+/// Prepared sampling of pairs that a kernel or the host chooses.
+pub type SampleActiveJob = IndirectJob;
 
 impl SamplePass {
     /// Compiles the pipelines for crowds of one layer.
@@ -119,7 +124,7 @@ impl SamplePass {
         self.check(crowd)?;
         let kernel = &self.compacted[usize::from(clips.has_splines)];
         let group = bind(kernel, gpu, clips, crowd, active)?;
-        Ok(SampleActiveJob { kernel: kernel.clone(), group, dispatched: active.dispatched.clone() })
+        Ok(IndirectJob::new("animation/sample", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
 
     fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
@@ -157,21 +162,6 @@ fn bind(
         crowd.shares.raw().as_entire_binding(),
     ];
     kernel.bind(gpu, 0, &resources)
-}
-
-/// Prepared sampling of pairs that a kernel or the host chooses.
-#[derive(Debug, Clone)]
-pub struct SampleActiveJob {
-    kernel: Kernel,
-    group: Group,
-    dispatched: Buffer<u32>,
-}
-
-impl SampleActiveJob {
-    /// Records the sampling.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.dispatch_indirect(encoder, "animation/sample", &self.group, (self.dispatched.raw(), 0));
-    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ pub mod bounds;
 pub mod budget;
 pub mod compact;
 pub mod concat;
+pub mod decide;
 mod frame;
 pub mod gate;
 mod host;

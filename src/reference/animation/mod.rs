@@ -5,6 +5,7 @@ pub mod budget;
 pub mod compact;
 pub mod concat;
 pub mod crowd;
+pub mod decide;
 pub mod gate;
 pub mod phase;
 pub mod place;

@@ -5,7 +5,9 @@ use std::ops::Range;
 use encase::ShaderType;
 
 use super::{Blend, Vertex};
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders};
+use crate::gpu::{
+    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
+};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::{Error, InputError};
 
@@ -26,6 +28,9 @@ pub struct SkinPass {
     kernels: [[Kernel; 2]; 2],
     blend: Blend,
 }
+
+/// Prepared skinning of clusters that a kernel or the host chooses.
+pub type SkinActiveJob = IndirectJob;
 
 impl SkinPass {
     /// Compiles the pipelines of a kind of blending.
@@ -82,7 +87,7 @@ impl SkinPass {
     ) -> Result<SkinActiveJob, Error> {
         let kernel = self.kernel(true, mesh);
         let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, (skinned, active))?;
-        Ok(SkinActiveJob { kernel: kernel.clone(), group, dispatched: active.dispatched.clone() })
+        Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
 
     fn kernel(&self, compacted: bool, mesh: &MeshBuffers) -> &Kernel {
@@ -131,21 +136,6 @@ impl SkinPass {
             skinned.raw().as_entire_binding(),
         ];
         Ok(kernel.bind(gpu, 0, &resources)?)
-    }
-}
-
-/// Prepared skinning of clusters that a kernel or the host chooses.
-#[derive(Debug, Clone)]
-pub struct SkinActiveJob {
-    kernel: Kernel,
-    group: Group,
-    dispatched: Buffer<u32>,
-}
-
-impl SkinActiveJob {
-    /// Records the skinning.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.dispatch_indirect(encoder, "skinning/skin", &self.group, (self.dispatched.raw(), 0));
     }
 }
 

@@ -72,11 +72,6 @@ fn add(
     let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active, stages)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected = compact(order, bits);
-    let padded = |list: &[u32], room: usize| {
-        let mut list = list.to_vec();
-        list.resize(room, POISON);
-        list
-    };
     let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
     let listed = padded(expected_pairs, crowd.pairs());
     let shown = padded(expected_instances, crowd.len());
@@ -87,8 +82,15 @@ fn add(
     Ok(())
 }
 
+/// A list, and poison behind it.
+pub(super) fn padded(list: &[u32], room: usize) -> Vec<u32> {
+    let mut list = list.to_vec();
+    list.resize(room, POISON);
+    list
+}
+
 /// Workgroups of 64 for each pair, each instance, each level's chains, each place.
-fn dispatches(
+pub(super) fn dispatches(
     gpu: &crate::gpu::Gpu,
     order: &Order,
     crowd: &Crowd,

@@ -37,7 +37,12 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn table(mode: Gate, skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Result<GateTable, Error> {
+pub(super) fn table(
+    mode: Gate,
+    skeleton: &Skeleton,
+    set: &ClipSet,
+    clips: &[&Clip],
+) -> Result<GateTable, Error> {
     let order = Order::new(skeleton);
     let weights = Weights::default();
     let user = vec![USER_DEFAULT; skeleton.len()];

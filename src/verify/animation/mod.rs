@@ -4,6 +4,7 @@ pub mod bounds;
 pub mod budget;
 pub mod compact;
 pub mod concat;
+pub mod decide;
 pub mod edges;
 pub mod gate;
 pub mod phase;

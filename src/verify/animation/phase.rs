@@ -76,7 +76,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 }
 
 /// The phases, those whose fractions are 1 beside the expected ones replaced by them.
-fn settled(actual: &[Phase], expected: &[Phase]) -> Vec<Phase> {
+pub(super) fn settled(actual: &[Phase], expected: &[Phase]) -> Vec<Phase> {
     let settle = |(actual, expected): (&Phase, &Phase)| {
         let is_near = actual.fraction().abs_diff(expected.fraction()) <= 1;
         let same = Phase { fraction_and_verdict: expected.fraction_and_verdict, ..*actual };

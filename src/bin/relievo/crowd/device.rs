@@ -1,20 +1,16 @@
 //! The crowd on the device.
 
 use relievo::Error;
-use relievo::animation::budget::{BudgetJob, BudgetPass};
-use relievo::animation::compact::{self, Active, CompactJob, CompactPass};
-use relievo::animation::concat::{ConcatActiveJob, ConcatJob, ConcatPass, Walk};
+use relievo::animation::concat::{ConcatJob, ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::gate::{GateJob, GatePass, Gating};
-use relievo::animation::phase::{PhaseJob, PhasePass};
+use relievo::animation::frame::GatedFrame;
 use relievo::animation::place::{PlaceJob, PlacePass};
-use relievo::animation::sample::{SampleActiveJob, SamplePass};
-use relievo::animation::{Affine, Frame, GateTable, Lod};
-use relievo::gpu::{Gpu, Job, TimedBy, Timer};
-use relievo::reference::animation::crowd::Choice;
+use relievo::animation::sample::SamplePass;
+use relievo::animation::{Affine, Choice, GateTable, Lod};
+use relievo::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
 
 use super::gates::{PATH, frame};
-use super::play::{Play, Played, Stages, Times};
+use super::play::{Play, Played, Taken, Times, Timing};
 use super::stage::Stage;
 
 /// Both crowds.
@@ -31,27 +27,7 @@ pub struct Device {
 /// The crowd under a gate.
 pub(super) struct Gated {
     pub(super) crowd: Crowd,
-    pub(super) active: Active,
-    place: PlaceJob,
-    phase: PhaseJob,
-    decide: Decide,
-    compact: CompactJob,
-    sample: SampleActiveJob,
-    concat: ConcatActiveJob,
-}
-
-enum Decide {
-    Gate(GateJob),
-    Budget(BudgetJob),
-}
-
-impl Decide {
-    fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        match self {
-            Self::Gate(job) => job.record(encoder),
-            Self::Budget(job) => job.record(encoder),
-        }
-    }
+    pub(super) frame: GatedFrame,
 }
 
 /// Everything of everybody.
@@ -90,45 +66,61 @@ impl Device {
     /// Chooses the frame that is recorded next.
     pub fn set(&self, number: u32) -> Result<(), Error> {
         let (frame, elapsed) = frame(number, self.rate);
-        self.gated.set(&self.gpu, &frame, elapsed)?;
+        self.gated.frame.set(&self.gpu, &frame, elapsed)?;
         self.full.place.set(&self.gpu, elapsed)
     }
 
-    fn timed(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<f64, Error> {
+    fn timed(&self, dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>)) -> Result<f64, Error> {
+        let record = |encoder: &mut _| dispatch(&mut compute_pass(encoder, "timed"));
         Ok(self.timer.measure(&self.gpu, record)?.nanoseconds)
     }
 
-    /// Both crowds, stage by stage.
-    fn play_timed(&self) -> Result<Times, Error> {
+    /// Both crowds, whole frames.
+    fn play_whole(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
-        let gate = self.timed(|encoder| gated.record_gate(encoder))?;
-        let sample = self.timed(|encoder| gated.record_sample(encoder))?;
-        let concat = self.timed(|encoder| gated.concat.record(encoder))?;
-        let full_sample = self.timed(|encoder| full.record_sample(encoder))?;
-        let full_concat = self.timed(|encoder| full.concat.record(encoder))?;
-        let stages = |gate: Option<f64>, sample, concat| Stages {
-            gate,
-            sample: Some(sample),
-            concat: Some(concat),
-            total: gate.unwrap_or(0.0) + sample + concat,
-        };
-        Ok(Times { gated: stages(Some(gate), sample, concat), full: stages(None, full_sample, full_concat) })
+        let whole = |time| Taken { whole: Some(time), ..Taken::default() };
+        let frame = &gated.frame;
+        Ok(Times {
+            gated: whole(self.timed(|pass| frame.dispatch(pass))?),
+            full: whole(self.timed(|pass| full.dispatch(pass))?),
+        })
+    }
+
+    /// Both crowds, stage by stage.
+    fn play_stages(&self) -> Result<Times, Error> {
+        let Self { gated, full, .. } = self;
+        let frame = &gated.frame;
+        let stages = |gate, sample, concat| Taken { gate, sample, concat, whole: None };
+        Ok(Times {
+            gated: stages(
+                Some(self.timed(|pass| frame.dispatch_gate(pass))?),
+                Some(self.timed(|pass| frame.dispatch_sample(pass))?),
+                Some(self.timed(|pass| frame.dispatch_concat(pass))?),
+            ),
+            full: stages(
+                None,
+                Some(self.timed(|pass| full.dispatch_sample(pass))?),
+                Some(self.timed(|pass| full.concat.dispatch(pass))?),
+            ),
+        })
     }
 }
 
 impl Play for Device {
-    fn play(&mut self, number: u32, is_timed: bool) -> Result<Played, Error> {
+    fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         self.set(number)?;
-        let times = if is_timed {
-            Some(self.play_timed()?)
-        } else {
-            self.gpu.run("frame", |encoder| {
-                self.gated.record(encoder);
-                self.full.record(encoder);
-            })?;
-            None
+        let times = match timing {
+            Timing::Whole => Some(self.play_whole()?),
+            Timing::Stages => Some(self.play_stages()?),
+            Timing::None => {
+                self.gpu.run("frame", |encoder| {
+                    self.gated.frame.record(encoder);
+                    self.full.record(encoder);
+                })?;
+                None
+            }
         };
-        let active = &self.gated.active;
+        let active = &self.gated.frame.active;
         self.stale = self.gated.crowd.models.read_blocking(&self.gpu)?;
         self.fresh = self.full.crowd.models.read_blocking(&self.gpu)?;
         let dirty = active.dirty.read_blocking(&self.gpu)?;
@@ -159,60 +151,9 @@ impl Gated {
     ) -> Result<Self, Error> {
         let skeleton = &stage.plan.model.skeleton;
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?;
-        let gating = Gating::new(gpu, table, &crowd)?;
-        gating.lods.write(gpu, lods)?;
-        let active = Active::new(gpu, &stage.order, &crowd)?;
-        let decide = match choice {
-            Choice::Gate(gate) => {
-                Decide::Gate(GatePass::new(gpu, gate)?.prepare(gpu, &crowd, &gating, &active)?)
-            }
-            Choice::Budget(budget) => {
-                let job = BudgetPass::new(gpu)?.prepare(gpu, &crowd, &gating, &active)?;
-                job.set(gpu, budget)?;
-                Decide::Budget(job)
-            }
-        };
-        Ok(Self {
-            place: PlacePass::new(gpu)?.prepare_active(gpu, clips, &crowd, &gating, &active)?,
-            phase: PhasePass::new(gpu)?.prepare(gpu, clips, &crowd, &gating)?,
-            decide,
-            compact: CompactPass::new(gpu)?.prepare(
-                gpu,
-                &crowd,
-                &active,
-                compact::Stages::of(gpu, &active),
-            )?,
-            sample: SamplePass::new(gpu, PATH)?.prepare_active(gpu, clips, &crowd, &active.pairs)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare_active(gpu, skeleton, &crowd, &active)?,
-            crowd,
-            active,
-        })
-    }
-
-    fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
-        self.place.set(gpu, elapsed)?;
-        self.phase.set(gpu, elapsed)?;
-        if let Decide::Gate(job) = &self.decide {
-            job.set(gpu, frame)?;
-        }
-        Ok(())
-    }
-
-    fn record_gate(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.phase.record(encoder);
-        self.decide.record(encoder);
-        self.compact.record(encoder);
-    }
-
-    fn record_sample(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.place.record(encoder);
-        self.sample.record(encoder);
-    }
-
-    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.record_gate(encoder);
-        self.record_sample(encoder);
-        self.concat.record(encoder);
+        let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, table, choice, PATH)?;
+        frame.gating.lods.write(gpu, lods)?;
+        Ok(Self { crowd, frame })
     }
 }
 
@@ -227,13 +168,17 @@ impl Full {
         })
     }
 
-    fn record_sample(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.place.record(encoder);
-        self.sample.record(encoder);
+    fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.place.dispatch(pass);
+        self.sample.dispatch(pass);
+    }
+
+    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.dispatch_sample(pass);
+        self.concat.dispatch(pass);
     }
 
     pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.record_sample(encoder);
-        self.concat.record(encoder);
+        self.dispatch(&mut compute_pass(encoder, "full"));
     }
 }

@@ -3,9 +3,9 @@
 
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
+use relievo::animation::Choice;
 use relievo::animation::{Affine, GateTable, Lod};
 use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
-use relievo::reference::animation::crowd::Choice;
 use relievo::render::ColorTexture;
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
@@ -114,7 +114,7 @@ impl<'a> Drawing<'a> {
                 self.compare()?;
             } else {
                 self.gpu.run("frame", |encoder| {
-                    self.device.gated.record(encoder);
+                    self.device.gated.frame.record(encoder);
                     self.looks.iter().filter(|look| look.by == By::Gate).for_each(|look| look.skin(encoder));
                 })?;
             }
@@ -140,7 +140,7 @@ impl<'a> Drawing<'a> {
     fn play_timed(&mut self, turn: usize) -> Result<(), Error> {
         let Self { gpu, timer, target, device, looks, .. } = self;
         let animate = |by: By, encoder: &mut wgpu::CommandEncoder| match by {
-            By::Gate => device.gated.record(encoder),
+            By::Gate => device.gated.frame.record(encoder),
             By::All => device.full.record(encoder),
         };
         let timed = |record: &dyn Fn(&mut wgpu::CommandEncoder)| -> Result<f64, Error> {
@@ -286,7 +286,7 @@ impl<'a> World<'a> {
         let skin = match by {
             By::All => SkinFrame::new(gpu, model, mesh, &device.full.crowd.models, count, Blend::Linear)?,
             By::Gate => SkinFrame::new(gpu, model, mesh, &device.gated.crowd.models, count, Blend::Linear)?
-                .with_moved(gpu, &device.gated.active.dirty)?,
+                .with_moved(gpu, &device.gated.frame.active.dirty)?,
         };
         let mesh = &model.meshes[mesh];
         // Morph targets stay as they are at rest.

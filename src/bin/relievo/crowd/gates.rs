@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use relievo::InputError;
+use relievo::animation::Choice;
 use relievo::animation::priority::{self, USER_DEFAULT, Weights};
 use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Order, RotationPath, Skeleton};
-use relievo::reference::animation::crowd::Choice;
 use serde::Serialize;
 
 /// Ticks a second.

@@ -23,16 +23,47 @@ pub struct Played {
     pub times: Option<Times>,
 }
 
+/// How a frame is timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Timing {
+    None,
+    /// In one piece, as a renderer records it.
+    Whole,
+    /// Each stage by itself, which costs more: they cannot share a compute pass.
+    Stages,
+}
+
+impl Timing {
+    /// Frames that are timed take turns.
+    fn of(number: u32, frames: u32) -> Self {
+        let every = frames.div_ceil(TIMED);
+        match number / every % 2 {
+            _ if number == 0 || !number.is_multiple_of(every) => Self::None,
+            0 => Self::Whole,
+            _ => Self::Stages,
+        }
+    }
+}
+
 /// Nanoseconds of a frame.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Times {
     /// With the gate.
-    pub gated: Stages,
+    pub gated: Taken,
     /// Without.
-    pub full: Stages,
+    pub full: Taken,
 }
 
-/// Nanoseconds by stage; on the CPU the total alone.
+/// What was measured of a frame.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Taken {
+    pub gate: Option<f64>,
+    pub sample: Option<f64>,
+    pub concat: Option<f64>,
+    pub whole: Option<f64>,
+}
+
+/// Nanoseconds by stage, and of whole frames; on the CPU the latter alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Stages {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,7 +78,7 @@ pub struct Stages {
 /// A crowd under a gate, and the same in full.
 pub trait Play {
     /// Brings both to a frame.
-    fn play(&mut self, number: u32, is_timed: bool) -> Result<Played, Error>;
+    fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error>;
     /// The gated crowd's palettes.
     fn stale(&self) -> &[Affine];
     /// The full crowd's.
@@ -77,8 +108,8 @@ pub fn run(
     let (mut interpolated, mut concatenated, mut times) = (0, 0, Vec::new());
     let frames = stage.plan.frames;
     for number in 0..=frames {
-        let is_timed = is_timed && number > 0 && number % frames.div_ceil(TIMED) == 0;
-        let played = play.play(number, is_timed)?;
+        let timing = if is_timed { Timing::of(number, frames) } else { Timing::None };
+        let played = play.play(number, timing)?;
         if number > 0 {
             interpolated += played.interpolated as u64;
             concatenated += played.concatenated as u64;
@@ -99,14 +130,13 @@ pub fn middle(mut times: Vec<f64>) -> Option<f64> {
     times.get(times.len() / 2).copied()
 }
 
-fn medians(times: &[Stages]) -> Stages {
-    let median = |of: &dyn Fn(&Stages) -> Option<f64>| middle(times.iter().filter_map(of).collect());
-    Stages {
-        gate: median(&|times| times.gate),
-        sample: median(&|times| times.sample),
-        concat: median(&|times| times.concat),
-        total: median(&|times| Some(times.total)).unwrap_or(0.0),
-    }
+fn medians(times: &[Taken]) -> Stages {
+    let median = |of: &dyn Fn(&Taken) -> Option<f64>| middle(times.iter().filter_map(of).collect());
+    let [gate, sample, concat] =
+        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.concat)];
+    // The stages' sum where no whole frame was timed.
+    let sum = [gate, sample, concat].into_iter().flatten().sum();
+    Stages { gate, sample, concat, total: median(&|taken| taken.whole).unwrap_or(sum) }
 }
 
 impl Stages {

@@ -299,7 +299,7 @@ fn draw(
 fn table(report: &Report<'_>) -> String {
     let mut text = format!(
         "{} × {} bones, {} of them move in {:?}; {}, {}; {} frames at {} Hz; times by {}, of all bones.\n\n\
-         | distance | Ω | interpolated | concatenated | gate + sample + concat ns/bone | full | error rms, p99, max \
+         | distance | Ω | interpolated | concatenated | gate + sample + concat, whole frame ns/bone | full | error rms, p99, max \
          px | max m | jump px |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
         report.instances,
         report.bones,
@@ -315,7 +315,7 @@ fn table(report: &Report<'_>) -> String {
         let times = &row.nanoseconds_per_bone;
         let parts = match (times.gate, times.sample, times.concat) {
             (Some(gate), Some(sample), Some(concat)) => {
-                format!("{gate:.2} + {sample:.2} + {concat:.2} = {:.2}", times.total)
+                format!("{gate:.2} + {sample:.2} + {concat:.2}, {:.2}", times.total)
             }
             _ => format!("{:.2}", times.total),
         };

@@ -3,11 +3,12 @@
 use std::time::Instant;
 
 use relievo::Error;
+use relievo::animation::Choice;
 use relievo::animation::{Affine, GateTable, Lod};
-use relievo::reference::animation::crowd::{Choice, Crowd};
+use relievo::reference::animation::crowd::Crowd;
 
 use super::gates::{Mode, PATH, frame};
-use super::play::{Play, Played, Stages, Times};
+use super::play::{Play, Played, Taken, Times, Timing};
 use super::stage::Stage;
 
 /// Both crowds.
@@ -35,7 +36,7 @@ impl<'a> Twins<'a> {
 }
 
 impl Play for Twins<'_> {
-    fn play(&mut self, number: u32, is_timed: bool) -> Result<Played, Error> {
+    fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         let (frame, elapsed) = frame(number, self.rate);
         let start = Instant::now();
         let work = self.gated.advance(self.choice, &frame, elapsed);
@@ -43,11 +44,11 @@ impl Play for Twins<'_> {
         self.full.advance(Mode::Off.choice(0.0, 0), &frame, elapsed);
         let full = start.elapsed() - gated;
         let [gated, full] =
-            [gated, full].map(|time| Stages { total: time.as_nanos() as f64, ..Stages::default() });
+            [gated, full].map(|time| Taken { whole: Some(time.as_nanos() as f64), ..Taken::default() });
         Ok(Played {
             interpolated: work.pairs.len(),
             concatenated: work.dirty.iter().map(|word| word.count_ones() as usize).sum(),
-            times: is_timed.then_some(Times { gated, full }),
+            times: (timing != Timing::None).then_some(Times { gated, full }),
         })
     }
 

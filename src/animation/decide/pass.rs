@@ -1,0 +1,234 @@
+//! `kernels/animation/decide.wgsl`, and the kernels that it stands for.
+
+use super::Choice;
+use crate::animation::budget::{BudgetJob, BudgetPass};
+use crate::animation::compact::pass::{self as compact, CompactParams};
+use crate::animation::compact::{Active, CompactJob, CompactPass, Stages};
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate::pass::{self as gate, GateTime};
+use crate::animation::gate::{Frame, Gate, GateJob, GatePass, Gating};
+use crate::animation::phase::pass::{self as phase, PhaseTime};
+use crate::animation::phase::{PhaseJob, PhasePass};
+use crate::gpu::shaders::{self, BindingKind};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
+use crate::{Error, InputError};
+
+/// How many dispatches share the work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dispatches {
+    /// One workgroup does all of it.
+    One,
+    /// A dispatch for each step, or more.
+    Each,
+}
+
+impl Dispatches {
+    /// The faster way for a crowd on this device.
+    pub fn of(gpu: &Gpu, choice: Choice, active: &Active) -> Self {
+        let is_gate = matches!(choice, Choice::Gate(_));
+        let is_small = Stages::of(gpu, active) == Stages::One;
+        if is_gate && is_small && needed() <= available(gpu) { Self::One } else { Self::Each }
+    }
+}
+
+/// Storage buffers that one dispatch needs.
+fn needed() -> u32 {
+    let is_storage = |kind| matches!(kind, BindingKind::StorageRead | BindingKind::StorageReadWrite);
+    shaders::ANIMATION_DECIDE.bindings.iter().filter(|binding| is_storage(binding.kind)).count() as u32
+}
+
+/// Storage buffers that the device lets a shader bind.
+fn available(gpu: &Gpu) -> u32 {
+    gpu.device().limits().max_storage_buffers_per_shader_stage
+}
+
+/// Decides what is sampled, and lists it.
+#[derive(Debug, Clone)]
+pub struct DecidePass {
+    kernels: Kernels,
+}
+
+#[derive(Debug, Clone)]
+enum Kernels {
+    One(Kernel, Gate),
+    Each(Box<Steps>),
+}
+
+#[derive(Debug, Clone)]
+struct Steps {
+    phase: PhasePass,
+    decider: Decider,
+    compact: CompactPass,
+}
+
+#[derive(Debug, Clone)]
+enum Decider {
+    Gate(GatePass),
+    Budget(BudgetPass, u32),
+}
+
+impl DecidePass {
+    /// Compiles the pipelines. A budget takes a dispatch for each step in any case.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] for one dispatch on a device that does not let a shader bind enough buffers; what the
+    /// driver's compiler reports.
+    pub fn new(gpu: &Gpu, choice: Choice, dispatches: Dispatches) -> Result<Self, GpuError> {
+        let steps = |decider| {
+            let (phase, compact) = (PhasePass::new(gpu)?, CompactPass::new(gpu)?);
+            Ok::<_, GpuError>(Kernels::Each(Box::new(Steps { phase, decider, compact })))
+        };
+        let kernels = match (choice, dispatches) {
+            (Choice::Gate(gate), Dispatches::One) => Kernels::One(whole(gpu, gate)?, gate),
+            (Choice::Gate(gate), Dispatches::Each) => steps(Decider::Gate(GatePass::new(gpu, gate)?))?,
+            (Choice::Budget(most), _) => steps(Decider::Budget(BudgetPass::new(gpu)?, most))?,
+        };
+        Ok(Self { kernels })
+    }
+
+    /// Prepares the decision for a crowd.
+    ///
+    /// # Errors
+    /// [`InputError`] for a table of other clips, or of another kind than the choice needs; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        clips: &ClipBuffers,
+        crowd: &Crowd,
+        gating: &Gating,
+        active: &Active,
+    ) -> Result<DecideJob, Error> {
+        let work = match &self.kernels {
+            Kernels::One(kernel, gate) => one(kernel, *gate, gpu, clips, crowd, gating, active)?,
+            Kernels::Each(steps) => Work::Each {
+                phase: steps.phase.prepare(gpu, clips, crowd, gating)?,
+                decision: steps.decider.prepare(gpu, crowd, gating, active)?,
+                lists: steps.compact.prepare(gpu, crowd, active, Stages::of(gpu, active))?,
+            },
+        };
+        Ok(DecideJob { work })
+    }
+}
+
+/// The kernel of all steps.
+fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
+    let (needed, available) = (needed(), available(gpu));
+    if needed > available {
+        return Err(GpuError::Limit {
+            pass: "animation/decide",
+            limit: "maxStorageBuffersPerShaderStage",
+            needed: needed.into(),
+            available: available.into(),
+            remedy: "take Dispatches::Each, as Dispatches::of would",
+        });
+    }
+    Kernel::new(gpu, &shaders::ANIMATION_DECIDE, &[("MODE", gate::mode(gate))])
+}
+
+fn one(
+    kernel: &Kernel,
+    gate: Gate,
+    gpu: &Gpu,
+    clips: &ClipBuffers,
+    crowd: &Crowd,
+    gating: &Gating,
+    active: &Active,
+) -> Result<Work, Error> {
+    let phase = PhaseTime::new(gpu, clips, crowd, gating)?;
+    let gate = GateTime::new(gpu, gate, crowd, gating)?;
+    let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
+    let resources: Vec<_> = (phase::resources(&phase, clips, crowd, gating).into_iter())
+        .chain(gate::resources(&gate, gating, active))
+        .chain(compact::resources(&compact, active))
+        .collect();
+    let step =
+        Step { groups: vec![kernel.bind(gpu, 0, &resources)?], workgroups: [1; 3], kernel: kernel.clone() };
+    Ok(Work::One { phase, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+}
+
+impl Decider {
+    fn prepare(&self, gpu: &Gpu, crowd: &Crowd, gating: &Gating, active: &Active) -> Result<Decision, Error> {
+        match self {
+            Self::Gate(pass) => Ok(Decision::Gate(pass.prepare(gpu, crowd, gating, active)?)),
+            Self::Budget(pass, most) => {
+                let job = pass.prepare(gpu, crowd, gating, active)?;
+                job.set(gpu, *most)?;
+                Ok(Decision::Budget(job))
+            }
+        }
+    }
+}
+
+/// A prepared decision: set time and frame, then record.
+#[derive(Debug, Clone)]
+pub struct DecideJob {
+    work: Work,
+}
+
+#[derive(Debug, Clone)]
+enum Work {
+    One { phase: PhaseTime, gate: GateTime, job: Job },
+    Each { phase: PhaseJob, decision: Decision, lists: CompactJob },
+}
+
+#[derive(Debug, Clone)]
+enum Decision {
+    Gate(GateJob),
+    Budget(BudgetJob),
+}
+
+impl DecideJob {
+    /// Chooses frame and time of the next submission, the latter as for [`super::super::place::PlaceJob::set`].
+    ///
+    /// # Errors
+    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
+        match &self.work {
+            Work::One { phase, gate, .. } => {
+                phase.set(gpu, elapsed)?;
+                gate.set(gpu, frame)?;
+            }
+            Work::Each { phase, decision, .. } => {
+                phase.set(gpu, elapsed)?;
+                if let Decision::Gate(job) = decision {
+                    job.set(gpu, frame)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Chooses how many bones may be sampled from the next submission on.
+    ///
+    /// # Errors
+    /// [`InputError`] where a gate decides; [`GpuError`].
+    pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
+        match &self.work {
+            Work::Each { decision: Decision::Budget(job), .. } => Ok(job.set(gpu, most)?),
+            _ => {
+                Err(InputError::new("budget", most, "must be of a crowd that is under one, not a gate")
+                    .into())
+            }
+        }
+    }
+
+    /// Records the decision.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.dispatch(&mut compute_pass(encoder, "animation/decide"));
+    }
+
+    /// Adds the decision to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        match &self.work {
+            Work::One { job, .. } => job.dispatch(pass),
+            Work::Each { phase, decision, lists } => {
+                phase.dispatch(pass);
+                match decision {
+                    Decision::Gate(job) => job.dispatch(pass),
+                    Decision::Budget(job) => job.dispatch(pass),
+                }
+                lists.dispatch(pass);
+            }
+        }
+    }
+}

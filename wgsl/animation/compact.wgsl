@@ -1,0 +1,144 @@
+// From bits to lists: the steps of kernels/animation/compact.wgsl.
+import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::dispatch::rows_of_workgroups;
+
+const WIDTH = 64u;
+
+struct CompactParams {
+    instances: u32,
+    bones: u32,
+    // Words of bits an instance.
+    words: u32,
+    // Dispatches beyond the first that serve dirty instances.
+    served: u32,
+    // Most workgroups along x.
+    most_groups: u32,
+}
+
+@group(0) @binding(14) var<uniform> compact_params: CompactParams;
+// Binding 13: the bits.
+// Bone, parent, slots of the subtree.
+@group(0) @binding(15) var<storage, read> slots: array<vec4<u32>>;
+@group(0) @binding(16) var<storage, read_write> dirty: array<u32>;
+// Active pairs of each instance, then of all before it.
+@group(0) @binding(17) var<storage, read_write> counts: array<u32>;
+// instance * bones + bone.
+@group(0) @binding(18) var<storage, read_write> pairs: array<u32>;
+// Workgroups along x, y, z for a thread a pair; how many.
+@group(0) @binding(19) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
+@group(0) @binding(20) var<storage, read_write> dirty_instances: array<u32>;
+// Likewise for a thread a dirty instance; then, where w says how many, for as many threads a dirty instance.
+@group(0) @binding(21) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
+
+var<workgroup> sums: array<vec2<u32>, WIDTH>;
+
+// Bits from `start` to below `end`, both within 0..=32.
+fn run(start: u32, end: u32) -> u32 {
+    let below = select(0xffffffffu, (1u << (end & 31u)) - 1u, end < 32u);
+    return below & (0xffffffffu << start);
+}
+
+fn spread(instance: u32) {
+    if instance >= compact_params.instances {
+        return;
+    }
+    var count = 0u;
+    // The slot after the last dirty one so far.
+    var end = 0u;
+    for (var word = 0u; word < compact_params.words; word++) {
+        let first = 32u * word;
+        let chosen = bits[instance * compact_params.words + word];
+        count += countOneBits(chosen);
+        var below = 0u;
+        if end > first {
+            below = run(0u, min(end - first, 32u));
+        }
+        var rest = chosen & ~below;
+        while rest != 0u {
+            let bit = firstTrailingBit(rest);
+            end = first + bit + slots[first + bit].z;
+            below |= run(bit, min(end - first, 32u));
+            rest &= ~below;
+        }
+        dirty[instance * compact_params.words + word] = below;
+    }
+    counts[instance] = count;
+}
+
+fn dispatch_of(threads: u32) -> vec3<u32> {
+    return rows_of_workgroups(threads / WIDTH + u32(threads % WIDTH > 0u), compact_params.most_groups);
+}
+
+// The instances of a lane of the only workgroup, of `width` lanes: from x to below y.
+fn instances_of(lane: u32, width: u32) -> vec2<u32> {
+    let share = (compact_params.instances + width - 1u) / width;
+    let first = min(lane * share, compact_params.instances);
+    return vec2<u32>(first, min(first + share, compact_params.instances));
+}
+
+// Of one workgroup of at most WIDTH lanes.
+fn scan(lane: u32, width: u32) {
+    let own = instances_of(lane, width);
+    var sum = vec2<u32>(0u);
+    for (var instance = own.x; instance < own.y; instance++) {
+        let count = counts[instance];
+        sum += vec2<u32>(count, u32(count > 0u));
+    }
+    sums[lane] = sum;
+    workgroupBarrier();
+    var before = vec2<u32>(0u);
+    for (var other = 0u; other < lane; other++) {
+        before += sums[other];
+    }
+    for (var instance = own.x; instance < own.y; instance++) {
+        let count = counts[instance];
+        counts[instance] = before.x;
+        if count > 0u {
+            dirty_instances[before.y] = instance;
+        }
+        before += vec2<u32>(count, u32(count > 0u));
+    }
+    if lane == width - 1u {
+        pair_dispatch[0] = vec4<u32>(dispatch_of(before.x), before.x);
+        instance_dispatches[0] = vec4<u32>(dispatch_of(before.y), before.y);
+        for (var at = 1u; at <= compact_params.served; at++) {
+            let each = instance_dispatches[at].w;
+            instance_dispatches[at] = vec4<u32>(dispatch_of(before.y * each), each);
+        }
+    }
+}
+
+// Lists the pairs of a word from `start` on; where those of the next word begin.
+fn list_word(instance: u32, word: u32, start: u32) -> u32 {
+    let first_pair = instance * compact_params.bones;
+    let first_slot = 32u * word;
+    var at = start;
+    var rest = bits[instance * compact_params.words + word];
+    while rest != 0u {
+        pairs[at] = first_pair + slots[first_slot + firstTrailingBit(rest)].x;
+        rest &= rest - 1u;
+        at++;
+    }
+    return at;
+}
+
+fn scatter(index: u32) {
+    let instance = index / compact_params.words;
+    if instance >= compact_params.instances {
+        return;
+    }
+    let first_word = instance * compact_params.words;
+    var at = counts[instance];
+    for (var word = first_word; word < index; word++) {
+        at += countOneBits(bits[word]);
+    }
+    list_word(instance, index - first_word, at);
+}
+
+// All pairs of one instance.
+fn list_instance(instance: u32) {
+    var at = counts[instance];
+    for (var word = 0u; word < compact_params.words; word++) {
+        at = list_word(instance, word, at);
+    }
+}

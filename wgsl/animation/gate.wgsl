@@ -1,0 +1,166 @@
+// Which bones of an instance are sampled this frame, a bit each, from whole numbers alone: every device decides alike.
+import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gated::lods::lods;
+import package::wgsl::animation::gating::{OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of};
+import package::wgsl::animation::motion::{motion_at, motion_between};
+
+// One of the constants below.
+override MODE: u32 = 0;
+
+const OFF = 0u;
+const SKIP_PERIOD = 1u;
+const UNIFORM = 2u;
+const RANDOM = 3u;
+const BOUNDED = 4u;
+
+struct GateParams {
+    instances: u32,
+    bones: u32,
+    // Words of bits an instance.
+    words: u32,
+    // Entries of a row of the table.
+    stride: u32,
+    // Since the start, and since the last frame.
+    ticks: u32,
+    frame_ticks: u32,
+    // Ticks of the longest period.
+    period: u32,
+    // Frames since the start.
+    frame: u32,
+}
+
+@group(0) @binding(9) var<uniform> gate_params: GateParams;
+// Bindings 5 and 13: levels of detail, and the bits.
+// Of each clip: its row of periods, then a bit for each bone that moves in it.
+@group(0) @binding(10) var<storage, read> movers: array<u32>;
+// Priorities, four a vector; or for each bone the sum of motion and its rise.
+@group(0) @binding(11) var<storage, read> table: array<vec2<u32>>;
+// For each bone, the sum of motion when it was sampled last.
+@group(0) @binding(12) var<storage, read_write> sampled: array<u32>;
+
+// A round of a multiplicative hash (Wellons' "lowbias32").
+fn scramble(word: u32) -> u32 {
+    var mixed = (word ^ (word >> 16u)) * 0x21f0aaadu;
+    mixed = (mixed ^ (mixed >> 15u)) * 0x735a2d97u;
+    return mixed ^ (mixed >> 15u);
+}
+
+// A skips an update each period: at once where a period is no longer than a frame, else when the last frame has passed
+// a multiple of it.
+fn is_skipped(period: u32, ticks: u32) -> bool {
+    return period <= gate_params.frame_ticks || ticks % period < gate_params.frame_ticks;
+}
+
+fn by_priority(instance: u32, first: u32, candidates: u32, phase: Phase) -> u32 {
+    let omega = lods[instance].omega;
+    if omega >= OMEGA_ONE {
+        return candidates;
+    }
+    // Instances do not skip in step.
+    let ticks = gate_params.ticks + (scramble(instance) & 0xffffu);
+    var chosen = candidates;
+    var rest = candidates;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        let slot = first + bit;
+        let four = table[phase.row * gate_params.stride + slot / 4u];
+        let two = select(four.x, four.y, (slot & 2u) != 0u);
+        let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
+        // Of 65536; and the period that it stands for.
+        let level = (priority * omega) >> 16u;
+        let whole = (gate_params.period >> 16u) * level;
+        let period = whole + (((gate_params.period & 0xffffu) * level) >> 16u);
+        if is_skipped(period, ticks) {
+            chosen &= ~(1u << bit);
+        }
+    }
+    return chosen;
+}
+
+fn all_or_none(instance: u32, candidates: u32) -> u32 {
+    let omega = lods[instance].omega;
+    if omega >= OMEGA_ONE {
+        return candidates;
+    }
+    let frame = (gate_params.frame + scramble(instance)) & 0xffffu;
+    let is_due = (frame * omega) >> 16u != ((frame + 1u) * omega) >> 16u;
+    return select(0u, candidates, is_due);
+}
+
+fn at_random(instance: u32, first: u32, candidates: u32) -> u32 {
+    let omega = lods[instance].omega;
+    if omega >= OMEGA_ONE {
+        return candidates;
+    }
+    var chosen = 0u;
+    var rest = candidates;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        let word = scramble(scramble(gate_params.frame) + instance * gate_params.bones + first + bit);
+        if (word >> 16u) < omega {
+            chosen |= 1u << bit;
+        }
+    }
+    return chosen;
+}
+
+// `asked`: those that are sampled whatever they missed. So are all where nothing may be missed.
+fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, phase: Phase, periods: u32) -> u32 {
+    let allowed = lods[instance].allowed;
+    let forced = asked | select(0u, candidates, allowed == 0u);
+    let row = phase.row * gate_params.stride + first;
+    let last = periods * gate_params.stride + first;
+    let own = instance * gate_params.bones + first;
+    var chosen = forced;
+    var rest = candidates | forced;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        // The clip's sum, and what its rounding may hide.
+        let whole = table[last + bit];
+        let now = motion_at(table[row + bit], phase);
+        let missed = motion_between(now, sampled[own + bit], whole.x);
+        let is_forced = (forced & (1u << bit)) != 0u;
+        if is_forced || missed + whole.y > allowed {
+            chosen |= 1u << bit;
+            sampled[own + bit] = now;
+        }
+    }
+    return chosen;
+}
+
+// Up to 32 bones of one instance.
+fn gate_word(instance: u32, word: u32, phase: Phase) -> u32 {
+    let first = 32u * word;
+    let verdict = verdict_of(phase);
+    if verdict == PHASE_HIDDEN {
+        return 0u;
+    }
+    let record = phase.clip * (gate_params.words + 1u);
+    let all = 0xffffffffu >> (32u - min(gate_params.bones - first, 32u));
+    let candidates = select(movers[record + 1u + word], all, verdict == PHASE_BLENDED);
+    // Sums of motion know of one clip alone.
+    let forced = select(0u, all, verdict >= PHASE_FORCED);
+    var chosen = candidates;
+    if MODE == BOUNDED {
+        chosen = by_motion(instance, first, candidates, forced, phase, movers[record]);
+    } else if verdict == PHASE_FORCED {
+        chosen = all;
+    } else if MODE == SKIP_PERIOD {
+        chosen = by_priority(instance, first, candidates, phase);
+    } else if MODE == UNIFORM {
+        chosen = all_or_none(instance, candidates);
+    } else if MODE == RANDOM {
+        chosen = at_random(instance, first, candidates);
+    }
+    return chosen;
+}
+
+// All bones of one instance.
+fn gate_instance(instance: u32, phase: Phase) {
+    for (var word = 0u; word < gate_params.words; word++) {
+        bits[instance * gate_params.words + word] = gate_word(instance, word, phase);
+    }
+}

@@ -1,0 +1,71 @@
+// Where an instance stands on the common timeline of its clip, in whole numbers, and whether anything but the time asks
+// for a new pose: what gates decide by.
+import package::wgsl::animation::clip::ClipEntry;
+import package::wgsl::animation::clock::inside_clip;
+import package::wgsl::animation::gated::lods::lods;
+import package::wgsl::animation::gating::{LOD_HIDDEN, LOD_REFRESH, PHASE_BLENDED, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN, Phase};
+import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::timeline::place;
+
+struct PhaseParams {
+    instances: u32,
+    // Seconds since the instances' starts.
+    elapsed: f32,
+    // Layers above the base.
+    layers: u32,
+}
+
+@group(0) @binding(0) var<uniform> phase_params: PhaseParams;
+@group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
+@group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
+// First time and number of keys.
+@group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
+// Binding 4: the times.
+// Binding 5: the levels of detail.
+// Weights of the layers above the base, layer by layer.
+@group(0) @binding(6) var<storage, read> shares: array<f32>;
+// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; what these layers played; as
+// bits, the time inside the clip.
+@group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
+// Binding 8: the phases.
+
+const BLENDED = 0x80000000u;
+
+// A number of the clips that play above the base; 0 where none does.
+fn clips_above(instance: u32) -> u32 {
+    var clips = 0u;
+    for (var layer = 0u; layer < phase_params.layers; layer++) {
+        let is_heard = shares[layer * phase_params.instances + instance] > 0.0;
+        let clip = instances[(layer + 1u) * phase_params.instances + instance].clip;
+        clips = 31u * clips + select(0u, clip + 1u, is_heard);
+    }
+    return clips;
+}
+
+// Its phase; its history is kept.
+fn phase_of(index: u32) -> Phase {
+    let instance = instances[index];
+    let clip = clips[instance.clip];
+    let time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * phase_params.elapsed);
+    let timeline = timelines[clip.first_timeline];
+    let found = place(timeline.x, timeline.y, time);
+    let flags = lods[index].flags;
+    let above = clips_above(index);
+    let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
+    let known = vec4<u32>(base, above, bitcast<u32>(time), 0u);
+    let last = history[index];
+    var verdict = PHASE_FREE;
+    if (flags & LOD_HIDDEN) != 0u {
+        verdict = PHASE_HIDDEN;
+        history[index] = vec4<u32>(0u);
+    } else {
+        if (flags & LOD_REFRESH) != 0u || last.x != known.x || last.y != known.y {
+            verdict = PHASE_FORCED;
+        } else if above != 0u {
+            verdict = PHASE_BLENDED;
+        }
+        history[index] = known;
+    }
+    let fraction = u32(clamp(bitcast<f32>(found.y), 0.0, 1.0) * 65536.0);
+    return Phase(clip.first_row + found.x, (verdict << 20u) | fraction, instance.clip);
+}
