@@ -2,7 +2,7 @@
 // active, the instances with any, and the arguments of the dispatches that serve them. Lists keep the order of the
 // instances and, within one, of its slots, on every device. Three stages, a dispatch each, or all in one.
 
-import package::wgsl::animation::compact::{WIDTH, instances_of, list_instance, scan, scatter, spread};
+import package::wgsl::animation::compact::{WIDTH, compact_params, instances_of, list_instance, scan, scatter, spread};
 
 // One of the constants below.
 override STAGE: u32 = 0;
@@ -24,7 +24,9 @@ fn main(
 ) {
     let index = (group.y * groups.x + group.x) * WIDTH + lane;
     if STAGE == SPREAD {
-        spread(index);
+        if index < compact_params.instances {
+            spread(index);
+        }
     } else if STAGE == SCAN {
         scan(lane, WIDTH);
     } else if STAGE == ALL {

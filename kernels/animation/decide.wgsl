@@ -1,24 +1,41 @@
 // Phases, gate and lists of a small crowd in one dispatch, where a dispatch costs more than other processors gain. A
 // thread decides on whole instances, one after another.
-import package::wgsl::animation::compact::{instances_of, list_instance, scan, spread};
-import package::wgsl::animation::gate::gate_instance;
+import package::wgsl::animation::compact::{Spread, counts, instances_of, list_instance, scan, spread_word};
+import package::wgsl::animation::gate::{gate_params, gate_word};
+import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::phases::phases;
 import package::wgsl::animation::phase::phase_of;
 
 // As many as lavapipe runs at once: where there are more, they wait for each other at the barrier.
 const LANES = 8u;
 
+// How many of its bones are active.
+fn decide_instance(instance: u32) -> u32 {
+    let lod = lods[instance];
+    let phase = phase_of(instance, lod.flags);
+    phases[instance] = phase;
+    var so_far = Spread(0u, 0u);
+    for (var word = 0u; word < gate_params.words; word++) {
+        let chosen = gate_word(instance, word, lod, phase);
+        bits[instance * gate_params.words + word] = chosen;
+        so_far = spread_word(instance, word, chosen, so_far);
+    }
+    counts[instance] = so_far.count;
+    return so_far.count;
+}
+
 @compute @workgroup_size(8)
 fn main(@builtin(local_invocation_index) lane: u32) {
     let own = instances_of(lane, LANES);
+    var found = 0u;
     for (var instance = own.x; instance < own.y; instance++) {
-        let phase = phase_of(instance);
-        phases[instance] = phase;
-        gate_instance(instance, phase);
-        spread(instance);
+        found += decide_instance(instance);
     }
     scan(lane, LANES);
-    for (var instance = own.x; instance < own.y; instance++) {
-        list_instance(instance);
+    if found > 0u {
+        for (var instance = own.x; instance < own.y; instance++) {
+            list_instance(instance);
+        }
     }
 }

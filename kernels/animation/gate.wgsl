@@ -1,6 +1,7 @@
 // Which bones of which instances are sampled this frame. A thread decides on up to 32 bones of one instance.
 import package::wgsl::animation::gate::{gate_params, gate_word};
 import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::phases::phases;
 
 @compute @workgroup_size(64)
@@ -12,6 +13,6 @@ fn main(
     let index = (group.y * groups.x + group.x) * 64u + lane;
     let instance = index / gate_params.words;
     if instance < gate_params.instances {
-        bits[index] = gate_word(instance, index - instance * gate_params.words, phases[instance]);
+        bits[index] = gate_word(instance, index - instance * gate_params.words, lods[instance], phases[instance]);
     }
 }

@@ -1,5 +1,6 @@
 // Where instances stand on the common timeline of their clip, in whole numbers, and whether anything but
 // the time asks for a new pose: what gates decide by. A thread looks at one instance.
+import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::phases::phases;
 import package::wgsl::animation::phase::{phase_of, phase_params};
 
@@ -11,6 +12,6 @@ fn main(
 ) {
     let index = (group.y * groups.x + group.x) * 64u + lane;
     if index < phase_params.instances {
-        phases[index] = phase_of(index);
+        phases[index] = phase_of(index, lods[index].flags);
     }
 }

@@ -38,31 +38,39 @@ fn run(start: u32, end: u32) -> u32 {
     return below & (0xffffffffu << start);
 }
 
+// Of the words of an instance so far.
+struct Spread {
+    // Chosen slots.
+    count: u32,
+    // The slot after the last dirty one.
+    end: u32,
+}
+
+// Spreads the chosen slots of the next word.
+fn spread_word(instance: u32, word: u32, chosen: u32, so_far: Spread) -> Spread {
+    let first = 32u * word;
+    var end = so_far.end;
+    var below = 0u;
+    if end > first {
+        below = run(0u, min(end - first, 32u));
+    }
+    var rest = chosen & ~below;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        end = first + bit + slots[first + bit].z;
+        below |= run(bit, min(end - first, 32u));
+        rest &= ~below;
+    }
+    dirty[instance * compact_params.words + word] = below;
+    return Spread(so_far.count + countOneBits(chosen), end);
+}
+
 fn spread(instance: u32) {
-    if instance >= compact_params.instances {
-        return;
-    }
-    var count = 0u;
-    // The slot after the last dirty one so far.
-    var end = 0u;
+    var so_far = Spread(0u, 0u);
     for (var word = 0u; word < compact_params.words; word++) {
-        let first = 32u * word;
-        let chosen = bits[instance * compact_params.words + word];
-        count += countOneBits(chosen);
-        var below = 0u;
-        if end > first {
-            below = run(0u, min(end - first, 32u));
-        }
-        var rest = chosen & ~below;
-        while rest != 0u {
-            let bit = firstTrailingBit(rest);
-            end = first + bit + slots[first + bit].z;
-            below |= run(bit, min(end - first, 32u));
-            rest &= ~below;
-        }
-        dirty[instance * compact_params.words + word] = below;
+        so_far = spread_word(instance, word, bits[instance * compact_params.words + word], so_far);
     }
-    counts[instance] = count;
+    counts[instance] = so_far.count;
 }
 
 fn dispatch_of(threads: u32) -> vec3<u32> {

@@ -1,7 +1,5 @@
 // Which bones of an instance are sampled this frame, a bit each, from whole numbers alone: every device decides alike.
-import package::wgsl::animation::gated::bits::bits;
-import package::wgsl::animation::gated::lods::lods;
-import package::wgsl::animation::gating::{OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of};
+import package::wgsl::animation::gating::{Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
 // One of the constants below.
@@ -30,7 +28,6 @@ struct GateParams {
 }
 
 @group(0) @binding(9) var<uniform> gate_params: GateParams;
-// Bindings 5 and 13: levels of detail, and the bits.
 // Of each clip: its row of periods, then a bit for each bone that moves in it.
 @group(0) @binding(10) var<storage, read> movers: array<u32>;
 // Priorities, four a vector; or for each bone the sum of motion and its rise.
@@ -51,8 +48,7 @@ fn is_skipped(period: u32, ticks: u32) -> bool {
     return period <= gate_params.frame_ticks || ticks % period < gate_params.frame_ticks;
 }
 
-fn by_priority(instance: u32, first: u32, candidates: u32, phase: Phase) -> u32 {
-    let omega = lods[instance].omega;
+fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, phase: Phase) -> u32 {
     if omega >= OMEGA_ONE {
         return candidates;
     }
@@ -78,8 +74,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, phase: Phase) -> u32 
     return chosen;
 }
 
-fn all_or_none(instance: u32, candidates: u32) -> u32 {
-    let omega = lods[instance].omega;
+fn all_or_none(instance: u32, candidates: u32, omega: u32) -> u32 {
     if omega >= OMEGA_ONE {
         return candidates;
     }
@@ -88,8 +83,7 @@ fn all_or_none(instance: u32, candidates: u32) -> u32 {
     return select(0u, candidates, is_due);
 }
 
-fn at_random(instance: u32, first: u32, candidates: u32) -> u32 {
-    let omega = lods[instance].omega;
+fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     if omega >= OMEGA_ONE {
         return candidates;
     }
@@ -107,8 +101,15 @@ fn at_random(instance: u32, first: u32, candidates: u32) -> u32 {
 }
 
 // `asked`: those that are sampled whatever they missed. So are all where nothing may be missed.
-fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, phase: Phase, periods: u32) -> u32 {
-    let allowed = lods[instance].allowed;
+fn by_motion(
+    instance: u32,
+    first: u32,
+    candidates: u32,
+    asked: u32,
+    allowed: u32,
+    phase: Phase,
+    periods: u32,
+) -> u32 {
     let forced = asked | select(0u, candidates, allowed == 0u);
     let row = phase.row * gate_params.stride + first;
     let last = periods * gate_params.stride + first;
@@ -132,7 +133,7 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, phase: Phas
 }
 
 // Up to 32 bones of one instance.
-fn gate_word(instance: u32, word: u32, phase: Phase) -> u32 {
+fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase) -> u32 {
     let first = 32u * word;
     let verdict = verdict_of(phase);
     if verdict == PHASE_HIDDEN {
@@ -145,22 +146,15 @@ fn gate_word(instance: u32, word: u32, phase: Phase) -> u32 {
     let forced = select(0u, all, verdict >= PHASE_FORCED);
     var chosen = candidates;
     if MODE == BOUNDED {
-        chosen = by_motion(instance, first, candidates, forced, phase, movers[record]);
+        chosen = by_motion(instance, first, candidates, forced, lod.allowed, phase, movers[record]);
     } else if verdict == PHASE_FORCED {
         chosen = all;
     } else if MODE == SKIP_PERIOD {
-        chosen = by_priority(instance, first, candidates, phase);
+        chosen = by_priority(instance, first, candidates, lod.omega, phase);
     } else if MODE == UNIFORM {
-        chosen = all_or_none(instance, candidates);
+        chosen = all_or_none(instance, candidates, lod.omega);
     } else if MODE == RANDOM {
-        chosen = at_random(instance, first, candidates);
+        chosen = at_random(instance, first, candidates, lod.omega);
     }
     return chosen;
-}
-
-// All bones of one instance.
-fn gate_instance(instance: u32, phase: Phase) {
-    for (var word = 0u; word < gate_params.words; word++) {
-        bits[instance * gate_params.words + word] = gate_word(instance, word, phase);
-    }
 }

@@ -2,7 +2,6 @@
 // for a new pose: what gates decide by.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::inside_clip;
-import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gating::{LOD_HIDDEN, LOD_REFRESH, PHASE_BLENDED, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN, Phase};
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::place;
@@ -42,14 +41,13 @@ fn clips_above(instance: u32) -> u32 {
     return clips;
 }
 
-// Its phase; its history is kept.
-fn phase_of(index: u32) -> Phase {
+// Its phase, with the flags of its level of detail; its history is kept.
+fn phase_of(index: u32, flags: u32) -> Phase {
     let instance = instances[index];
     let clip = clips[instance.clip];
     let time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * phase_params.elapsed);
     let timeline = timelines[clip.first_timeline];
     let found = place(timeline.x, timeline.y, time);
-    let flags = lods[index].flags;
     let above = clips_above(index);
     let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
     let known = vec4<u32>(base, above, bitcast<u32>(time), 0u);
