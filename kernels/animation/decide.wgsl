@@ -16,8 +16,9 @@ fn decide_instance(instance: u32) -> u32 {
     let phase = phase_of(instance, lod.flags);
     phases[instance] = phase;
     var so_far = Spread(0u, 0u);
+    var left = 0u;
     for (var word = 0u; word < gate_params.words; word++) {
-        let chosen = gate_word(instance, word, lod, phase);
+        let chosen = gate_word(instance, word, lod, phase, &left);
         bits[instance * gate_params.words + word] = chosen;
         so_far = spread_word(instance, word, chosen, so_far);
     }

@@ -1,5 +1,6 @@
-// Which bones of which instances are sampled this frame. A thread decides on up to 32 bones of one instance.
-import package::wgsl::animation::gate::{gate_params, gate_word};
+// Which bones of which instances are sampled this frame. A thread decides on up to 32 bones of one instance; with BOUNDED,
+// on all of them, as what may be missed is shared out from parents to children.
+import package::wgsl::animation::gate::{BOUNDED, MODE, gate_params, gate_word};
 import package::wgsl::animation::gated::bits::bits;
 import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::phases::phases;
@@ -11,8 +12,17 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + lane;
-    let instance = index / gate_params.words;
-    if instance < gate_params.instances {
-        bits[index] = gate_word(instance, index - instance * gate_params.words, lods[instance], phases[instance]);
+    let each = select(1u, gate_params.words, MODE == BOUNDED);
+    let threads = gate_params.words / each;
+    let instance = index / threads;
+    if instance >= gate_params.instances {
+        return;
+    }
+    let lod = lods[instance];
+    let phase = phases[instance];
+    let first = (index - instance * threads) * each;
+    var left = 0u;
+    for (var word = first; word < first + each; word++) {
+        bits[instance * gate_params.words + word] = gate_word(instance, word, lod, phase, &left);
     }
 }

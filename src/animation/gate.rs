@@ -27,7 +27,9 @@ pub enum Gate {
     Uniform,
     /// A share Ω of all bones, by a hash of frame and bone: as many as [`Gate::Uniform`], on average.
     Random,
-    /// Bones that may have moved further than the instance allows. Its table is
+    /// Bones that may have moved further than the instance allows, parents first: a bone that missed no more than its share
+    /// of what is left stays as it is and leaves the rest to the bones below it; one that missed more is sampled, and
+    /// leaves them everything. So bones take turns, and what one does not use another does. Its table is
     /// [`GateTable::of_bounds`](super::gate_table::GateTable::of_bounds): no point is ever further from its place than
     /// [`Lod::allowed`](super::lod::Lod::allowed), nor any vertex that bones blend linearly. Dual quaternions are no
     /// convex mean: the promise does not hold for them.

@@ -3,7 +3,7 @@
 
 use super::clip::{Clip, Interpolation, Part};
 use super::clip_set::ClipSet;
-use super::concat::Order;
+use super::concat::{NO_PARENT, Order};
 use super::motion::{BoneMotion, Path, bounding_levers, motions, shares, typical_levers, whole_reaches};
 use super::priority::Priorities;
 use super::sample::RotationPath;
@@ -13,14 +13,17 @@ use crate::InputError;
 /// The largest sum of motion of a whole clip, in units.
 const MOST_MOTION: f64 = (1 << 30) as f64;
 
-/// What rounding may hide of a bone that nothing bounds: more than is ever allowed.
-const EVERYTHING: f64 = (1 << 30) as f64;
+/// More than is ever allowed.
+pub(crate) const EVERYTHING: u32 = 1 << 30;
 
-/// Power of the rates of motion that shares are made of. 1 needs the fewest samples for a bound, 0 takes all moving bones
-/// alike. But bounds add up what in truth points many ways, and fast bones are sampled every frame in any case: on walks
-/// and runs (`relievo crowd --pareto`) 0.2 needs 0.7 to 1 times the samples of 1 for the same largest error, and 0 a
-/// little more.
-const EVENNESS: f64 = 0.2;
+/// Power of the rates of motion that shares are made of: 1 needs the fewest samples where shares are all that counts, 0
+/// takes all moving bones alike.
+const EVENNESS: f64 = 0.5;
+
+/// How many times its share a bone may take. The promise holds for any, as bones below take what is left. Bones
+/// seldom miss all of their shares at once: on walks and runs (`relievo crowd --pareto`) 1.4 to 2 needs the fewest
+/// samples, 2 where little is allowed, 1.4 where much is.
+const FAVOUR: f64 = 1.6;
 
 /// The most entries.
 const MOST_ENTRIES: usize = 1 << 27;
@@ -61,6 +64,8 @@ pub struct GateTable {
     /// Metres (or what the table's motion counts) a unit; 0 without motion.
     unit: f64,
     radius: f32,
+    /// The first clip's row of bones above. Of bounds alone.
+    first_above: usize,
 }
 
 impl GateTable {
@@ -89,7 +94,17 @@ impl GateTable {
         }
         let bones = order.slots.len();
         let kind = Kind::Movers;
-        Ok(Self { kind, bones, words, stride: 0, movers, rows: vec![[0; 2]], unit: 0.0, radius: 0.0 })
+        Ok(Self {
+            kind,
+            bones,
+            words,
+            stride: 0,
+            movers,
+            rows: vec![[0; 2]],
+            unit: 0.0,
+            radius: 0.0,
+            first_above: 0,
+        })
     }
 
     /// Each clip's priorities: what [`Gate::SkipPeriod`](super::gate::Gate::SkipPeriod) needs. Before a bone's first key
@@ -125,8 +140,8 @@ impl GateTable {
         Ok(table)
     }
 
-    /// Bounds of the motion that each bone contributes to any point, divided by its share of what is allowed: what
-    /// [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `reaches`: for each bone, how far points that follow it
+    /// Bounds of the motion that each bone contributes to any point, and the shares that bones take of what is allowed:
+    /// what [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `reaches`: for each bone, how far points that follow it
     /// alone lie from its origin, metres. `path`: as instances are sampled.
     ///
     /// # Errors
@@ -153,7 +168,7 @@ impl GateTable {
                 .fold(0.0, f64::max);
             table.radius = table.radius.max(radius as f32 * 1.000_001);
         }
-        table.fill(&order, set, &all)
+        Ok(table.fill(&order, set, &all)?.with_trees(skeleton, &order, set))
     }
 
     /// The motion that each bone contributes to points at and below it, as a root of the sum of squares: what
@@ -209,8 +224,40 @@ impl GateTable {
         Ok(self)
     }
 
+    /// Writes which bones hang below which, leaving out those that a clip does not move.
+    fn with_trees(mut self, skeleton: &Skeleton, order: &Order, set: &ClipSet) -> Self {
+        let mut slot_of = vec![0; self.bones];
+        (0..).zip(&order.slots).for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
+        let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
+        for clip in 0..set.clips().len() as u32 {
+            let (last, movers) = self.record(clip);
+            let (last, movers) = (last as usize * self.stride, movers.to_vec());
+            let moves = |slot: u32| movers[slot as usize / 32] >> (slot % 32) & 1 != 0;
+            let first = self.above(clip) as usize * self.stride;
+            let mut before = NO_PARENT;
+            for slot in (0..self.bones as u32).filter(|slot| moves(*slot)) {
+                let bones_above =
+                    std::iter::successors(parent(order.slots[slot as usize].bone), |bone| parent(*bone));
+                let above = bones_above.map(|bone| slot_of[bone as usize]).find(|slot| moves(*slot));
+                self.rows[first + slot as usize][0] = above.unwrap_or(NO_PARENT);
+                if above.is_none_or(|above| above != before) {
+                    self.rows[last + slot as usize][1] |= Allotment::STARTS;
+                    if let Some(above) = above {
+                        self.rows[last + above as usize][1] |= Allotment::KEPT;
+                    }
+                }
+                before = slot;
+            }
+        }
+        self
+    }
+
     fn make_room(&mut self, set: &ClipSet, stride: usize) -> Result<(), InputError> {
-        let rows: usize = set.clips().iter().map(|entry| set.rows(entry) as usize).sum();
+        let mut rows: usize = set.clips().iter().map(|entry| set.rows(entry) as usize).sum();
+        if self.kind == Kind::Bounds {
+            self.first_above = rows;
+            rows += set.clips().len();
+        }
         match rows.checked_mul(stride).filter(|entries| *entries <= MOST_ENTRIES) {
             Some(entries) => {
                 (self.stride, self.rows) = (stride, vec![[0; 2]; entries]);
@@ -251,7 +298,8 @@ impl GateTable {
     }
 
     /// The entries, row by row: four priorities of 16 bits; or a sum of motion at the row's time and its rise to the
-    /// next, in a clip's last row its sum over the whole clip and what rounding may hide.
+    /// next. In a clip's last row stand its sum over the whole clip, and of a table of bounds an [`Allotment`]; such a
+    /// table has one more row a clip behind all others, see [`GateTable::above`].
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.rows
     }
@@ -272,6 +320,12 @@ impl GateTable {
         self.rows[row as usize * self.stride + slot]
     }
 
+    /// The number of a row that tells, for each slot that a clip moves, the next slot above it that the clip moves, or
+    /// [`NO_PARENT`]; of [`GateTable::of_bounds`].
+    pub fn above(&self, clip: u32) -> u32 {
+        self.first_above as u32 + clip
+    }
+
     /// A bound of how far any point lies from the model's origin in any clip, metres; of [`GateTable::of_bounds`].
     pub fn radius(&self) -> f32 {
         self.radius
@@ -284,7 +338,7 @@ impl GateTable {
             return 0;
         }
         // A clip's whole motion is less than everything.
-        (f64::from(metres) / self.unit).clamp(0.0, EVERYTHING - 1.0).floor() as u32
+        (f64::from(metres) / self.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 }
 
@@ -299,6 +353,38 @@ fn check_reaches(skeleton: &Skeleton, reaches: &[f32]) -> Result<(), InputError>
             let bound = "must be at least 0 and finite";
             Err(InputError::new(format!("reaches[{bone}]"), reaches[bone], bound))
         }
+    }
+}
+
+/// What a clip grants a bone, as the kernel reads it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Allotment(pub u32);
+
+impl Allotment {
+    /// The bone above is not the one before it in the order.
+    const STARTS: u32 = 1 << 5;
+    /// What it leaves is needed later.
+    const KEPT: u32 = 1 << 6;
+
+    /// `hidden`: a power of two, or 0.
+    fn new(share: f64, hidden: u32) -> Self {
+        let bits = u32::BITS - hidden.leading_zeros();
+        Self(((share * 65536.0).floor() as u32) << 8 | bits)
+    }
+
+    /// Of what the bones above leave, in 65536ths.
+    pub fn share(self) -> u32 {
+        self.0 >> 8
+    }
+
+    /// Units that rounding may hide.
+    pub fn hidden(self) -> u32 {
+        ((1_u64 << (self.0 & 31)) >> 1) as u32
+    }
+
+    /// Whether the bone above is another than the one before it in the order.
+    pub fn starts(self) -> bool {
+        self.0 & Self::STARTS != 0
     }
 }
 
@@ -331,6 +417,8 @@ struct Column {
     jumps: Vec<f64>,
     wrap: f64,
     is_boundless: bool,
+    /// Of what bones above leave, 0 to 1.
+    share: f64,
 }
 
 impl Column {
@@ -344,6 +432,7 @@ impl Column {
             jumps: (0..times).map(|at| weighed(&|path| path.jumps[at])).collect(),
             wrap: weighed(&|path| path.wrap),
             is_boundless: bone.parts.iter().any(|path| path.is_boundless),
+            share: 0.0,
         }
     }
 
@@ -351,16 +440,11 @@ impl Column {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }
 
-    fn scale(&mut self, factor: f64) {
-        self.rises.iter_mut().chain(&mut self.jumps).for_each(|value| *value *= factor);
-        self.wrap *= factor;
-    }
-
     /// Writes it down a table.
     ///
     /// Starts are rounded to the nearest unit, rises up, and sums down: what two sums differ by is at most 4 units too
     /// small. Fractions are cut to 16 bits, 2⁻¹⁶ of a stretch, and may be off by rounding of their division: 2⁻¹² of
-    /// the steepest stretch is more than either costs for two sums.
+    /// the steepest stretch is more than either costs for two sums. What rounding may hide so is a power of two.
     fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;
@@ -370,8 +454,13 @@ impl Column {
             sum += rise;
             steepest = steepest.max(rise / unit);
         }
-        let slack = if self.is_boundless { EVERYTHING } else { 4.0 + (steepest / 4096.0).ceil() };
-        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, slack as u32];
+        let hidden = match self.is_boundless {
+            true => EVERYTHING,
+            false if self.total() > 0.0 => (4 + (steepest / 4096.0).ceil() as u32).next_power_of_two(),
+            false => 0,
+        };
+        let allotment = Allotment::new(self.share, hidden);
+        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, allotment.0];
     }
 }
 
@@ -379,12 +468,10 @@ fn columns(motions: &[BoneMotion], levers: &[[f64; 3]]) -> Vec<Column> {
     motions.iter().zip(levers).map(|(bone, levers)| Column::new(bone, levers)).collect()
 }
 
-/// Divides each bone's motion by its share of what is allowed.
+/// Gives each bone its share of what the bones above it leave.
 fn share_out(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
     for (column, share) in columns.iter_mut().zip(shares(skeleton, &rates)) {
-        if share > 0.0 {
-            column.scale(share.recip());
-        }
+        column.share = (FAVOUR * share).min(1.0);
     }
 }

@@ -273,26 +273,20 @@ pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
     sums.into_iter().map(|sums| sums.map(f64::sqrt)).collect()
 }
 
-/// How much of the allowed way each bone may take, so that the shares on every way from a root to a leaf sum to 1.
+/// How much each bone should take of what the bones above it leave of the allowed way.
 ///
-/// A bone that moves at rate r is sampled r/s times for its share s. The fewest samples of a subtree with the budget b
-/// are K/b: for a leaf K = r, and for a bone above subtrees K = (√r + √ΣK)², of which it takes √r/(√r + √ΣK).
+/// A bone that moves at rate r is sampled r/s times for its share s of the whole. The fewest samples of a subtree with the
+/// budget b are K/b: for a leaf K = r, and for a bone above subtrees K = (√r + √ΣK)², of which it takes √r/(√r + √ΣK).
 pub fn shares(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
     let bones = skeleton.bones();
     let mut below = vec![0.0; rates.len()];
-    for (bone, node) in bones.iter().enumerate().rev() {
-        let needed = (rates[bone].sqrt() + f64::sqrt(below[bone])).powi(2);
-        if let Some(parent) = node.parent {
-            below[parent as usize] += needed;
-        }
-    }
-    let mut left = vec![1.0; rates.len()];
     let mut shares = vec![0.0; rates.len()];
-    for (bone, node) in bones.iter().enumerate() {
-        let budget = node.parent.map_or(1.0, |parent| left[parent as usize]);
+    for (bone, node) in bones.iter().enumerate().rev() {
         let (own, others) = (rates[bone].sqrt(), f64::sqrt(below[bone]));
-        shares[bone] = if own > 0.0 { budget * own / (own + others) } else { 0.0 };
-        left[bone] = budget - shares[bone];
+        shares[bone] = if own > 0.0 { own / (own + others) } else { 0.0 };
+        if let Some(parent) = node.parent {
+            below[parent as usize] += (own + others).powi(2);
+        }
     }
     shares
 }

@@ -15,20 +15,20 @@ struct CompactParams {
     most_groups: u32,
 }
 
-@group(0) @binding(14) var<uniform> compact_params: CompactParams;
-// Binding 13: the bits.
+@group(0) @binding(15) var<uniform> compact_params: CompactParams;
+// Binding 14: the bits.
 // Bone, parent, slots of the subtree.
-@group(0) @binding(15) var<storage, read> slots: array<vec4<u32>>;
-@group(0) @binding(16) var<storage, read_write> dirty: array<u32>;
+@group(0) @binding(16) var<storage, read> slots: array<vec4<u32>>;
+@group(0) @binding(17) var<storage, read_write> dirty: array<u32>;
 // Active pairs of each instance, then of all before it.
-@group(0) @binding(17) var<storage, read_write> counts: array<u32>;
+@group(0) @binding(18) var<storage, read_write> counts: array<u32>;
 // instance * bones + bone.
-@group(0) @binding(18) var<storage, read_write> pairs: array<u32>;
+@group(0) @binding(19) var<storage, read_write> pairs: array<u32>;
 // Workgroups along x, y, z for a thread a pair; how many.
-@group(0) @binding(19) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
-@group(0) @binding(20) var<storage, read_write> dirty_instances: array<u32>;
+@group(0) @binding(20) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
+@group(0) @binding(21) var<storage, read_write> dirty_instances: array<u32>;
 // Likewise for a thread a dirty instance; then, where w says how many, for as many threads a dirty instance.
-@group(0) @binding(21) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
+@group(0) @binding(22) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
 var<workgroup> sums: array<vec2<u32>, WIDTH>;
 

@@ -1,6 +1,6 @@
 // Which bones of an instance are sampled this frame, a bit each, from whole numbers alone: every device decides alike.
 import package::wgsl::animation::gating::{Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of};
-import package::wgsl::animation::motion::{motion_at, motion_between};
+import package::wgsl::animation::motion::{motion_at, motion_between, share_of};
 
 // One of the constants below.
 override MODE: u32 = 0;
@@ -25,15 +25,20 @@ struct GateParams {
     period: u32,
     // Frames since the start.
     frame: u32,
+    // Row of the table that tells for each slot the one above it that the first clip moves; then the other clips'.
+    first_above: u32,
 }
 
 @group(0) @binding(9) var<uniform> gate_params: GateParams;
 // Of each clip: its row of periods, then a bit for each bone that moves in it.
 @group(0) @binding(10) var<storage, read> movers: array<u32>;
-// Priorities, four a vector; or for each bone the sum of motion and its rise.
+// Priorities, four a vector; or for each bone the sum of motion and its rise, in a clip's last row that of the whole clip
+// and what the bone is granted.
 @group(0) @binding(11) var<storage, read> table: array<vec2<u32>>;
 // For each bone, the sum of motion when it was sampled last.
 @group(0) @binding(12) var<storage, read_write> sampled: array<u32>;
+// For each bone that others than the next hang below, what it leaves of the allowed way.
+@group(0) @binding(13) var<storage, read_write> kept: array<u32>;
 
 // A round of a multiplicative hash (Wellons' "lowbias32").
 fn scramble(word: u32) -> u32 {
@@ -100,40 +105,66 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     return chosen;
 }
 
-// `asked`: those that are sampled whatever they missed. So are all where nothing may be missed.
-fn by_motion(
-    instance: u32,
-    first: u32,
-    candidates: u32,
-    asked: u32,
+const NO_PARENT = 0xffffffffu;
+// More than is ever allowed.
+const EVERYTHING = 1u << 30u;
+// Of what a bone is granted: above 8 bits its share of what is left, and in the lowest five what rounding may hide.
+const STARTS = 32u;
+const KEPT = 64u;
+
+fn hidden_of(granted: u32) -> u32 {
+    return (1u << (granted & 31u)) >> 1u;
+}
+
+// Of one instance.
+struct Way {
     allowed: u32,
     phase: Phase,
-    periods: u32,
-) -> u32 {
-    let forced = asked | select(0u, candidates, allowed == 0u);
-    let row = phase.row * gate_params.stride + first;
-    let last = periods * gate_params.stride + first;
-    let own = instance * gate_params.bones + first;
+    // The clip's last row.
+    last_row: u32,
+}
+
+// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
+// One that missed more is sampled, and leaves them everything. `asked`: those that are sampled whatever they missed; so
+// are all where nothing may be missed. `left`: what the bone before left.
+fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, left: ptr<function, u32>) -> u32 {
+    let forced = asked | select(0u, candidates, way.allowed == 0u);
+    let row = way.phase.row * gate_params.stride + first;
+    let last = way.last_row * gate_params.stride + first;
+    let own = instance * gate_params.bones;
     var chosen = forced;
     var rest = candidates | forced;
     while rest != 0u {
         let bit = firstTrailingBit(rest);
         rest &= rest - 1u;
-        // The clip's sum, and what its rounding may hide.
         let whole = table[last + bit];
-        let now = motion_at(table[row + bit], phase);
-        let missed = motion_between(now, sampled[own + bit], whole.x);
+        if (whole.y & STARTS) != 0u {
+            let above = table[(gate_params.first_above + way.phase.clip) * gate_params.stride + first + bit].x;
+            if above == NO_PARENT {
+                *left = way.allowed;
+            } else {
+                *left = kept[own + above];
+            }
+        }
+        let at = own + first + bit;
+        let now = motion_at(table[row + bit], way.phase);
+        let missed = motion_between(now, sampled[at], whole.x) + hidden_of(whole.y);
         let is_forced = (forced & (1u << bit)) != 0u;
-        if is_forced || missed + whole.y > allowed {
+        if is_forced || missed > share_of(*left, whole.y >> 8u) {
             chosen |= 1u << bit;
-            sampled[own + bit] = now;
+            sampled[at] = now;
+        } else {
+            *left -= missed;
+        }
+        if (whole.y & KEPT) != 0u {
+            kept[at] = *left;
         }
     }
     return chosen;
 }
 
-// Up to 32 bones of one instance.
-fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase) -> u32 {
+// Up to 32 bones of one instance. BOUNDED takes words in their order: `left` is what the one before left.
+fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase, left: ptr<function, u32>) -> u32 {
     let first = 32u * word;
     let verdict = verdict_of(phase);
     if verdict == PHASE_HIDDEN {
@@ -146,7 +177,8 @@ fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase) -> u32 {
     let forced = select(0u, all, verdict >= PHASE_FORCED);
     var chosen = candidates;
     if MODE == BOUNDED {
-        chosen = by_motion(instance, first, candidates, forced, lod.allowed, phase, movers[record]);
+        let way = Way(min(lod.allowed, EVERYTHING - 1u), phase, movers[record]);
+        chosen = by_motion(instance, first, candidates, forced, way, left);
     } else if verdict == PHASE_FORCED {
         chosen = all;
     } else if MODE == SKIP_PERIOD {

@@ -22,6 +22,7 @@ pub(crate) struct GateParams {
     pub frame_ticks: u32,
     pub period: u32,
     pub frame: u32,
+    pub first_above: u32,
 }
 
 /// What gates know of a crowd. All buffers may be read and bound by the caller.
@@ -36,12 +37,15 @@ pub struct Gating {
     pub history: Buffer<[u32; 4]>,
     /// For each slot of each instance, the sum of motion when it was sampled last.
     pub sampled: Buffer<u32>,
+    /// For each slot of each instance, what it leaves of the allowed way, where that is needed later.
+    pub(crate) kept: Buffer<u32>,
     /// The table of movers.
     pub(crate) movers: Buffer<u32>,
     /// The table's rows.
     pub(crate) table: Buffer<[u32; 2]>,
     pub(crate) words: u32,
     pub(crate) stride: u32,
+    pub(crate) first_above: u32,
     pub(crate) kind: Kind,
 }
 
@@ -61,10 +65,12 @@ impl Gating {
             phases: Buffer::new(gpu, "phases", instances)?,
             history: Buffer::new(gpu, "history", instances)?,
             sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
+            kept: Buffer::new(gpu, "kept", if table.kind() == Kind::Bounds { crowd.pairs() } else { 0 })?,
             movers: Buffer::from_slice(gpu, "movers", table.movers())?,
             table: Buffer::from_slice(gpu, "gate table", table.rows())?,
             words: table.words() as u32,
             stride: table.stride() as u32,
+            first_above: table.above(0),
             kind: table.kind(),
         })
     }
@@ -103,7 +109,7 @@ impl GatePass {
         let resources: Vec<_> = shared.into_iter().chain([&params]).chain(&rest).cloned().collect();
         let step = Step {
             groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-            workgroups: self.kernel.spread(gpu, time.params.instances * time.params.words),
+            workgroups: self.kernel.spread(gpu, time.threads(self.gate)),
             kernel: self.kernel.clone(),
         };
         Ok(GateJob { time, job: Job::new(gpu, "animation/gate", vec![step])? })
@@ -122,12 +128,13 @@ pub(crate) fn mode(gate: Gate) -> f64 {
 }
 
 /// What is bound besides levels of detail and phases, in the order of `wgsl/animation/gate.wgsl`.
-pub(crate) fn resources<'a>(time: &'a GateTime, gating: &'a Gating, active: &'a Active) -> [Resource<'a>; 5] {
+pub(crate) fn resources<'a>(time: &'a GateTime, gating: &'a Gating, active: &'a Active) -> [Resource<'a>; 6] {
     [
         time.uniform.raw().as_entire_binding(),
         gating.movers.raw().as_entire_binding(),
         gating.table.raw().as_entire_binding(),
         gating.sampled.raw().as_entire_binding(),
+        gating.kept.raw().as_entire_binding(),
         active.bits.raw().as_entire_binding(),
     ]
 }
@@ -151,12 +158,18 @@ impl GateTime {
             bones: crowd.bones as u32,
             words: gating.words,
             stride: gating.stride,
+            first_above: gating.first_above,
             ticks: 0,
             frame_ticks: 0,
             period: if let Gate::SkipPeriod { period } = gate { period } else { 0 },
             frame: 0,
         };
         Ok(Self { params, uniform: Uniform::new(gpu, "gate", &params)? })
+    }
+
+    /// One a word of bits, or an instance where words wait for each other.
+    fn threads(&self, gate: Gate) -> u32 {
+        self.params.instances * if gate == Gate::Bounded { 1 } else { self.params.words }
     }
 
     /// As [`GateJob::set`].

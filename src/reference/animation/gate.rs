@@ -1,7 +1,8 @@
 //! Which bones are sampled: twin of `kernels/animation/gate.wgsl`.
 
+use crate::animation::concat::NO_PARENT;
 use crate::animation::gate::{Frame, Gate};
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate_table::{Allotment, EVERYTHING, GateTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::phase::{Phase, Verdict};
 
@@ -19,8 +20,10 @@ pub fn gate(
     sampled: &mut [u32],
 ) -> Vec<u32> {
     let mut bits = Vec::with_capacity(phases.len() * table.words());
+    let mut kept = vec![0; table.bones()];
     for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
-        let (periods, movers) = table.record(phase.clip);
+        let movers = table.record(phase.clip).1;
+        let mut way = Way { left: 0, kept: &mut kept };
         for (word, movers) in movers.iter().enumerate() {
             let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
             let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
@@ -30,8 +33,8 @@ pub fn gate(
                 (verdict, Gate::Bounded) => {
                     // Sums of motion know of one clip alone.
                     let forced = if verdict.forces_motion() { all } else { 0 };
-                    let sampled = &mut sampled[instance * table.bones() + at.first..];
-                    by_motion(table, &at, lod, candidates, forced, phase, periods, sampled)
+                    let sampled = &mut sampled[instance * table.bones()..];
+                    by_motion(table, &at, lod, candidates, forced, phase, sampled, &mut way)
                 }
                 (Verdict::Forced, _) => all,
                 (_, Gate::Off) => candidates,
@@ -106,6 +109,16 @@ fn at_random(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
     bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
+/// What is left of the allowed way of an instance.
+struct Way<'a> {
+    /// By the bone before.
+    left: u32,
+    /// By bones that others hang below.
+    kept: &'a mut [u32],
+}
+
+/// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
+/// One that missed more is sampled, and leaves them everything.
 #[allow(clippy::too_many_arguments, reason = "the shader's own")]
 fn by_motion(
     table: &GateTable,
@@ -114,20 +127,32 @@ fn by_motion(
     candidates: u32,
     asked: u32,
     phase: &Phase,
-    periods: u32,
     sampled: &mut [u32],
+    way: &mut Way<'_>,
 ) -> u32 {
     // So are all where nothing may be missed.
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
+    let last_row = table.record(phase.clip).0;
     let mut active = forced;
     for bit in bits_of(candidates | forced) {
-        let [period, slack] = table.motion(periods, at.first + bit);
-        let now = motion_at(table.motion(phase.row, at.first + bit), phase);
-        let missed = motion_between(now, sampled[bit], period);
-        if forced >> bit & 1 != 0 || missed.wrapping_add(slack) > lod.allowed {
-            active |= 1 << bit;
-            sampled[bit] = now;
+        let slot = at.first + bit;
+        let [period, granted] = table.motion(last_row, slot);
+        let granted = Allotment(granted);
+        if granted.starts() {
+            way.left = match table.motion(table.above(phase.clip), slot)[0] {
+                NO_PARENT => lod.allowed.min(EVERYTHING - 1),
+                above => way.kept[above as usize],
+            };
         }
+        let now = motion_at(table.motion(phase.row, slot), phase);
+        let missed = motion_between(now, sampled[slot], period) + granted.hidden();
+        if forced >> bit & 1 != 0 || missed > share_of(way.left, granted.share()) {
+            active |= 1 << bit;
+            sampled[slot] = now;
+        } else {
+            way.left -= missed;
+        }
+        way.kept[slot] = way.left;
     }
     active
 }

@@ -1,2 +1,2 @@
 // A bit for each slot of each instance: those that are sampled.
-@group(0) @binding(13) var<storage, read_write> bits: array<u32>;
+@group(0) @binding(14) var<storage, read_write> bits: array<u32>;
