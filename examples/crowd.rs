@@ -46,7 +46,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for number in 0..60 {
         let elapsed = number as f32 / 60.0;
         frame.gating.lods.write(&gpu, &lods)?;
-        frame.set(&gpu, &Frame { ticks: number, frame_ticks: 1, frame: number }, elapsed)?;
+        frame.set(
+            &gpu,
+            &Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 },
+            elapsed,
+        )?;
         let mut encoder = gpu.encoder("frame");
         frame.record(&mut encoder);
         // `crowd.models` holds the palettes now: three rows a bone, to bind wherever you draw.

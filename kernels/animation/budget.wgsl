@@ -1,6 +1,6 @@
 // Which bones are sampled when only so many may be: those whose stale transforms are expected to show most. Five
 // stages, a dispatch each. Equal ranks are served in the order of instances and slots, so every device decides alike.
-import package::wgsl::animation::gating::{Lod, PHASE_FORCED, PHASE_FREE, Phase, verdict_of};
+import package::wgsl::animation::gating::{Lod, PHASE_FORCED, PHASE_FREE, Phase, fraction_of, verdict_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
 // One of the constants below.
@@ -40,7 +40,7 @@ struct BudgetParams {
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
 // For each bone, the sum of motion when it was sampled last.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// A bit for each bone.
+// A bit for each bone; then likewise, those that are sampled ahead: none.
 @group(0) @binding(6) var<storage, read_write> bits: array<u32>;
 // Ranks, two a word and 16 words for each word of bits; then, bit by bit, those at the lowest rank that is served.
 @group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
@@ -101,7 +101,7 @@ fn rank_of(missed: u32, weight: u32) -> u32 {
 }
 
 fn motion_now(place: Place, bit: u32) -> u32 {
-    return motion_at(table[place.phase.row * params.stride + place.slot + bit], place.phase);
+    return motion_at(table[place.phase.row * params.stride + place.slot + bit], fraction_of(place.phase));
 }
 
 fn missed_by(place: Place, bit: u32, last: u32) -> u32 {
@@ -193,6 +193,7 @@ fn decide(index: u32) {
         equal = select(equal, 0u, lowest == 0u);
     }
     bits[index] = above;
+    bits[params.instances * params.words + index] = 0u;
     ranks[16u * params.instances * params.words + index] = equal;
     if equal != 0u {
         atomicAdd(&tally[TIES + place.instance], countOneBits(equal));

@@ -1,8 +1,7 @@
 // Phases, gate and lists of a small crowd in one dispatch, where a dispatch costs more than other processors gain. A
 // thread decides on whole instances, one after another.
 import package::wgsl::animation::compact::{Spread, counts, instances_of, list_instance, scan, spread_word};
-import package::wgsl::animation::gate::{gate_params, gate_word};
-import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gate::{gate_params, gate_word, store_word};
 import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::phases::phases;
 import package::wgsl::animation::phase::phase_of;
@@ -19,8 +18,8 @@ fn decide_instance(instance: u32) -> u32 {
     var left = 0u;
     for (var word = 0u; word < gate_params.words; word++) {
         let chosen = gate_word(instance, word, lod, phase, &left);
-        bits[instance * gate_params.words + word] = chosen;
-        so_far = spread_word(instance, word, chosen, so_far);
+        store_word(instance, word, chosen);
+        so_far = spread_word(instance, word, chosen.bits, so_far);
     }
     counts[instance] = so_far.count;
     return so_far.count;

@@ -1,7 +1,6 @@
 // Which bones of which instances are sampled this frame. A thread decides on up to 32 bones of one instance; with BOUNDED,
 // on all of them, as what may be missed is shared out from parents to children.
-import package::wgsl::animation::gate::{BOUNDED, MODE, gate_params, gate_word};
-import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gate::{BOUNDED, MODE, gate_params, gate_word, store_word};
 import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::phases::phases;
 
@@ -23,6 +22,6 @@ fn main(
     let first = (index - instance * threads) * each;
     var left = 0u;
     for (var word = first; word < first + each; word++) {
-        bits[instance * gate_params.words + word] = gate_word(instance, word, lod, phase, &left);
+        store_word(instance, word, gate_word(instance, word, lod, phase, &left));
     }
 }

@@ -1,5 +1,6 @@
 // Where instances stand in their clips: for each instance and timeline of its clip the key before, and the way to the
-// next. A thread finds one of them. With COMPACTED, only for instances of a list, all their layers included.
+// next. A thread finds one of them. With COMPACTED, only for instances of a list, all their layers included, and where
+// the base will stand when bones are sampled ahead.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -23,12 +24,12 @@ struct PlaceParams {
 // First time and number of keys.
 @group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
 // Binding 4: the times.
-// Key and, as bits, fraction.
+// Key and, as bits, fraction; behind all layers those of the base ahead.
 @group(0) @binding(5) var<storage, read_write> places: array<vec2<u32>>;
 @group(0) @binding(6) var<storage, read> dirty_instances: array<u32>;
 // Of the first, w: how many instances are listed.
 @group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
-// Of each instance of the base what gates saw; z: its time inside the clip, as bits.
+// Of each instance of the base what gates saw; z: its time inside the clip, as bits; w: that ahead.
 @group(0) @binding(8) var<storage, read> history: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
@@ -41,18 +42,20 @@ fn main(
     let at = index / params.timelines;
     var entry = at;
     if COMPACTED {
-        // Layer by layer of one instance after another.
-        let layers = params.entries / params.instances;
+        // Layer by layer of one instance after another; last, the base ahead.
+        let layers = params.entries / params.instances + 1u;
         let listed = at / layers;
         if listed >= dispatches[0].w {
             return;
         }
         entry = dirty_instances[listed] + (at - listed * layers) * params.instances;
     }
-    if entry >= params.entries {
+    let is_ahead = COMPACTED && entry >= params.entries;
+    if !COMPACTED && entry >= params.entries {
         return;
     }
-    let instance = instances[entry];
+    let playing = select(entry, entry - params.entries, is_ahead);
+    let instance = instances[playing];
     let clip = clips[instance.clip];
     let timeline_index = index - at * params.timelines;
     if timeline_index >= clip.timelines {
@@ -60,9 +63,13 @@ fn main(
     }
     let timeline = timelines[clip.first_timeline + timeline_index];
     var time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
-    if COMPACTED && entry < params.instances {
+    if COMPACTED && (is_ahead || entry < params.instances) {
         // To the bit what the gate decided by: a key is passed for both or for neither.
-        time = bitcast<f32>(history[entry].z);
+        let seen = history[playing];
+        if is_ahead && seen.w == seen.z {
+            return;
+        }
+        time = bitcast<f32>(select(seen.z, seen.w, is_ahead));
     }
     places[entry * params.timelines + timeline_index] = place(timeline.x, timeline.y, time);
 }

@@ -1,6 +1,7 @@
 // Transforms of bones in their parents' spaces at the places where instances stand in their clips (glTF 2.0, appendix
 // C). A thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it lays
 // what other layers play over it, as far as weight and mask let them.
+import package::wgsl::animation::gating::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 
@@ -27,9 +28,9 @@ struct SampleParams {
 // Three a bone and clip: timeline (30 bits) and interpolation, first value.
 @group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;
-// Key and, as bits, fraction.
+// Key and, as bits, fraction; behind all layers those of the base ahead.
 @group(0) @binding(4) var<storage, read> places: array<vec2<u32>>;
-// instance * bones + bone, of each pair that is to be sampled.
+// instance * bones + bone, of each pair that is to be sampled; with PAIR_AHEAD, at the place ahead.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and how many pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
@@ -124,10 +125,10 @@ struct Local {
     scaled: vec3<f32>,
 }
 
-// `slot` is layer * instances + instance.
-fn local_at(slot: u32, bone: u32) -> Local {
+// `slot` is layer * instances + instance; `place_slot` likewise, layers * instances + instance for the base ahead.
+fn local_at(slot: u32, bone: u32, place_slot: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
-    let first_place = slot * params.timelines;
+    let first_place = place_slot * params.timelines;
     let moving = tracks[track];
     let turning = tracks[track + 1u];
     let scaling = tracks[track + 2u];
@@ -162,24 +163,28 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     var pair = (group.y * groups.x + group.x) * 64u + lane;
+    var is_ahead = false;
     if COMPACTED {
         if pair >= dispatched.w {
             return;
         }
         pair = pairs[pair];
+        is_ahead = (pair & PAIR_AHEAD) != 0u;
+        pair &= ~PAIR_AHEAD;
     }
     if pair >= params.pairs {
         return;
     }
     let instance = pair / params.bones;
     let bone = pair - instance * params.bones;
-    var local = local_at(instance, bone);
+    var local = local_at(instance, bone, select(0u, params.layers * params.instances, is_ahead) + instance);
     if LAYERED {
         let masks = (params.layers - 1u) * params.instances;
         for (var over = 0u; over + 1u < params.layers; over++) {
             let share = shares[over * params.instances + instance] * shares[masks + over * params.bones + bone];
             if share > 0.0 {
-                local = blend(local, local_at((over + 1u) * params.instances + instance, bone), share);
+                let slot = (over + 1u) * params.instances + instance;
+                local = blend(local, local_at(slot, bone, slot), share);
             }
         }
     }

@@ -109,7 +109,7 @@ impl Crowd {
         }
         let instances = layers::all_instances(base, layers);
         Ok(Self {
-            places: Buffer::new(gpu, "places", instances.len() * set.timelines_a_clip())?,
+            places: Buffer::new(gpu, "places", (instances.len() + count) * set.timelines_a_clip())?,
             instances: Buffer::from_slice(gpu, "instances", &instances)?,
             shares: Buffer::from_slice(gpu, "shares", &all_shares(layers, bones))?,
             locals: Buffer::new(gpu, "locals", pairs)?,

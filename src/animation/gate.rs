@@ -50,7 +50,7 @@ impl Gate {
 }
 
 /// When a frame is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame {
     /// A clock that never goes back, in ticks of any length; begins again after 2³².
     pub ticks: u32,
@@ -58,4 +58,7 @@ pub struct Frame {
     pub frame_ticks: u32,
     /// Frames so far.
     pub frame: u32,
+    /// Seconds by which [`Gate::Bounded`] may sample a bone ahead of its time: a bone that is off by as much before as after
+    /// stays twice as long. A frame's length saves most; 0 never does.
+    pub ahead: f32,
 }

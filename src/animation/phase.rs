@@ -45,12 +45,22 @@ pub struct Phase {
     pub fraction_and_verdict: u32,
     /// The clip.
     pub clip: u32,
+    /// The row where it will stand when bones may be sampled ahead of their time; else as above.
+    pub ahead_row: u32,
+    /// The way to the row after it, 0 to 65536.
+    pub ahead_fraction: u32,
 }
 
 impl Phase {
-    /// A phase from its parts.
+    /// A phase from its parts; nothing may be sampled ahead.
     pub fn new(row: u32, fraction: u32, verdict: Verdict, clip: u32) -> Self {
-        Self { row, fraction_and_verdict: (verdict as u32) << 20 | fraction, clip }
+        let fraction_and_verdict = (verdict as u32) << 20 | fraction;
+        Self { row, fraction_and_verdict, clip, ahead_row: row, ahead_fraction: fraction }
+    }
+
+    /// Whether bones may be sampled ahead.
+    pub fn is_ahead(&self) -> bool {
+        (self.ahead_row, self.ahead_fraction) != (self.row, self.fraction())
     }
 
     /// The way to the next row, 0 to 65536.

@@ -12,6 +12,9 @@ mod pass;
 #[cfg(feature = "gpu")]
 pub use pass::{ActivePairs, SampleActiveJob, SamplePass};
 
+/// Of a pair of instance and bone in a list: it is sampled where the instance will stand ahead.
+pub const PAIR_AHEAD: u32 = 1 << 31;
+
 /// How far a sampled rotation between linear keys may lie from the true one, in radians. The polynomial alone is
 /// within 4e-8; the rest is `f32`'s rounding of keys, products and sums.
 pub const SLERP_BOUND: f32 = 1e-6;

@@ -51,9 +51,12 @@ impl Run<'_> {
         lazy.lods.iter_mut().for_each(|lod| lod.allowed = bounds.units(self.allowed));
         let (mut worst, mut elapsed) = (0.0_f64, 0.0);
         for number in 0..frames {
-            elapsed += step(&mut lazy.instances);
+            let seconds = step(&mut lazy.instances);
+            elapsed += seconds;
             full.instances.clone_from(&lazy.instances);
-            let frame = Frame { ticks: number, frame_ticks: 1, frame: number };
+            // Now and then by more or less than a frame, back in time, and not at all.
+            let ahead = [1.0, 0.0, 2.0, 1.0, 0.3, -1.0][number as usize % 6] * seconds;
+            let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
             lazy.advance(Choice::Gate(Gate::Bounded), &frame, elapsed);
             full.advance(Choice::Gate(Gate::Off), &frame, elapsed);
             worst = worst.max(self.error(&lazy.models, &full.models) / f64::from(self.allowed));

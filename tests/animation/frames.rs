@@ -18,7 +18,7 @@ use crate::harness::gpu;
 const BOUNDED: Choice = Choice::Gate(Gate::Bounded);
 
 fn frame(number: u32) -> Frame {
-    Frame { ticks: number, frame_ticks: 1, frame: number }
+    Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 }
 }
 
 /// The largest difference of two entries.

@@ -76,7 +76,7 @@ impl Stage {
 }
 
 fn frame(number: u32) -> Frame {
-    Frame { ticks: number * 1092, frame_ticks: 1092, frame: number }
+    Frame { ticks: number * 1092, frame_ticks: 1092, frame: number, ahead: 1.0 / 60.0 }
 }
 
 /// Plays instances with changing clips, directions and rates at uneven frame times, allowed to miss `times` the allowed
@@ -331,5 +331,5 @@ fn tables_refuse_what_does_not_fit() {
     let other = Stage::random(0, 7);
     assert_eq!(field(GateTable::of_movers(&other.order, &stage.set, &clips)), "skeleton.len");
     // The twin alone, without phases, has nothing to decide.
-    assert!(gate(&stage.movers(), Gate::Off, &frame(0), &[], &[], &mut []).is_empty());
+    assert!(gate(&stage.movers(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
 }

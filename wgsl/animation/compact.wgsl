@@ -1,5 +1,6 @@
 // From bits to lists: the steps of kernels/animation/compact.wgsl.
 import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gating::PAIR_AHEAD;
 import package::wgsl::dispatch::rows_of_workgroups;
 
 const WIDTH = 64u;
@@ -22,7 +23,7 @@ struct CompactParams {
 @group(0) @binding(17) var<storage, read_write> dirty: array<u32>;
 // Active pairs of each instance, then of all before it.
 @group(0) @binding(18) var<storage, read_write> counts: array<u32>;
-// instance * bones + bone.
+// instance * bones + bone, with PAIR_AHEAD where it is sampled ahead.
 @group(0) @binding(19) var<storage, read_write> pairs: array<u32>;
 // Workgroups along x, y, z for a thread a pair; how many.
 @group(0) @binding(20) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
@@ -121,9 +122,13 @@ fn list_word(instance: u32, word: u32, start: u32) -> u32 {
     let first_pair = instance * compact_params.bones;
     let first_slot = 32u * word;
     var at = start;
-    var rest = bits[instance * compact_params.words + word];
+    let at_word = instance * compact_params.words + word;
+    let ahead = bits[compact_params.instances * compact_params.words + at_word];
+    var rest = bits[at_word];
     while rest != 0u {
-        pairs[at] = first_pair + slots[first_slot + firstTrailingBit(rest)].x;
+        let bit = firstTrailingBit(rest);
+        let pair = first_pair + slots[first_slot + bit].x;
+        pairs[at] = select(pair, pair | PAIR_AHEAD, (ahead & (1u << bit)) != 0u);
         rest &= rest - 1u;
         at++;
     }

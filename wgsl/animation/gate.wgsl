@@ -1,5 +1,6 @@
 // Which bones of an instance are sampled this frame, a bit each, from whole numbers alone: every device decides alike.
-import package::wgsl::animation::gating::{Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, verdict_of};
+import package::wgsl::animation::gated::bits::bits;
+import package::wgsl::animation::gating::{Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, fraction_of, is_ahead, verdict_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, share_of};
 
 // One of the constants below.
@@ -116,6 +117,12 @@ fn hidden_of(granted: u32) -> u32 {
     return (1u << (granted & 31u)) >> 1u;
 }
 
+// A bit each: what is sampled, and of this, what is sampled ahead.
+struct Chosen {
+    bits: u32,
+    ahead: u32,
+}
+
 // Of one instance.
 struct Way {
     allowed: u32,
@@ -125,14 +132,17 @@ struct Way {
 }
 
 // Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
-// One that missed more is sampled, and leaves them everything. `asked`: those that are sampled whatever they missed; so
-// are all where nothing may be missed. `left`: what the bone before left.
-fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, left: ptr<function, u32>) -> u32 {
+// One that missed more is sampled, and leaves them everything; or, where it moves no more than its share until then, it is
+// sampled ahead: it is off by as much now, and stays for twice as long. `asked`: those that are sampled whatever they
+// missed; so are all where nothing may be missed. `left`: what the bone before left.
+fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, left: ptr<function, u32>) -> Chosen {
     let forced = asked | select(0u, candidates, way.allowed == 0u);
     let row = way.phase.row * gate_params.stride + first;
+    let ahead_row = way.phase.ahead_row * gate_params.stride + first;
+    let may_lead = is_ahead(way.phase);
     let last = way.last_row * gate_params.stride + first;
     let own = instance * gate_params.bones;
-    var chosen = forced;
+    var chosen = Chosen(forced, 0u);
     var rest = candidates | forced;
     while rest != 0u {
         let bit = firstTrailingBit(rest);
@@ -147,12 +157,24 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, l
             }
         }
         let at = own + first + bit;
-        let now = motion_at(table[row + bit], way.phase);
-        let missed = motion_between(now, sampled[at], whole.x) + hidden_of(whole.y);
+        let hidden = hidden_of(whole.y);
+        let share = share_of(*left, whole.y >> 8u);
+        let now = motion_at(table[row + bit], fraction_of(way.phase));
+        let missed = motion_between(now, sampled[at], whole.x) + hidden;
         let is_forced = (forced & (1u << bit)) != 0u;
-        if is_forced || missed > share_of(*left, whole.y >> 8u) {
-            chosen |= 1u << bit;
-            sampled[at] = now;
+        if is_forced || missed > share {
+            chosen.bits |= 1u << bit;
+            var stored = now;
+            if may_lead && !is_forced {
+                let later = motion_at(table[ahead_row + bit], way.phase.ahead_fraction);
+                let early = motion_between(later, now, whole.x) + hidden;
+                if early <= share {
+                    chosen.ahead |= 1u << bit;
+                    stored = later;
+                    *left -= early;
+                }
+            }
+            sampled[at] = stored;
         } else {
             *left -= missed;
         }
@@ -164,11 +186,11 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, l
 }
 
 // Up to 32 bones of one instance. BOUNDED takes words in their order: `left` is what the one before left.
-fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase, left: ptr<function, u32>) -> u32 {
+fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase, left: ptr<function, u32>) -> Chosen {
     let first = 32u * word;
     let verdict = verdict_of(phase);
     if verdict == PHASE_HIDDEN {
-        return 0u;
+        return Chosen(0u, 0u);
     }
     let record = phase.clip * (gate_params.words + 1u);
     let all = 0xffffffffu >> (32u - min(gate_params.bones - first, 32u));
@@ -178,8 +200,9 @@ fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase, left: ptr<functio
     var chosen = candidates;
     if MODE == BOUNDED {
         let way = Way(min(lod.allowed, EVERYTHING - 1u), phase, movers[record]);
-        chosen = by_motion(instance, first, candidates, forced, way, left);
-    } else if verdict == PHASE_FORCED {
+        return by_motion(instance, first, candidates, forced, way, left);
+    }
+    if verdict == PHASE_FORCED {
         chosen = all;
     } else if MODE == SKIP_PERIOD {
         chosen = by_priority(instance, first, candidates, lod.omega, phase);
@@ -188,5 +211,12 @@ fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase, left: ptr<functio
     } else if MODE == RANDOM {
         chosen = at_random(instance, first, candidates, lod.omega);
     }
-    return chosen;
+    return Chosen(chosen, 0u);
+}
+
+// Stores what is chosen of a word.
+fn store_word(instance: u32, word: u32, chosen: Chosen) {
+    let at = instance * gate_params.words + word;
+    bits[at] = chosen.bits;
+    bits[gate_params.instances * gate_params.words + at] = chosen.ahead;
 }

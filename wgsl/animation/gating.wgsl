@@ -21,6 +21,9 @@ struct Phase {
     // The way to the next row, 0 to 65536; above 20 bits what else asks for a pose.
     fraction_and_verdict: u32,
     clip: u32,
+    // Where it will stand when bones may be sampled ahead of their time; else as above.
+    ahead_row: u32,
+    ahead_fraction: u32,
 }
 
 const PHASE_FREE = 0u;
@@ -32,6 +35,13 @@ fn verdict_of(phase: Phase) -> u32 {
     return phase.fraction_and_verdict >> 20u;
 }
 
+fn is_ahead(phase: Phase) -> bool {
+    return phase.ahead_row != phase.row || phase.ahead_fraction != fraction_of(phase);
+}
+
 fn fraction_of(phase: Phase) -> u32 {
     return phase.fraction_and_verdict & 0xfffffu;
 }
+
+// A pair of instance and bone that is sampled ahead.
+const PAIR_AHEAD = 0x80000000u;

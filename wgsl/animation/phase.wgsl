@@ -12,6 +12,8 @@ struct PhaseParams {
     elapsed: f32,
     // Layers above the base.
     layers: u32,
+    // Seconds by which bones may be sampled ahead.
+    ahead: f32,
 }
 
 @group(0) @binding(0) var<uniform> phase_params: PhaseParams;
@@ -24,7 +26,7 @@ struct PhaseParams {
 // Weights of the layers above the base, layer by layer.
 @group(0) @binding(6) var<storage, read> shares: array<f32>;
 // The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; what these layers played; as
-// bits, the time inside the clip.
+// bits, the time inside the clip, and that ahead.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
 // Binding 8: the phases.
 
@@ -41,6 +43,11 @@ fn clips_above(instance: u32) -> u32 {
     return clips;
 }
 
+// From the bits of a float, 0 to 65536.
+fn whole_fraction(bits: u32) -> u32 {
+    return u32(clamp(bitcast<f32>(bits), 0.0, 1.0) * 65536.0);
+}
+
 // Its phase, with the flags of its level of detail; its history is kept.
 fn phase_of(index: u32, flags: u32) -> Phase {
     let instance = instances[index];
@@ -48,9 +55,16 @@ fn phase_of(index: u32, flags: u32) -> Phase {
     let time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * phase_params.elapsed);
     let timeline = timelines[clip.first_timeline];
     let found = place(timeline.x, timeline.y, time);
+    var later = time;
+    var ahead = found;
+    if phase_params.ahead != 0.0 {
+        let seconds = phase_params.elapsed + phase_params.ahead;
+        later = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * seconds);
+        ahead = place(timeline.x, timeline.y, later);
+    }
     let above = clips_above(index);
     let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
-    let known = vec4<u32>(base, above, bitcast<u32>(time), 0u);
+    let known = vec4<u32>(base, above, bitcast<u32>(time), bitcast<u32>(later));
     let last = history[index];
     var verdict = PHASE_FREE;
     if (flags & LOD_HIDDEN) != 0u {
@@ -64,6 +78,6 @@ fn phase_of(index: u32, flags: u32) -> Phase {
         }
         history[index] = known;
     }
-    let fraction = u32(clamp(bitcast<f32>(found.y), 0.0, 1.0) * 65536.0);
-    return Phase(clip.first_row + found.x, (verdict << 20u) | fraction, instance.clip);
+    let own = (verdict << 20u) | whole_fraction(found.y);
+    return Phase(clip.first_row + found.x, own, instance.clip, clip.first_row + ahead.x, whole_fraction(ahead.y));
 }

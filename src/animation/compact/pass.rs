@@ -21,8 +21,8 @@ pub(crate) struct CompactParams {
 /// What is to be done for a crowd in a frame. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
 pub struct Active {
-    /// A bit for each slot of each instance, [`Order::words`] words an instance: those that are sampled. Written by a
-    /// gate, or by the caller.
+    /// A bit for each slot of each instance, [`Order::words`] words an instance: those that are sampled; then likewise, those
+    /// of them that are sampled ahead. Written by a gate, or by the caller.
     pub bits: Buffer<u32>,
     /// Likewise: those that are concatenated.
     pub dirty: Buffer<u32>,
@@ -56,7 +56,7 @@ impl Active {
         let dispatches: Vec<[u32; 4]> =
             std::iter::once([0, 1, 1, 0]).chain(chains).chain(std::iter::once(places)).collect();
         Ok(Self {
-            bits: Buffer::new(gpu, "active bits", instances * words)?,
+            bits: Buffer::new(gpu, "active bits", 2 * instances * words)?,
             dirty: Buffer::new(gpu, "dirty bits", instances * words)?,
             pairs: ActivePairs::new(gpu, crowd)?,
             instances: Buffer::new(gpu, "dirty instances", instances)?,
@@ -84,7 +84,7 @@ impl Stages {
 
     /// The faster way for a crowd on this kind of adapter.
     pub fn of(gpu: &Gpu, active: &Active) -> Self {
-        if gpu.adapter().kind == "cpu" && active.bits.len() <= Self::FEW { Self::One } else { Self::Three }
+        if gpu.adapter().kind == "cpu" && active.dirty.len() <= Self::FEW { Self::One } else { Self::Three }
     }
 }
 

@@ -185,11 +185,11 @@ impl DecideJob {
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         match &self.work {
             Work::One { phase, gate, .. } => {
-                phase.set(gpu, elapsed)?;
+                phase.set(gpu, elapsed, frame.ahead)?;
                 gate.set(gpu, frame)?;
             }
             Work::Each { phase, decision, .. } => {
-                phase.set(gpu, elapsed)?;
+                phase.set(gpu, elapsed, frame.ahead)?;
                 if let Decision::Gate(job) = decision {
                     job.set(gpu, frame)?;
                 }

@@ -33,7 +33,7 @@ pub struct Gating {
     /// Written by [`crate::animation::phase::PhasePass`].
     pub phases: Buffer<Phase>,
     /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
-    /// bits, its last time inside the clip; and nothing. Zeros: no pose is stored.
+    /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
     pub history: Buffer<[u32; 4]>,
     /// For each slot of each instance, the sum of motion when it was sampled last.
     pub sampled: Buffer<u32>,
@@ -174,7 +174,7 @@ impl GateTime {
 
     /// As [`GateJob::set`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
-        let Frame { ticks, frame_ticks, frame } = *frame;
+        let Frame { ticks, frame_ticks, frame, ahead: _ } = *frame;
         self.uniform.write(gpu, &GateParams { ticks, frame_ticks, frame, ..self.params })
     }
 }

@@ -13,6 +13,7 @@ pub(crate) struct PhaseParams {
     pub instances: u32,
     pub elapsed: f32,
     pub layers: u32,
+    pub ahead: f32,
 }
 
 /// Finds phases.
@@ -89,16 +90,19 @@ impl PhaseTime {
             instances: gating.lods.len() as u32,
             elapsed: 0.0,
             layers: crowd.layers as u32 - 1,
+            ahead: 0.0,
         };
         Ok(Self { params, uniform: Uniform::new(gpu, "phase", &params)? })
     }
 
     /// As [`PhaseJob::set`].
-    pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
-        if !elapsed.is_finite() {
-            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
+    pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
+        for (field, seconds) in [("elapsed", elapsed), ("frame.ahead", ahead)] {
+            if !seconds.is_finite() {
+                return Err(InputError::new(field, seconds, "must be finite").into());
+            }
         }
-        Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ..self.params })?)
+        Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ahead, ..self.params })?)
     }
 }
 
@@ -110,12 +114,13 @@ pub struct PhaseJob {
 }
 
 impl PhaseJob {
-    /// Chooses the time of the next submission, as for [`super::super::place::PlaceJob::set`].
+    /// Chooses the time of the next submission, as for [`super::super::place::PlaceJob::set`], and by how many seconds bones
+    /// may be sampled ahead of it, as [`Frame::ahead`](crate::animation::gate::Frame::ahead).
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
-    pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
-        self.time.set(gpu, elapsed)
+    pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
+        self.time.set(gpu, elapsed, ahead)
     }
 
     /// Records the pass.

@@ -22,7 +22,7 @@ pub(crate) struct SampleParams {
 /// The pairs of instance and bone that are to be sampled, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
 pub struct ActivePairs {
-    /// `instance · bones + bone`; others are skipped.
+    /// `instance · bones + bone`, with [`PAIR_AHEAD`](super::PAIR_AHEAD) where it is sampled ahead; others are skipped.
     pub pairs: Buffer<u32>,
     /// Workgroups of 64 along x, y and z, and how many pairs: arguments of an indirect dispatch.
     pub dispatched: Buffer<u32>,

@@ -6,6 +6,7 @@ use crate::animation::compact::{Active, CompactPass, Stages};
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
 use crate::reference::animation::compact::compact;
+use crate::reference::animation::gate::Chosen;
 
 /// All bones active, and a quarter.
 ///
@@ -26,10 +27,11 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
                 .step_by(order.words())
                 .for_each(|word| *word &= u32::MAX >> unused);
             active.bits.write(gpu, &bits)?;
+            let bits = Chosen { ahead: vec![0; bits.len()], bits };
             let job = pass.prepare(gpu, &scene.crowd, &active, Stages::of(gpu, &active))?;
-            let chosen: u32 = bits.iter().map(|word| word.count_ones()).sum();
+            let chosen: u32 = bits.bits.iter().map(|word| word.count_ones()).sum();
             // Bits twice in and once out, a pair and its slot.
-            let words = (3 * bits.len() + 2 * chosen as usize) / 2;
+            let words = (3 * bits.bits.len() + 2 * chosen as usize) / 2;
             let copied = copy_of(gpu, words)?;
             let contenders = vec![
                 Contender::job(Backend::Gpu, &job),

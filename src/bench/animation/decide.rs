@@ -35,19 +35,19 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     gating.lods.write(gpu, &lods)?;
     let pass = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
     let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating, &active)?;
-    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91 };
+    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame, ELAPSED)?;
     let mut decider = Decider::new(&scene.set, &table, count);
     // In the first frame no pose is stored, and nothing can be skipped.
     gpu.run("first", |encoder| job.record(encoder))?;
     let mut decide = || {
-        let phases = decider.phases(&scene.instances, &[], &lods, ELAPSED);
+        let phases = decider.phases(&scene.instances, &[], &lods, ELAPSED, 0.0);
         compact(&order, &decider.bits(choice, &frame, &lods, &phases))
     };
     decide();
     let chosen = decide().pairs.len();
     // 12 words in and 6 out of an instance; bits twice out and once in; a pair and its slot.
-    let words = (18 * count + 3 * active.bits.len() + 2 * chosen) / 2;
+    let words = (18 * count + 3 * active.dirty.len() + 2 * chosen) / 2;
     let copied = copy_of(gpu, words)?;
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),

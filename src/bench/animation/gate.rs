@@ -39,7 +39,7 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
     gating.lods.write(gpu, &lods)?;
     gating.phases.write(gpu, &phases)?;
     let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &gating, &active)?;
-    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91 };
+    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame)?;
     // Bits out; of each bone half a word of priorities, or four of motion in and one out.
     let pairs = scene.pairs();

@@ -25,7 +25,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let found = places(&scene.set, &scene.instances, 0.4);
         scene.crowd.places.write(gpu, &found)?;
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating)?;
-        job.set(gpu, 0.4)?;
+        job.set(gpu, 0.4, 0.0)?;
         // 12 words in, 6 out.
         let copied = copy_of(gpu, 9 * count)?;
         let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 4]; count]);
@@ -33,7 +33,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Twin, || {
-                let found = phases(&scene.set, &scene.instances, &[], &lods, 0.4, &mut history);
+                let found = phases(&scene.set, &scene.instances, &[], &lods, 0.4, 0.0, &mut history);
                 drop(std::hint::black_box(found));
             }),
         ];

@@ -56,7 +56,7 @@ fn movers(table: &GateTable, phase: &Phase) -> impl Iterator<Item = usize> {
 }
 
 fn motion_now(table: &GateTable, phase: &Phase, slot: usize) -> u32 {
-    motion_at(table.motion(phase.row, slot), phase)
+    motion_at(table.motion(phase.row, slot), phase.fraction())
 }
 
 fn missed_by(table: &GateTable, phase: &Phase, slot: usize, last: u32) -> u32 {

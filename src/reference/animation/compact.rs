@@ -1,12 +1,14 @@
 //! From bits to lists: twin of `kernels/animation/compact.wgsl`.
 
-use super::gate::bits_of;
+use super::gate::{Chosen, bits_of};
 use crate::animation::concat::Order;
+use crate::animation::sample::PAIR_AHEAD;
 
 /// What is to be done in a frame.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Work {
-    /// `instance · bones + bone` of each pair that is sampled, in the order of instances and slots.
+    /// `instance · bones + bone` of each pair that is sampled, in the order of instances and slots, with [`PAIR_AHEAD`] where
+    /// it is sampled ahead.
     pub pairs: Vec<u32>,
     /// A bit for each slot of each instance: those below an active one too.
     pub dirty: Vec<u32>,
@@ -14,11 +16,13 @@ pub struct Work {
     pub instances: Vec<u32>,
 }
 
-/// The work that active bits mean; `bits` holds [`Order::words`] words an instance.
-pub fn compact(order: &Order, bits: &[u32]) -> Work {
+/// The work that active bits mean; `chosen` holds [`Order::words`] words an instance.
+pub fn compact(order: &Order, chosen: &Chosen) -> Work {
+    let Chosen { bits, ahead } = chosen;
     let bones = order.slots.len() as u32;
     let mut work = Work { dirty: Vec::with_capacity(bits.len()), ..Work::default() };
-    for (instance, words) in (0..).zip(bits.chunks_exact(order.words())) {
+    let each = bits.chunks_exact(order.words()).zip(ahead.chunks_exact(order.words()));
+    for (instance, (words, ahead)) in (0..).zip(each) {
         let first_pair = work.pairs.len();
         let mut end = 0;
         for (word, active) in words.iter().enumerate() {
@@ -31,8 +35,10 @@ pub fn compact(order: &Order, bits: &[u32]) -> Work {
                 below |= u32::from(slot < end) << bit;
             }
             work.dirty.push(below);
-            work.pairs
-                .extend(bits_of(*active).map(|bit| instance * bones + order.slots[32 * word + bit].bone));
+            work.pairs.extend(bits_of(*active).map(|bit| {
+                let pair = instance * bones + order.slots[32 * word + bit].bone;
+                if ahead[word] >> bit & 1 != 0 { pair | PAIR_AHEAD } else { pair }
+            }));
         }
         if work.pairs.len() > first_pair {
             work.instances.push(instance);

@@ -12,7 +12,7 @@ use crate::animation::gate::Frame;
 use crate::animation::gate_table::GateTable;
 use crate::animation::lod::Lod;
 use crate::animation::place::Instance;
-use crate::animation::sample::RotationPath;
+use crate::animation::sample::{PAIR_AHEAD, RotationPath};
 use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
 
 /// Instances of one skeleton, and what they keep from frame to frame.
@@ -57,13 +57,16 @@ impl<'a> Crowd<'a> {
     /// Brings the crowd to a time, and says what was done for it.
     pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let set = self.decider.set;
-        let places = places(set, &self.instances, elapsed);
-        let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed);
+        let [now, ahead] =
+            [elapsed, elapsed + frame.ahead].map(|elapsed| places(set, &self.instances, elapsed));
+        let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed, frame.ahead);
         let bits = self.decider.bits(choice, frame, &self.lods, &phases);
         let work = compact(self.order, &bits);
         let (bones, timelines) = (set.bones(), set.timelines_a_clip());
-        for pair in work.pairs.iter().map(|pair| *pair as usize) {
+        for listed in &work.pairs {
+            let pair = (listed & !PAIR_AHEAD) as usize;
             let (instance, bone) = (pair / bones, pair % bones);
+            let places = if listed & PAIR_AHEAD == 0 { &now } else { &ahead };
             let places = &places[instance * timelines..];
             self.locals[pair] = sample_pair(set, &self.instances[instance], places, bone, self.path);
         }

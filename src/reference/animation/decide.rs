@@ -1,7 +1,7 @@
 //! From the time to what is done: twin of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
 
 use super::budget::budget;
-use super::gate::gate;
+use super::gate::{Chosen, gate};
 use super::phase::phases;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::decide::Choice;
@@ -31,7 +31,7 @@ impl<'a> Decider<'a> {
         Self { set, table, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
     }
 
-    /// Where instances stand. `layers` are those above the base.
+    /// Where instances stand, as [`phases`] finds it.
     ///
     /// # Panics
     /// With fewer levels than instances.
@@ -41,19 +41,23 @@ impl<'a> Decider<'a> {
         layers: &[Layer],
         lods: &[Lod],
         elapsed: f32,
+        ahead: f32,
     ) -> Vec<Phase> {
-        phases(self.set, instances, layers, lods, elapsed, &mut self.history)
+        phases(self.set, instances, layers, lods, elapsed, ahead, &mut self.history)
     }
 
-    /// The bits of what is sampled: [`compact`](super::compact::compact) makes lists of them.
+    /// What is sampled: [`compact`](super::compact::compact) makes lists of them.
     ///
     /// # Panics
     /// With fewer levels than phases, and with a table of another kind than the choice needs.
-    pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], phases: &[Phase]) -> Vec<u32> {
+    pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], phases: &[Phase]) -> Chosen {
         let Self { table, sampled, .. } = self;
         match choice {
             Choice::Gate(mode) => gate(table, mode, frame, lods, phases, sampled),
-            Choice::Budget(most) => budget(table, most, lods, phases, sampled),
+            Choice::Budget(most) => {
+                let bits = budget(table, most, lods, phases, sampled);
+                Chosen { ahead: vec![0; bits.len()], bits }
+            }
         }
     }
 }

@@ -6,8 +6,23 @@ use crate::animation::gate_table::{Allotment, EVERYTHING, GateTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::phase::{Phase, Verdict};
 
-/// A bit for each slot of each instance: [`GateTable::words`] words an instance. `sampled` holds, for each slot of each
-/// instance, the sum of motion when it was sampled last; [`Gate::Bounded`] alone uses it.
+/// What is sampled.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Chosen {
+    /// A bit for each slot of each instance: [`GateTable::words`] words an instance.
+    pub bits: Vec<u32>,
+    /// Likewise, those of them that are sampled ahead.
+    pub ahead: Vec<u32>,
+}
+
+impl Chosen {
+    /// As `Active::bits` holds them.
+    pub fn words(&self) -> Vec<u32> {
+        [self.bits.as_slice(), &self.ahead].concat()
+    }
+}
+
+/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was sampled last; [`Gate::Bounded`] alone uses it.
 ///
 /// # Panics
 /// With fewer levels or sums than the phases need, and with a table of another kind than the gate needs.
@@ -18,8 +33,8 @@ pub fn gate(
     lods: &[Lod],
     phases: &[Phase],
     sampled: &mut [u32],
-) -> Vec<u32> {
-    let mut bits = Vec::with_capacity(phases.len() * table.words());
+) -> Chosen {
+    let mut chosen = Chosen::default();
     let mut kept = vec![0; table.bones()];
     for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
         let movers = table.record(phase.clip).1;
@@ -28,13 +43,17 @@ pub fn gate(
             let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
             let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
             let candidates = if phase.verdict() == Verdict::Blended { all } else { *movers };
-            bits.push(match (phase.verdict(), gate) {
+            let mut ahead = 0;
+            chosen.bits.push(match (phase.verdict(), gate) {
                 (Verdict::Hidden, _) => 0,
                 (verdict, Gate::Bounded) => {
                     // Sums of motion know of one clip alone.
                     let forced = if verdict.forces_motion() { all } else { 0 };
                     let sampled = &mut sampled[instance * table.bones()..];
-                    by_motion(table, &at, lod, candidates, forced, phase, sampled, &mut way)
+                    let [active, early] =
+                        by_motion(table, &at, lod, candidates, forced, phase, sampled, &mut way);
+                    ahead = early;
+                    active
                 }
                 (Verdict::Forced, _) => all,
                 (_, Gate::Off) => candidates,
@@ -45,9 +64,10 @@ pub fn gate(
                 (_, Gate::Uniform) => all_or_none(&at, lod, candidates, frame),
                 (_, Gate::Random) => at_random(&at, lod, candidates, frame),
             });
+            chosen.ahead.push(ahead);
         }
     }
-    bits
+    chosen
 }
 
 /// A word's place.
@@ -118,7 +138,8 @@ struct Way<'a> {
 }
 
 /// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
-/// One that missed more is sampled, and leaves them everything.
+/// One that missed more is sampled, and leaves them everything; or it is sampled ahead, where it moves no more than its
+/// share until then. What is sampled, and of this, what is sampled ahead.
 #[allow(clippy::too_many_arguments, reason = "the shader's own")]
 fn by_motion(
     table: &GateTable,
@@ -129,11 +150,11 @@ fn by_motion(
     phase: &Phase,
     sampled: &mut [u32],
     way: &mut Way<'_>,
-) -> u32 {
+) -> [u32; 2] {
     // So are all where nothing may be missed.
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let last_row = table.record(phase.clip).0;
-    let mut active = forced;
+    let [mut active, mut ahead] = [forced, 0];
     for bit in bits_of(candidates | forced) {
         let slot = at.first + bit;
         let [period, granted] = table.motion(last_row, slot);
@@ -144,17 +165,26 @@ fn by_motion(
                 above => way.kept[above as usize],
             };
         }
-        let now = motion_at(table.motion(phase.row, slot), phase);
+        let share = share_of(way.left, granted.share());
+        let now = motion_at(table.motion(phase.row, slot), phase.fraction());
         let missed = motion_between(now, sampled[slot], period) + granted.hidden();
-        if forced >> bit & 1 != 0 || missed > share_of(way.left, granted.share()) {
+        let is_forced = forced >> bit & 1 != 0;
+        if is_forced || missed > share {
             active |= 1 << bit;
             sampled[slot] = now;
+            let later = motion_at(table.motion(phase.ahead_row, slot), phase.ahead_fraction);
+            let early = motion_between(later, now, period) + granted.hidden();
+            if phase.is_ahead() && !is_forced && early <= share {
+                ahead |= 1 << bit;
+                sampled[slot] = later;
+                way.left -= early;
+            }
         } else {
             way.left -= missed;
         }
         way.kept[slot] = way.left;
     }
-    active
+    [active, ahead]
 }
 
 /// `value · fraction / 65536`, the fraction at most 65536.
@@ -162,9 +192,9 @@ pub fn share_of(value: u32, fraction: u32) -> u32 {
     ((u64::from(value) * u64::from(fraction)) >> 16) as u32
 }
 
-/// How far a bone has moved along its clip: `row` is the sum at the row's start and its rise to the next.
-pub fn motion_at([start, rise]: [u32; 2], phase: &Phase) -> u32 {
-    start.wrapping_add(share_of(rise, phase.fraction()))
+/// How far a bone has moved along its clip: the sum at a row's start, its rise to the next, and the way there.
+pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
+    start.wrapping_add(share_of(rise, fraction))
 }
 
 /// The shorter way between two sums: directly, or over the clip's end. `period`: that of the whole clip.

@@ -5,9 +5,10 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::phase::{BLENDED, Phase, Verdict};
-use crate::animation::place::Instance;
+use crate::animation::place::{Instance, Place};
 
-/// The phase of each instance. `layers` are those above the base; `history` is kept from frame to frame, and zero at first.
+/// The phase of each instance. `layers` are those above the base; bones may be sampled `ahead` seconds ahead; `history` is
+/// kept from frame to frame, and zero at first.
 ///
 /// # Panics
 /// With fewer places, levels or histories than instances.
@@ -17,16 +18,19 @@ pub fn phases(
     layers: &[Layer],
     lods: &[Lod],
     elapsed: f32,
+    ahead: f32,
     history: &mut [[u32; 4]],
 ) -> Vec<Phase> {
     let of = |(index, instance): (usize, &Instance)| {
         let clip = &set.clips()[instance.clip as usize];
-        let time = instance.start + instance.rate * elapsed;
-        let inside = inside_clip(instance.wrap(), clip.duration, time);
-        let place = place(set.common_times(clip), inside);
+        let inside = |elapsed: f32| {
+            inside_clip(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed)
+        };
+        let (now, later) = (inside(elapsed), inside(elapsed + ahead));
+        let [place, later_place] = [now, later].map(|time| place(set.common_times(clip), time));
         let above = clips_above(layers, index);
         let blended = if above != 0 { BLENDED } else { 0 };
-        let known = [(instance.clip + 1) | blended, above, inside.to_bits(), 0];
+        let known = [(instance.clip + 1) | blended, above, now.to_bits(), later.to_bits()];
         let last = std::mem::replace(&mut history[index], known);
         let flags = lods[index].flags;
         let verdict = if flags & Lod::HIDDEN != 0 {
@@ -39,8 +43,12 @@ pub fn phases(
         } else {
             Verdict::Free
         };
-        let fraction = (place.fraction.clamp(0.0, 1.0) * 65536.0) as u32;
-        Phase::new(clip.first_row + place.key, fraction, verdict, instance.clip)
+        let fraction = |place: Place| (place.fraction.clamp(0.0, 1.0) * 65536.0) as u32;
+        Phase {
+            ahead_row: clip.first_row + later_place.key,
+            ahead_fraction: fraction(later_place),
+            ..Phase::new(clip.first_row + place.key, fraction(place), verdict, instance.clip)
+        }
     };
     instances.iter().enumerate().map(of).collect()
 }

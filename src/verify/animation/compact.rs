@@ -6,11 +6,12 @@ use crate::animation::compact::{Active, CompactPass, Stages};
 use crate::animation::concat::Order;
 use crate::animation::crowd::Crowd;
 use crate::reference::animation::compact::{Work, compact};
+use crate::reference::animation::gate::Chosen;
 use crate::verify::Cases;
 use crate::verify::compare::{Comparison, exact};
 use crate::verify::poison::{POISON, Poisoned};
 
-/// No bit, all, every third, single ones, whole instances; more instances than the sums have threads.
+/// No bit, all, every third, single ones, whole instances; half of them ahead; more instances than the sums have threads.
 ///
 /// # Errors
 /// What the device reports.
@@ -23,9 +24,11 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut draw = Draw::new(case as u32 ^ 0xc0de);
         for kind in ["none", "all", "a third", "few", "whole instances"] {
             let bits = random_bits(&mut draw, kind, &order, count);
+            let ahead = bits.iter().map(|word| word & draw.word()).collect();
+            let chosen = Chosen { bits, ahead };
             let name = format!("{bones} bones × {count}, {kind}");
             for stages in [Stages::Three, Stages::One] {
-                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &bits, stages)?;
+                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &chosen, stages)?;
             }
         }
     }
@@ -57,13 +60,13 @@ fn add(
     name: &str,
     order: &Order,
     crowd: &Crowd,
-    bits: &[u32],
+    chosen: &Chosen,
     stages: Stages,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let mut active = Active::new(gpu, order, crowd)?;
-    active.bits.write(gpu, bits)?;
-    let dirty = Poisoned::<u32>::new(gpu, bits.len())?;
+    active.bits.write(gpu, &chosen.words())?;
+    let dirty = Poisoned::<u32>::new(gpu, chosen.bits.len())?;
     let pairs = Poisoned::<u32>::new(gpu, crowd.pairs())?;
     let instances = Poisoned::<u32>::new(gpu, crowd.len())?;
     active.dirty = dirty.buffer.clone();
@@ -71,7 +74,7 @@ fn add(
     active.instances = instances.buffer.clone();
     let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active, stages)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
-    let expected = compact(order, bits);
+    let expected = compact(order, chosen);
     let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
     let listed = padded(expected_pairs, crowd.pairs());
     let shown = padded(expected_instances, crowd.len());

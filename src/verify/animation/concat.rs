@@ -9,6 +9,7 @@ use crate::animation::skeleton::Skeleton;
 use crate::animation::transform::{Affine, Transform};
 use crate::reference::animation::compact::compact;
 use crate::reference::animation::concat::{concat, concat_dirty};
+use crate::reference::animation::gate::Chosen;
 use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
@@ -75,7 +76,8 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
         }
     }
     let mut expected = stale.clone();
-    let work = compact(&order, &bits);
+    let chosen = Chosen { ahead: vec![0; bits.len()], bits };
+    let work = compact(&order, &chosen);
     for ((dirty, locals), models) in
         work.dirty.chunks(order.words()).zip(locals.chunks(bones)).zip(expected.chunks_mut(bones))
     {
@@ -97,7 +99,7 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
         output.buffer.write(gpu, &stale)?;
         crowd.models = output.buffer.clone();
         let active = Active::new(gpu, &order, &crowd)?;
-        active.bits.write(gpu, &bits)?;
+        active.bits.write(gpu, &chosen.bits)?;
         let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active, Stages::Three)?;
         let job = ConcatPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
         gpu.run("verify", |encoder| {

@@ -96,18 +96,21 @@ impl Play<'_> {
                 instance.rate = [1.0, -1.0, 0.5][draw.word() as usize % 3];
             }
             crowd.instances.write_at(gpu, 0, &instances)?;
-            let frame = Frame { ticks: 70_000 * number as u32, frame_ticks: 1092, frame: number as u32 };
+            let ahead = [0.0, 0.25, -0.5, 0.125][number];
+            let frame =
+                Frame { ticks: 70_000 * number as u32, frame_ticks: 1092, frame: number as u32, ahead };
             job.set(gpu, &frame, elapsed)?;
             outputs.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = decider.phases(&instances, &layers, &lods, elapsed);
+            let expected = decider.phases(&instances, &layers, &lods, elapsed, ahead);
             let name = |what| format!("{}, frame {number}: {what}", self.name);
             let same = |actual: &[Phase]| exact(&phase::settled(actual, &expected), &expected);
             cases.add(name("phases"), outputs.phases.check(gpu, same)?);
             let actual = gating.phases.read_blocking(gpu)?;
-            let bits = decider.bits(choice, &frame, &lods, &actual[..count]);
+            let chosen = decider.bits(choice, &frame, &lods, &actual[..count]);
+            let bits = chosen.words();
             cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
-            let work = lists(self.order, &bits);
+            let work = lists(self.order, &chosen);
             let pairs = compact::padded(&work.pairs, crowd.pairs());
             let listed = compact::padded(&work.instances, count);
             cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs))?);
@@ -129,10 +132,10 @@ impl Play<'_> {
         gating: &mut Gating,
         active: &mut Active,
     ) -> Result<Outputs, Error> {
-        let (gpu, words) = (cases.gpu, active.bits.len());
+        let (gpu, words) = (cases.gpu, active.dirty.len());
         let outputs = Outputs {
             phases: Poisoned::new(gpu, crowd.len())?,
-            bits: Poisoned::new(gpu, words)?,
+            bits: Poisoned::new(gpu, 2 * words)?,
             dirty: Poisoned::new(gpu, words)?,
             pairs: Poisoned::new(gpu, crowd.pairs())?,
             instances: Poisoned::new(gpu, crowd.len())?,

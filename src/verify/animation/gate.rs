@@ -72,7 +72,7 @@ fn add(
     let count = crowd.len();
     let mut gating = Gating::new(gpu, table, crowd)?;
     let mut active = Active::new(gpu, order, crowd)?;
-    let output = Poisoned::<u32>::new(gpu, count * table.words())?;
+    let output = Poisoned::<u32>::new(gpu, 2 * count * table.words())?;
     active.bits = output.buffer.clone();
     let sums = Poisoned::<u32>::new(gpu, crowd.pairs())?;
     gating.sampled = sums.buffer.clone();
@@ -85,12 +85,16 @@ fn add(
         let (lods, phases) = random_state(&mut draw, set, count, number == 0);
         gating.lods.write(gpu, &lods)?;
         gating.phases.write(gpu, &phases)?;
-        let frame =
-            Frame { ticks, frame_ticks: 1092, frame: u32::MAX - 1 + number as u32 * u32::from(number < 2) };
+        let frame = Frame {
+            ticks,
+            frame_ticks: 1092,
+            frame: u32::MAX - 1 + number as u32 * u32::from(number < 2),
+            ahead: 0.0,
+        };
         job.set(gpu, &frame)?;
         output.poison(gpu)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
-        let expected = gate(table, mode, &frame, &lods, &phases, &mut sampled);
+        let expected = gate(table, mode, &frame, &lods, &phases, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
         cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
     }
@@ -123,7 +127,14 @@ pub(super) fn random_state(
             2 => Verdict::Blended,
             _ => Verdict::Free,
         };
-        Phase::new(row, fraction, verdict, clip)
+        let phase = Phase::new(row, fraction, verdict, clip);
+        let ahead_row = entry.first_row + draw.word() % (set.rows(entry) - 1);
+        match draw.word() % 3 {
+            0 => phase,
+            // A little ahead, and anywhere.
+            1 => Phase { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..phase },
+            _ => Phase { ahead_row, ahead_fraction: draw.word() % 65537, ..phase },
+        }
     };
     (0..count).map(|_| (lod(draw), phase(draw))).unzip()
 }

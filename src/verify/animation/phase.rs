@@ -62,9 +62,10 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             gating.lods.write(gpu, &lods)?;
             output.poison(gpu)?;
             let job = pass.prepare(gpu, &clips, &crowd, &gating)?;
-            job.set(gpu, elapsed)?;
+            let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];
+            job.set(gpu, elapsed, ahead)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = phases(&set, &instances, &layers, &lods, elapsed, &mut history);
+            let expected = phases(&set, &instances, &layers, &lods, elapsed, ahead, &mut history);
             let comparison =
                 output.check(gpu, |actual| compare::exact(&settled(actual, &expected), &expected))?;
             cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
@@ -78,8 +79,10 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// The phases, those whose fractions are 1 beside the expected ones replaced by them.
 pub(super) fn settled(actual: &[Phase], expected: &[Phase]) -> Vec<Phase> {
     let settle = |(actual, expected): (&Phase, &Phase)| {
-        let is_near = actual.fraction().abs_diff(expected.fraction()) <= 1;
-        let same = Phase { fraction_and_verdict: expected.fraction_and_verdict, ..*actual };
+        let is_near = actual.fraction().abs_diff(expected.fraction()) <= 1
+            && actual.ahead_fraction.abs_diff(expected.ahead_fraction) <= 1;
+        let Phase { fraction_and_verdict, ahead_fraction, .. } = *expected;
+        let same = Phase { fraction_and_verdict, ahead_fraction, ..*actual };
         if is_near && actual.verdict() == expected.verdict() { same } else { *actual }
     };
     actual.iter().zip(expected).map(settle).collect()

@@ -29,15 +29,20 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let clips = ClipBuffers::new(gpu, &set)?;
         for elapsed in [0.0, 1.375, -3.0] {
             let mut crowd = Crowd::new(gpu, &set, &instances)?;
-            let output = Poisoned::<Place>::new(gpu, crowd.places.len())?;
+            let rooms = crowd.places.len();
+            let output = Poisoned::<Place>::new(gpu, rooms)?;
             crowd.places = output.buffer.clone();
             let job = pass.prepare(gpu, &clips, &crowd)?;
             job.set(gpu, elapsed)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = places(&set, &instances, elapsed);
+            let mut expected = places(&set, &instances, elapsed);
+            let used = expected.len();
+            // Nothing is looked up ahead.
+            expected.resize(rooms, Place::default());
             let room = set.timelines_a_clip();
-            let is_used =
-                |at: usize| at % room < set.clips()[instances[at / room].clip as usize].timelines as usize;
+            let is_used = |at: usize| {
+                at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
+            };
             let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
             cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
         }
@@ -46,7 +51,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     of_a_list(cases, &pass)
 }
 
-/// Instances of a list, with their layers, at the times that gates saw; the places of others stay untouched.
+/// Instances of a list, with their layers, at the times that gates saw, and where they will stand ahead; the places of
+/// others stay untouched.
 fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
@@ -54,7 +60,8 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
         let layer = Layer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
         let layers = vec![layer; case % 3];
         let mut crowd = Crowd::layered(gpu, &set, &base, &layers)?;
-        let output = Poisoned::<Place>::new(gpu, crowd.places.len())?;
+        let rooms = crowd.places.len();
+        let output = Poisoned::<Place>::new(gpu, rooms)?;
         crowd.places = output.buffer.clone();
         let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
         let model_clips = random_clips(case as u32, &skeleton, 3)?;
@@ -65,7 +72,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
         let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
         active.instances.write(gpu, &listed)?;
         let room = set.timelines_a_clip();
-        let threads = listed.len() * room * (1 + layers.len());
+        let threads = listed.len() * room * (2 + layers.len());
         let mut dispatches = active.dispatches.read_blocking(gpu)?;
         dispatches[0][3] = listed.len() as u32;
         *dispatches.last_mut().expect("two") = [threads.div_ceil(64) as u32, 1, 1, 0];
@@ -74,19 +81,31 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
             .iter()
             .map(|instance| inside_clip(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25))
             .collect();
-        gating.history.write(gpu, &seen.iter().map(|time| [1, 0, time.to_bits(), 0]).collect::<Vec<_>>())?;
+        // Every second listed instance will be elsewhere when it is sampled ahead.
+        let ahead: Vec<f32> = (seen.iter().enumerate())
+            .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
+            .collect();
+        let history = seen.iter().zip(&ahead).map(|(now, later)| [1, 0, now.to_bits(), later.to_bits()]);
+        gating.history.write(gpu, &history.collect::<Vec<_>>())?;
         let job = pass.prepare_active(gpu, &clips, &crowd, &gating, &active)?;
         job.set(gpu, 0.5)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let all = all_instances(&base, &layers);
         let mut expected = places(&set, &all, 0.5);
-        for (instance, time) in listed.iter().map(|at| *at as usize).map(|at| (at, seen[at])) {
-            let seen = Instance::new(base[instance].clip, Wrap::Clamp, time, 0.0);
-            expected[instance * room..][..room].copy_from_slice(&places(&set, &[seen], 0.0));
+        let first_ahead = expected.len();
+        expected.resize(rooms, Place::default());
+        for instance in listed.iter().map(|at| *at as usize) {
+            for (first, time) in [(0, seen[instance]), (first_ahead, ahead[instance])] {
+                let seen = Instance::new(base[instance].clip, Wrap::Clamp, time, 0.0);
+                expected[first + instance * room..][..room].copy_from_slice(&places(&set, &[seen], 0.0));
+            }
         }
         let is_used = |at: usize| {
-            let is_listed = (at / room % count).is_multiple_of(3);
-            is_listed && at % room < set.clips()[all[at / room].clip as usize].timelines as usize
+            let instance = at / room % count;
+            let playing = if at < first_ahead { &all[at / room] } else { &base[instance] };
+            let is_looked_up = at < first_ahead || seen[instance] != ahead[instance];
+            let is_listed = instance.is_multiple_of(3) && is_looked_up;
+            is_listed && at % room < set.clips()[playing.clip as usize].timelines as usize
         };
         let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
         let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;

@@ -7,7 +7,9 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local, packed};
 use crate::animation::layers::{Layer, MOST_LAYERS, all_instances};
 use crate::animation::place::{Instance, Place};
-use crate::animation::sample::{ActivePairs, LAYER_GROWTH, RotationPath, SAMPLE_BOUND, SamplePass};
+use crate::animation::sample::{
+    ActivePairs, LAYER_GROWTH, PAIR_AHEAD, RotationPath, SAMPLE_BOUND, SamplePass,
+};
 use crate::gpu::Gpu;
 use crate::reference::animation::place::places;
 use crate::reference::animation::sample::{blend, sample_layers, sample_set};
@@ -126,6 +128,8 @@ struct Bench<'a> {
     crowd: Crowd,
     output: Poisoned<Local>,
     expected: Vec<Local>,
+    /// Where the base stands ahead.
+    ahead: Vec<Local>,
     torn: Vec<bool>,
     bound: f32,
 }
@@ -140,42 +144,55 @@ impl<'a> Bench<'a> {
     ) -> Result<Self, Error> {
         let places: Vec<Place> = places(set, &all_instances(base, layers), ELAPSED);
         let mut crowd = Crowd::layered(gpu, set, base, layers)?;
-        crowd.places.write(gpu, &places)?;
+        // Layers are sampled where they are.
+        let later = self::places(set, base, ELAPSED + 0.3);
+        let mut places_ahead = places.clone();
+        places_ahead[..later.len()].copy_from_slice(&later);
+        crowd.places.write(gpu, &[places.as_slice(), &later].concat())?;
         let output = Poisoned::new(gpu, crowd.pairs())?;
         crowd.locals = output.buffer.clone();
         let is_layered = !layers.is_empty();
         let pass = if is_layered { SamplePass::layered(gpu, path)? } else { SamplePass::new(gpu, path)? };
         let bound = SAMPLE_BOUND * LAYER_GROWTH.powi(layers.len() as i32);
-        let poses = sample_layers(set, base, layers, &places, path);
-        let (clips, expected) = (ClipBuffers::new(gpu, set)?, poses.iter().map(packed).collect());
+        let poses = |places: &[Place]| {
+            sample_layers(set, base, layers, places, path).iter().map(packed).collect::<Vec<_>>()
+        };
+        let (clips, expected, ahead) = (ClipBuffers::new(gpu, set)?, poses(&places), poses(&places_ahead));
         // Both quaternions are off by the bound at most.
-        let torn = torn(set, base, layers, &places, path, 4.0 * bound);
-        Ok(Self { gpu, pass, clips, crowd, output, expected, torn, bound })
+        let [now, later] =
+            [&places, &places_ahead].map(|places| torn(set, base, layers, places, path, 4.0 * bound));
+        let torn = now.iter().zip(later).map(|(now, later)| *now || later).collect();
+        Ok(Self { gpu, pass, clips, crowd, output, expected, ahead, torn, bound })
     }
 
     fn all(&self) -> Result<compare::Comparison, Error> {
         self.output.poison(self.gpu)?;
         let job = self.pass.prepare(self.gpu, &self.clips, &self.crowd)?;
         self.gpu.run("verify", |encoder| job.record(encoder))?;
-        self.compare(|_| true)
+        self.compare(|pair| Some(&self.expected[pair]))
     }
 
     fn some(&self, chosen: &[u32]) -> Result<compare::Comparison, Error> {
         self.output.poison(self.gpu)?;
         let active = ActivePairs::new(self.gpu, &self.crowd)?;
-        active.write(self.gpu, chosen)?;
+        let is_ahead = |pair: usize| pair % 7 % 2 == 1;
+        let flagged = |pair: &u32| if is_ahead(*pair as usize) { pair | PAIR_AHEAD } else { *pair };
+        active.write(self.gpu, &chosen.iter().map(flagged).collect::<Vec<_>>())?;
         let job = self.pass.prepare_active(self.gpu, &self.clips, &self.crowd, &active)?;
         self.gpu.run("verify", |encoder| job.record(encoder))?;
         let mut is_chosen = vec![false; self.expected.len()];
         chosen.iter().for_each(|pair| is_chosen[*pair as usize] = true);
-        self.compare(|pair| is_chosen[pair])
+        let of = |pair: usize| if is_ahead(pair) { &self.ahead[pair] } else { &self.expected[pair] };
+        self.compare(|pair| is_chosen[pair].then(|| of(pair)))
     }
 
-    fn compare(&self, is_written: impl Fn(usize) -> bool) -> Result<compare::Comparison, Error> {
+    fn compare<'b>(
+        &'b self,
+        written: impl Fn(usize) -> Option<&'b Local>,
+    ) -> Result<compare::Comparison, Error> {
         let poison = [[f32::from_bits(POISON); 4]; 3];
-        let expected: Vec<Local> = (self.expected.iter().enumerate())
-            .map(|(pair, local)| if is_written(pair) { *local } else { poison })
-            .collect();
+        let expected: Vec<Local> =
+            (0..self.expected.len()).map(|pair| written(pair).copied().unwrap_or(poison)).collect();
         let largest =
             self.expected.as_flattened().as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
         let torn = self.torn.iter().filter(|torn| **torn).count();

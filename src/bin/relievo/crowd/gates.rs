@@ -85,5 +85,6 @@ pub fn frame(number: u32, rate: f64) -> (Frame, f32) {
     let seconds = |number: u32| f64::from(number) / rate;
     let ticks = |number: u32| (seconds(number) * f64::from(TICKS)).round() as u64 as u32;
     let frame_ticks = ticks(number).wrapping_sub(number.checked_sub(1).map_or(0, ticks));
-    (Frame { ticks: ticks(number), frame_ticks, frame: number }, seconds(number) as f32)
+    let ahead = rate.recip() as f32;
+    (Frame { ticks: ticks(number), frame_ticks, frame: number, ahead }, seconds(number) as f32)
 }
