@@ -59,6 +59,6 @@ pub struct Frame {
     /// Frames so far.
     pub frame: u32,
     /// Seconds by which [`Gate::Bounded`] may sample a bone ahead of its time: a bone that is off by as much before as after
-    /// stays twice as long. A frame's length saves most; 0 never does.
+    /// stays twice as long. About a frame's length; 0 for never.
     pub ahead: f32,
 }

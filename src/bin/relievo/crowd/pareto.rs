@@ -111,7 +111,7 @@ fn parameters(mode: Mode) -> Vec<f64> {
             all
         }
         Mode::SkipPeriod => (1..=14).rev().map(|half| 0.5_f64.powf(f64::from(half) / 2.0 - 0.4)).collect(),
-        Mode::Bounded => (-24..=32).map(|quarter| 2.0_f64.powf(f64::from(quarter) / 4.0)).collect(),
+        Mode::Bounded => (-40..=32).map(|quarter| 2.0_f64.powf(f64::from(quarter) / 4.0)).collect(),
     }
 }
 
