@@ -12,11 +12,11 @@ use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features,
 use crate::terrain::fields::Fields;
 
 /// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
-const CELL_ROWS_SOFTWARE: u32 = 32;
+const CELL_ROWS_SOFTWARE: u32 = 43;
 const CELL_ROWS_HARDWARE: u32 = 2;
 
-/// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in four threads.
-const CELL_ROWS_TWO_LEVELS: u32 = 17;
+/// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in two threads, the 33 of 129 in one.
+const CELL_ROWS_TWO_LEVELS: u32 = 33;
 
 /// `Level` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
