@@ -190,7 +190,7 @@ impl<'a> Bench<'a> {
 
 /// Every other round goes backwards, so that whoever follows whom, and a machine that grows busier, favours nobody.
 fn order(round: usize, contenders: usize) -> impl Iterator<Item = usize> {
-    (0..contenders).map(move |index| if round % 2 == 0 { index } else { contenders - 1 - index })
+    (0..contenders).map(move |index| if round.is_multiple_of(2) { index } else { contenders - 1 - index })
 }
 
 /// Repetitions a turn, given what one took; of the host, nothing.
