@@ -17,6 +17,7 @@
 //! - `verify`: every kernel against its twin, with the bound it must keep. What `relievo verify` runs.
 //! - `bench`: every kernel beside its twin and a copy of the same bytes. What `relievo bench` runs.
 //! - `baseline`: the kernels that others are measured against.
+//! - [`srgb`]: bytes and linear light.
 //! - [`error`]: bad input by field, value and bound.
 //!
 //! # Axes and units
@@ -61,6 +62,7 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;
 pub mod skinning;
+pub mod srgb;
 pub mod surface;
 pub mod terrain;
 #[cfg(feature = "gpu")]

@@ -6,7 +6,7 @@
 import package::wgsl::hash::threefry2x32;
 import package::wgsl::terrain::fixed::{HEIGHT_LIMIT, mean_of_sums};
 import package::wgsl::terrain::offset::height_offset;
-import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_word, injected};
+import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_at, feature_bits, injected_lanes};
 
 // Rows of coarse cells a thread: many for a software adapter, few for hardware.
 override CELL_ROWS: u32 = 4u;
@@ -112,14 +112,17 @@ fn coarse_origin(origin: vec2<i32>) -> vec2<i32> {
 
 fn subdivide(place: Place, cell: vec2<i32>) {
     let columns = columns_of(place, cell.x);
+    let above = cell - vec2<i32>(0, 1);
     var here = coarse_row(place, cell);
-    var upper = diamonds(place, columns, cell - vec2<i32>(0, 1), coarse_row(place, cell - vec2<i32>(0, 1)), here);
+    var upper = diamonds(place, columns, above, coarse_row(place, above), here);
+    upper = injected_diamonds(place, above, odd_features(place, above), upper);
     let last = min(cell.y + i32(CELL_ROWS), (i32(level.fine_width) - 1 + place.shift.y) / 2 + 1);
     for (var y = cell.y; y < last; y++) {
         let at = vec2<i32>(cell.x, y);
         let below = coarse_row(place, at + vec2<i32>(0, 1));
-        let lower = diamonds(place, columns, at, here, below);
-        write_rows(place, columns, at, here, below, upper.inner, lower);
+        let features = odd_features(place, at);
+        let lower = injected_diamonds(place, at, features, diamonds(place, columns, at, here, below));
+        write_rows(place, columns, at, here, below, upper.inner, lower, features);
         here = below;
         upper = lower;
     }
@@ -139,7 +142,7 @@ fn diamonds(place: Place, columns: Columns, cell: vec2<i32>, above: CoarseRow, b
     let at = fine_at(place, cell) + vec2<i32>(-1, 1);
     let mean = mean_of_sums(vec4<i32>(above.left + below.left), vec4<i32>(above.inner.x + below.inner.x)).x;
     return DiamondRow(
-        drawn_one(place, columns.odd.x - 2u * place.spacing, at, mean),
+        mean + offsets(place, vec4<u32>(columns.odd.x - 2u * place.spacing), world_y(place, at)).x,
         inner_diamonds(place, columns, cell, above, below));
 }
 
@@ -169,16 +172,20 @@ fn squares_below(
     return drawn(place, columns.even, at, mean_of_sums(here.inner + below.inner, before + lower.inner));
 }
 
-// Writes the two fine rows of four cells between two coarse rows.
+// Writes the two fine rows of four cells between two coarse rows. What is known goes out first, between draws:
+// processors wait for a row's first store, and do so in the shade of arithmetic.
 fn write_rows(
     place: Place, columns: Columns, cell: vec2<i32>, here: CoarseRow, below: CoarseRow,
-    upper: vec4<i32>, lower: DiamondRow,
+    upper: vec4<i32>, lower: DiamondRow, odd_features: u32,
 ) {
     let at = fine_at(place, cell);
-    let beside = held(squares_beside(place, columns, cell, here, upper, lower.inner));
-    let under = held(squares_below(place, columns, cell, here, below, lower));
-    store_row(place, at, here.inner, beside);
-    store_row(place, at + vec2<i32>(0, 1), under, lower.inner);
+    store_four(place, at, here.inner);
+    let beside = squares_beside(place, columns, cell, here, upper, lower.inner);
+    store_four(place, at + vec2<i32>(1), lower.inner);
+    let under = squares_below(place, columns, cell, here, below, lower);
+    let squares = injected_squares(place, at, odd_features, Squares(beside, under));
+    store_four(place, at + vec2<i32>(1, 0), held(squares.beside));
+    store_four(place, at + vec2<i32>(0, 1), held(squares.under));
 }
 
 // The heights themselves: none is less. lavapipe stores lane by lane, and would add up what is only stored once
@@ -241,10 +248,10 @@ fn subdivide_twice(place: Place, middle: Place, cell: vec2<i32>) {
         for (var half = 0; half < 2; half++) {
             let lower = fine_diamonds(place, first, second, fine_cell, current, next);
             write_rows(
-                place, first, fine_cell, first_four(current), first_four(next), upper.first.inner, lower.first);
+                place, first, fine_cell, first_four(current), first_four(next), upper.first.inner, lower.first, 0u);
             write_rows(
                 place, second, fine_cell + vec2<i32>(4, 0), second_four(current), second_four(next),
-                upper.second, DiamondRow(lower.first.inner.w, lower.second));
+                upper.second, DiamondRow(lower.first.inner.w, lower.second), 0u);
             fine_cell.y++;
             upper = lower;
             current = next;
@@ -311,22 +318,9 @@ fn fine_diamonds(
         inner_diamonds(place, second, cell + vec2<i32>(4, 0), second_four(above), second_four(below)));
 }
 
-// Adds the random offset to four means at fine samples `at`, `at` + (2, 0), … whose world coordinates are x
-// and injects features.
+// Adds the random offset to four means at fine samples `at`, `at` + (2, 0), … whose world coordinates are x.
 fn drawn(place: Place, x: vec4<u32>, at: vec2<i32>, means: vec4<i32>) -> vec4<i32> {
-    let heights = means + offsets(place, x, world_y(place, at));
-    if FEATURES == FEATURES_NONE {
-        return heights;
-    }
-    return injected_four(level.fine_features, place.window, at, 2, heights);
-}
-
-fn drawn_one(place: Place, x: u32, at: vec2<i32>, mean: i32) -> i32 {
-    let height = mean + offsets(place, vec4<u32>(x), world_y(place, at)).x;
-    if FEATURES == FEATURES_NONE {
-        return height;
-    }
-    return injected(level.fine_features, place.window, at, height);
+    return means + offsets(place, x, world_y(place, at));
 }
 
 fn offsets(place: Place, x: vec4<u32>, y: vec4<u32>) -> vec4<i32> {
@@ -361,39 +355,74 @@ fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
     if FEATURES == FEATURES_NONE {
         return heights;
     }
-    return injected_four(level.base_features, place.window, cell, 1, heights);
-}
-
-// Injects features at four points `step` apart.
-fn injected_four(grid: FeatureGrid, window: u32, at: vec2<i32>, step: i32, heights: vec4<i32>) -> vec4<i32> {
-    // The words of the first and the last cover all four; mostly there is nothing in them.
-    let first = feature_word(grid, window, at);
-    let last = feature_word(grid, window, at + vec2<i32>(3 * step, 0));
-    if (first.mask | last.mask) == 0u {
-        return heights;
-    }
-    // A loop, since some drivers' compilers choke on four copies at every call.
     var result = heights;
-    for (var lane = 0; lane < 4; lane++) {
-        let point = injected(grid, window, at + vec2<i32>(lane * step, 0), heights[lane]);
-        result = select(result, vec4<i32>(point), LANES == vec4<i32>(lane));
+    for (var rest = feature_bits(level.base_features, place.window, cell) & 15u; rest != 0u; rest &= rest - 1u) {
+        let column = i32(countTrailingZeros(rest));
+        let feature = feature_at(level.base_features, place.window, cell + vec2<i32>(column, 0));
+        result = injected_lanes(feature, LANES == vec4<i32>(column), result);
     }
     return result;
 }
 
-fn store_row(place: Place, at: vec2<i32>, even: vec4<i32>, odd: vec4<i32>) {
+// Which samples below a row of coarse points have features, from the one left of the first on: the centres of cells
+// -1 .. 3, and those between them.
+fn odd_features(place: Place, cell: vec2<i32>) -> u32 {
+    if FEATURES == FEATURES_NONE {
+        return 0u;
+    }
+    return feature_bits(level.fine_features, place.window, fine_at(place, cell) + vec2<i32>(-1, 1)) & 0x1ffu;
+}
+
+fn injected_diamonds(place: Place, cell: vec2<i32>, odd_features: u32, computed: DiamondRow) -> DiamondRow {
+    if FEATURES == FEATURES_NONE {
+        return computed;
+    }
+    var result = computed;
+    let at = fine_at(place, cell) + vec2<i32>(-1, 1);
+    // One loop for all: each costs lavapipe a turn, also where there is nothing to inject.
+    for (var rest = odd_features & 0x155u; rest != 0u; rest &= rest - 1u) {
+        let column = i32(countTrailingZeros(rest));
+        let feature = feature_at(level.fine_features, place.window, at + vec2<i32>(column, 0));
+        result.left = injected_lanes(feature, vec4<bool>(column == 0), vec4<i32>(result.left)).x;
+        result.inner = injected_lanes(feature, 2 * LANES + vec4<i32>(2) == vec4<i32>(column), result.inner);
+    }
+    return result;
+}
+
+// The samples right of four coarse points, and those below.
+struct Squares {
+    beside: vec4<i32>,
+    under: vec4<i32>,
+}
+
+fn injected_squares(place: Place, at: vec2<i32>, odd_features: u32, computed: Squares) -> Squares {
+    if FEATURES == FEATURES_NONE {
+        return computed;
+    }
+    var result = computed;
+    // Odd columns lie in the coarse points' row, even ones in the row below.
+    let even_features = feature_bits(level.fine_features, place.window, at);
+    for (var rest = (even_features & 0xaau) | ((odd_features >> 1u) & 0x55u); rest != 0u; rest &= rest - 1u) {
+        let column = i32(countTrailingZeros(rest));
+        let below = 1 - column % 2;
+        let feature = feature_at(level.fine_features, place.window, at + vec2<i32>(column, below));
+        let lanes = 2 * LANES + vec4<i32>(1 - below) == vec4<i32>(column);
+        result.beside = injected_lanes(feature, lanes & vec4<bool>(below == 0), result.beside);
+        result.under = injected_lanes(feature, lanes & vec4<bool>(below == 1), result.under);
+    }
+    return result;
+}
+
+// Stores every other sample of a row.
+fn store_four(place: Place, at: vec2<i32>, heights: vec4<i32>) {
     let row = place.window * level.fine_points + u32(at.y) * level.fine_width;
     // A row outside the window has no columns.
     let width = select(0u, level.fine_width, u32(at.y) < level.fine_width);
     let x = vec4<u32>(vec4<i32>(at.x) + 2 * LANES);
-    store(row, width, x.x, even.x);
-    store(row, width, x.x + 1u, odd.x);
-    store(row, width, x.y, even.y);
-    store(row, width, x.y + 1u, odd.y);
-    store(row, width, x.z, even.z);
-    store(row, width, x.z + 1u, odd.z);
-    store(row, width, x.w, even.w);
-    store(row, width, x.w + 1u, odd.w);
+    store(row, width, x.x, heights.x);
+    store(row, width, x.y, heights.y);
+    store(row, width, x.z, heights.z);
+    store(row, width, x.w, heights.w);
 }
 
 fn store(row: u32, width: u32, x: u32, height: i32) {

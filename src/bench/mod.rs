@@ -109,6 +109,9 @@ pub struct Row {
     pub min: f64,
     /// The longest.
     pub max: f64,
+    /// Time beside the kernel's (`gpu`): the median over rounds in which both took their turn. None for the kernel.
+    #[serde(skip)]
+    pub beside_kernel: Option<f64>,
     /// Items computed.
     pub items: u64,
     /// What an item is.

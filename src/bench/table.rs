@@ -1,6 +1,6 @@
 //! Rows as a table for people.
 
-use super::{Backend, Row};
+use super::Row;
 use crate::gpu::TimedBy;
 
 /// The rows, with nanoseconds an item, items a second, bytes a second, how a kernel compares with its case's other rows, and the
@@ -12,11 +12,7 @@ pub fn table(rows: &[Row]) -> String {
     );
     for row in rows {
         let seconds = row.nanoseconds * 1e-9;
-        let kernel = rows
-            .iter()
-            .find(|other| other.name == row.name && other.case == row.case && other.backend == Backend::Gpu);
-        let ratio = (kernel.filter(|_| row.backend != Backend::Gpu))
-            .map_or(String::new(), |kernel| format!("{:.2}×", row.nanoseconds / kernel.nanoseconds));
+        let ratio = row.beside_kernel.map_or(String::new(), |ratio| format!("{ratio:.2}×"));
         text += &format!(
             "{:<22} {:<34} {:<13} {:>11} {:>11} {:>9.2} {:>11.1} {:>11.2} {:>8}  {}\n",
             row.name,
@@ -49,6 +45,7 @@ fn duration(nanoseconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::Backend;
 
     #[test]
     fn rows_say_which_clock_timed_them() {
@@ -59,6 +56,7 @@ mod tests {
             nanoseconds: 2e6,
             min: 1e6,
             max: 3e6,
+            beside_kernel: (backend != Backend::Gpu).then_some(0.5),
             items: 1089,
             item: "point",
             bytes: 4356,
@@ -71,5 +69,6 @@ mod tests {
         // 2 ms of 1,089 points.
         let items: Vec<_> = text.lines().skip(1).filter_map(|line| line.split_whitespace().nth(7)).collect();
         assert_eq!(items, ["1836.55"; 2], "{text}");
+        assert_eq!(text.matches("0.50×").count(), 1, "{text}");
     }
 }

@@ -1,10 +1,12 @@
 //! Typed device buffers and their readback.
 
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use encase::internal::WriteInto;
 use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
 
+use super::memory::Held;
 use super::readback::Readback;
 use super::{Gpu, GpuError};
 use crate::InputError;
@@ -14,6 +16,7 @@ use crate::InputError;
 #[derive(Debug, Clone)]
 pub struct Buffer<T> {
     raw: wgpu::Buffer,
+    _held: Arc<Held>,
     len: usize,
     element: PhantomData<T>,
 }
@@ -45,7 +48,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
             gpu.device().create_buffer(&descriptor)
         })?;
-        Ok(Self { raw, len, element: PhantomData })
+        Ok(Self { raw, _held: Arc::new(gpu.memory().hold(size)), len, element: PhantomData })
     }
 
     /// A buffer that holds `data`.

@@ -11,6 +11,7 @@ mod job;
 mod kernel;
 #[cfg(test)]
 pub(crate) mod layout;
+mod memory;
 mod readback;
 pub mod shaders;
 mod shared;
@@ -25,6 +26,7 @@ pub use buffer::{Buffer, Uniform, storage};
 pub use error::GpuError;
 pub use job::{INVOCATIONS_A_SUBMISSION, IndirectJob, Job, Step, compute_pass};
 pub use kernel::{Group, Kernel, Resource, bind, layouts, module, pipeline_layout, rows_of_workgroups};
+pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};
 
 use shared::Shared;
@@ -47,6 +49,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     summary: AdapterSummary,
     heard: Arc<Mutex<Heard>>,
+    memory: Arc<Memory>,
     pub(crate) kernels: Arc<Shared<Kernel>>,
     pub(crate) render_pipelines: Arc<Shared<RenderPipeline>>,
 }
@@ -95,8 +98,8 @@ impl Gpu {
     }
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, summary: AdapterSummary) -> Self {
-        let (heard, kernels, render_pipelines) = Default::default();
-        Self { device, queue, summary, heard, kernels, render_pipelines }
+        let (heard, memory, kernels, render_pipelines) = Default::default();
+        Self { device, queue, summary, heard, memory, kernels, render_pipelines }
     }
 
     /// The wgpu device.
@@ -112,6 +115,11 @@ impl Gpu {
     /// Name, kind and driver of the adapter.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.summary
+    }
+
+    /// What relievo's storage buffers hold on this device.
+    pub fn memory(&self) -> &Arc<Memory> {
+        &self.memory
     }
 
     /// The largest storage binding in bytes: at least WebGPU's default of 128 MiB.

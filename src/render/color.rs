@@ -1,7 +1,7 @@
 //! Colour textures with mip levels.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::reference::terrain::blend::linear;
+use crate::srgb::linear;
 use crate::surface::mips::Mips;
 
 /// A filtered texture.

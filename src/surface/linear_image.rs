@@ -1,6 +1,6 @@
 //! Images of linear light: what is averaged before it is encoded as sRGB.
 
-use crate::reference::terrain::blend::srgb_byte;
+use crate::srgb;
 
 /// Linear red, green and blue, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ impl LinearImage {
     pub fn encoded(&self) -> image::RgbaImage {
         let [width, height] = self.size;
         image::RgbaImage::from_fn(width, height, |x, y| {
-            let [r, g, b] = self.pixels[y as usize * width as usize + x as usize].map(srgb_byte);
+            let [r, g, b] = self.pixels[y as usize * width as usize + x as usize].map(srgb::byte);
             image::Rgba([r, g, b, 255])
         })
     }

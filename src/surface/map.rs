@@ -72,18 +72,17 @@ impl HeightMap {
         Self::from_samples(path, image.width(), image.height(), image.into_luma16().into_raw())
     }
 
-    /// The alpha channel of an image file.
+    /// The alpha channel of an image file, and the image.
     ///
     /// # Errors
     /// As [`HeightMap::from_file`], and [`Error::File`] for an image without alpha.
-    pub fn from_alpha(path: &Path) -> Result<Self, Error> {
+    pub fn from_alpha(path: &Path) -> Result<(Self, image::DynamicImage), Error> {
         let image = open(path)?;
         if !image.color().has_alpha() {
             return Err(Error::file(path, "has no alpha channel to take heights from"));
         }
-        let (width, height) = (image.width(), image.height());
-        let alpha = image.into_rgba16().pixels().map(|pixel| pixel.0[3]).collect();
-        Self::from_samples(path, width, height, alpha)
+        let alpha = image.to_rgba16().pixels().map(|pixel| pixel.0[3]).collect();
+        Ok((Self::from_samples(path, image.width(), image.height(), alpha)?, image))
     }
 
     fn from_samples(path: &Path, width: u32, height: u32, samples: Vec<u16>) -> Result<Self, Error> {

@@ -2,7 +2,7 @@
 
 use image::RgbaImage;
 
-use crate::reference::terrain::blend::{linear, srgb_byte};
+use crate::srgb;
 
 /// An image with all its mip levels, each texel the mean of those it covers.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ impl Mips {
     }
 
     fn new(image: RgbaImage, is_srgb: bool) -> Self {
-        let light: Vec<f32> = (0..=255).map(linear).collect();
+        let light: Vec<f32> = (0..=255).map(srgb::linear).collect();
         let mut levels = vec![image];
         while let Some(next) = levels.last().and_then(|level| halved(level, is_srgb, &light)) {
             levels.push(next);
@@ -47,7 +47,7 @@ fn halved(image: &RgbaImage, is_srgb: bool, light: &[f32]) -> Option<RgbaImage> 
         let channel = |channel: usize| {
             if is_srgb && channel < 3 {
                 let sum: f32 = four.iter().map(|texel| light[usize::from(texel.0[channel])]).sum();
-                return srgb_byte(sum / 4.0);
+                return srgb::byte(sum / 4.0);
             }
             let sum: u32 = four.iter().map(|texel| u32::from(texel.0[channel])).sum();
             ((sum + 2) / 4) as u8

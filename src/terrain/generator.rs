@@ -1,15 +1,18 @@
 //! Whole fields on the device: the kernels in the order of a recipe. The GPU side of
 //! [`crate::reference::terrain::field`].
+//!
+//! At no time do its buffers hold more than two `i32` for a sample of the enlarged windows, results included: each stage
+//! drops what the next does not read. An index of features holds two bits a sample and level beside that.
 
 use crate::Error;
-use crate::gpu::{Gpu, GpuError, INVOCATIONS_A_SUBMISSION};
+use crate::gpu::{Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::DespikePass;
 use crate::terrain::features::{FeatureIndex, Lattice};
 use crate::terrain::fields::Fields;
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch, Window};
-use crate::terrain::pad::{PadPass, surrounds};
+use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::ThermalPass;
 use crate::terrain::wrap::{WrapJob, WrapPass};
@@ -51,7 +54,8 @@ impl Generator {
     }
 
     /// The final heights of `patches` with `margin` samples around each, in parts that fit one storage binding;
-    /// `progress` hears of the patches done. Waits for the device.
+    /// `progress` hears of the patches done. Waits for the device. At most two `i32` for a sample of the enlarged
+    /// windows are allocated at once, features aside.
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -64,6 +68,9 @@ impl Generator {
     ) -> Result<Vec<Fields>, Error> {
         self.recipe.validate(patches, margin)?;
         let reach = self.recipe.reach(margin);
+        if patches.is_empty() {
+            return Ok(Vec::new());
+        }
         if let Border::Blend(_) = self.recipe.config.border {
             // Neighbours must lie in one buffer.
             let fields = self.by_themselves(gpu, patches, reach)?;
@@ -89,7 +96,7 @@ impl Generator {
         let count = patches.len() as u32;
         let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * reach, count)?;
         debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, reach));
-        let scratch = HeightScratch::new(gpu, config, count, reach)?;
+        let scratch = HeightScratch::new(gpu, &self.height, config, count, reach)?;
         let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, reach })).sum();
         let job = self.height.prepare(gpu, config, [count, reach], capacity, &windows.heights, &scratch)?;
         job.set(gpu, patches, features)?;
@@ -113,11 +120,42 @@ impl Generator {
     }
 
     fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Vec<Fields>, Error> {
+        let config = &self.recipe.config;
+        let size = config.patch_size;
+        let alone = self.alone(gpu, patches)?;
+        let mut sizes = part_sizes(patches.len(), Fields::most(gpu, size + 2 * reach));
+        if reach == 0 && sizes.len() <= 1 {
+            return Ok(vec![alone]);
+        }
+        let all = surrounds(config, patches);
+        let injected = self.recipe.injected(patches, reach);
+        // The last part is what is left.
+        sizes.pop();
+        let windows = |around: &[Surround]| -> Result<Fields, Error> {
+            let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, around.len() as u32)?;
+            let job = self.pad.prepare(gpu, [size, reach], around, &alone.heights, &windows.heights)?;
+            gpu.run("terrain/pad", |encoder| job.record(encoder))?;
+            Ok(windows)
+        };
+        let (mut parts, mut start) = (Vec::new(), 0);
+        for size in sizes {
+            let part = start..start + size;
+            parts.push(self.finish(gpu, reach, &injected[part.clone()], windows(&all[part])?)?);
+            start += size;
+        }
+        let last = windows(&all[start..])?;
+        // Nobody reads them any more, and the last windows need the room.
+        drop(alone);
+        parts.push(self.finish(gpu, reach, &injected[start..], last)?);
+        Ok(parts)
+    }
+
+    /// Patches without their surroundings, with the transitions of `blend`.
+    fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Fields, Error> {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         let (size, count) = (config.patch_size, patches.len() as u32);
         let fields = Fields::new(gpu, "terrain/wrap (all patches that blend)", size, count)?;
-        let scratch =
-            crate::gpu::Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))?;
+        let scratch = Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))?;
         let job = self.wrap.prepare(gpu, config, count, features.len(), &fields.heights, &scratch)?;
         job.set(gpu, patches, features)?;
         gpu.run("terrain/wrap", |encoder| job.record(encoder))?;
@@ -125,20 +163,10 @@ impl Generator {
             let job = self.border.prepare(gpu, size, width, &neighbours(patches), &fields.heights)?;
             job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
         }
-        let all = surrounds(config, patches);
-        let injected = self.recipe.injected(patches, reach);
-        let per_part = Fields::most(gpu, size + 2 * reach);
-        let mut parts = Vec::new();
-        for (around, injected) in all.chunks(per_part).zip(injected.chunks(per_part)) {
-            let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, around.len() as u32)?;
-            let job = self.pad.prepare(gpu, [size, reach], around, &fields.heights, &windows.heights)?;
-            gpu.run("terrain/pad", |encoder| job.record(encoder))?;
-            parts.push(self.finish(gpu, reach, injected, windows)?);
-        }
-        Ok(parts)
+        Ok(fields)
     }
 
-    /// Despikes and erodes windows, in turn between them and a second buffer as large.
+    /// Despikes and erodes windows, in turn between them and a second buffer.
     fn finish(
         &self,
         gpu: &Gpu,
@@ -146,23 +174,26 @@ impl Generator {
         injected: &[Vec<(u32, u32)>],
         windows: Fields,
     ) -> Result<Fields, Error> {
-        if self.recipe.despike.is_none() && self.recipe.thermal.is_none() {
+        let thermal = self.recipe.thermal.filter(|thermal| thermal.iterations > 0);
+        if self.recipe.despike.is_none() && thermal.is_none() {
             return Ok(windows);
         }
-        let (mut current, mut other) =
-            (windows.clone(), Fields::new(gpu, "terrain windows", windows.width, windows.count)?);
+        // Either crops a sample on every side before it writes there.
+        let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
+        let (mut current, mut other) = (windows, other);
         if let Some(despike) = self.recipe.despike {
             let features = self.index(gpu, reach, injected)?;
             let job = self.despike.prepare(gpu, despike, &current, &features, &other)?;
             gpu.run("terrain/despike", |encoder| job.record(encoder))?;
-            (current, other) = (other.cropped(1), current.cropped(1));
+            (current, other) = (other, current.cropped(1));
         }
-        if let Some(thermal) = self.recipe.thermal {
+        if let Some(thermal) = thermal {
             let scale = self.recipe.config.terrain_scale;
             let job = self.thermal.prepare(gpu, thermal, scale, &current, &other)?;
             job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
+            let width = current.cropped(thermal.iterations).width;
             let result = if thermal.iterations % 2 == 0 { current } else { other };
-            current = result.cropped(thermal.iterations);
+            current = Fields { width, ..result };
         }
         Ok(current)
     }
@@ -178,5 +209,30 @@ impl Generator {
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;
         Ok(index)
+    }
+}
+
+/// `count` patches in as few parts as hold `most` each, the smaller parts first: while one is worked on, a part as large
+/// has yet to be allocated, and its room serves as scratch.
+fn part_sizes(count: usize, most: usize) -> Vec<usize> {
+    let parts = count.div_ceil(most.max(1));
+    (0..parts).map(|part| (count + part) / parts.max(1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_grow_and_hold_all() {
+        assert!(part_sizes(0, 5).is_empty());
+        assert_eq!(part_sizes(5, 5), [5]);
+        assert_eq!(part_sizes(6, 5), [3, 3]);
+        assert_eq!(part_sizes(11, 3), [2, 3, 3, 3]);
+        for (count, most) in (1..60).flat_map(|count| (1..60).map(move |most| (count, most))) {
+            let sizes = part_sizes(count, most);
+            assert_eq!(sizes.iter().sum::<usize>(), count);
+            assert!(sizes.is_sorted() && sizes.iter().all(|size| (1..=most).contains(size)), "{sizes:?}");
+        }
     }
 }

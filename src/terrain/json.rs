@@ -105,7 +105,7 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
     let mut reader = serde_json::Deserializer::from_str(text);
     let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let path = error.path().to_string();
-        json_error(if path == "." { what } else { &path }, error.inner())
+        json_error(if matches!(path.as_str(), "." | "?") { what } else { &path }, error.inner())
     })?;
     reader.end().map_err(|error| json_error(what, &error))?;
     Ok(object.0)
@@ -171,7 +171,9 @@ pub(crate) fn whole(
 /// A serde error as field, value and bound.
 pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
     let place = format!("line {} column {}", error.line(), error.column());
-    InputError::new(what, place, error.to_string())
+    let message = error.to_string();
+    let end = format!(" at {place}");
+    InputError::new(what, place, message.strip_suffix(&end).unwrap_or(&message))
 }
 
 /// A text file.

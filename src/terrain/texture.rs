@@ -5,8 +5,8 @@ use std::path::Path;
 use image::imageops::FilterType;
 
 use crate::Error;
-use crate::reference::terrain::blend::{linear, srgb_byte};
 use crate::reference::terrain::wrap::wrap;
+use crate::srgb;
 use crate::terrain::blend::{BuiltIn, MapZone, Zone, ZoneTexture};
 use crate::terrain::config::{Border, Config};
 use crate::terrain::features::Features;
@@ -87,7 +87,7 @@ impl Texture {
     fn from_texels(texels: Vec<u8>) -> Self {
         let mut level: Vec<[f32; 3]> = texels
             .chunks_exact(4)
-            .map(|texel| [linear(texel[0]), linear(texel[1]), linear(texel[2])])
+            .map(|texel| [srgb::linear(texel[0]), srgb::linear(texel[1]), srgb::linear(texel[2])])
             .collect();
         let mut mips = vec![texels];
         let mut edge = TEXTURE_SIZE as usize;
@@ -105,7 +105,7 @@ impl Texture {
             mips.push(
                 level
                     .iter()
-                    .flat_map(|[r, g, b]| [srgb_byte(*r), srgb_byte(*g), srgb_byte(*b), 255])
+                    .flat_map(|[r, g, b]| [srgb::byte(*r), srgb::byte(*g), srgb::byte(*b), 255])
                     .collect(),
             );
         }

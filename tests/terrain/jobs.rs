@@ -8,7 +8,7 @@ use relievo::terrain::config::{Border, Config, Offset};
 use relievo::terrain::despike::{Despike, DespikePass};
 use relievo::terrain::features::FeatureIndex;
 use relievo::terrain::fields::Fields;
-use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch};
 use relievo::terrain::normals::NormalsPass;
 use relievo::terrain::pad::PadPass;
 use relievo::terrain::thermal::{Thermal, ThermalPass};
@@ -173,8 +173,9 @@ fn pad() {
 fn generation() {
     let gpu = gpu();
     let config = Config::new(5, 1.0, "short").expect("valid");
-    let height = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
-    let scratch = HeightScratch::new(&gpu, &config, 2, 1).expect("allocated");
+    let blocks = Blocks { cell_rows: 4, levels: 1 };
+    let height = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
+    let scratch = HeightScratch::new(&gpu, &height, &config, 2, 1).expect("allocated");
     let points = HeightJob::output_points(&config, 2, 1);
     let prepare = |reach, output| {
         height.prepare(&gpu, &config, [2, reach], 0, &buffer(&gpu, output), &scratch).map(|_| ())

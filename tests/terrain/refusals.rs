@@ -97,7 +97,10 @@ fn what_is_not_one_json_object_is_refused_with_its_place() {
     refuses(Config::from_json("terrain"), &["config = line 1"]);
     refuses(Config::from_json("null"), &["config = line 1"]);
     refuses(Config::from_json("\"257\""), &["config = line 1"]);
-    refuses(Config::from_json(&json(&[]).replace('}', "")), &["EOF"]);
+    refuses(Config::from_json(&json(&[]).replace('}', "")), &["config = line 1", "EOF"]);
+    let error = Config::from_json(&json(&[("seed", "3")])).expect_err("no text").to_string();
+    assert_eq!(error.matches("line 1 column").count(), 1, "{error}");
+    assert!(error.starts_with("seed = line 1 column"), "{error}");
     refuses(Config::from_json(&json(&[("scaleFactor", "NaN")])), &["line 1", "expected value"]);
     for rest in ["}", " {}", "\n, 1", "x"] {
         refuses(Config::from_json(&(json(&[]) + rest)), &["config = line", "trailing characters"]);

@@ -42,13 +42,36 @@ fn has_feature(grid: FeatureGrid, window: u32, at: vec2<i32>) -> bool {
     return (feature_word(grid, window, at).mask & feature_bit(grid, at)) != 0u;
 }
 
-// The height of a point after injection, given the computed one.
-fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
+// A bit for each of the 32 points of a row from `at` on: none where there is no feature, and beyond the grid any.
+fn feature_bits(grid: FeatureGrid, window: u32, at: vec2<i32>) -> u32 {
+    let first = feature_word(grid, window, at).mask;
+    let last = feature_word(grid, window, at + vec2<i32>(31, 0)).mask;
+    let shift = u32(at.x + 1) % 32u;
+    return (first >> shift) | ((last << 1u) << (31u - shift));
+}
+
+// The height to inject at a point, if there is one.
+struct Feature {
+    there: bool,
+    height: i32,
+}
+
+fn feature_at(grid: FeatureGrid, window: u32, at: vec2<i32>) -> Feature {
     let word = feature_word(grid, window, at);
     let bit = feature_bit(grid, at);
     if (word.mask & bit) == 0u {
-        return height;
+        return Feature(false, 0);
     }
-    let value = feature_heights[word.first_value + countOneBits(word.mask & (bit - 1u))];
-    return select(height + value, value, FEATURES == FEATURES_KEEP);
+    return Feature(true, feature_heights[word.first_value + countOneBits(word.mask & (bit - 1u))]);
+}
+
+// The height of a point after injection, given the computed one.
+fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
+    return injected_lanes(feature_at(grid, window, at), vec4<bool>(true), vec4<i32>(height)).x;
+}
+
+// The same for those of `lanes`.
+fn injected_lanes(feature: Feature, lanes: vec4<bool>, heights: vec4<i32>) -> vec4<i32> {
+    let value = select(heights, vec4<i32>(0), FEATURES == FEATURES_KEEP) + vec4<i32>(feature.height);
+    return select(heights, value, lanes & vec4<bool>(feature.there));
 }

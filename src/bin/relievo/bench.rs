@@ -36,8 +36,8 @@ impl Bench {
         spinner.finish_and_clear();
         say(table(&summary.rows).trim_end())?;
         say(
-            "`gpu is`: how many times as fast the kernel is as that row. Medians; all of a case in turn. `clock`: \
-             wall includes submission and waiting.",
+            "`gpu is`: how many times as fast the kernel is as that row, the median over rounds in which all of a case \
+             take turns. `clock`: wall includes submission and waiting.",
         )?;
         if let Some(path) = &self.json {
             write_file(path, &json(&summary)?)?;

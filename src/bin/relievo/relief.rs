@@ -285,9 +285,9 @@ impl Relief {
                 Ok((map, stone))
             }
             (None, Some(albedo)) => {
-                let map = HeightMap::from_alpha(albedo)?;
+                let (map, image) = HeightMap::from_alpha(albedo)?;
+                let mut color = image.into_rgba8();
                 // The alpha channel was heights.
-                let mut color = open(albedo)?;
                 color.pixels_mut().for_each(|pixel| pixel.0[3] = 255);
                 Ok((map, color))
             }

@@ -241,7 +241,7 @@ mod device {
     }
 
     fn clay() -> Mips {
-        let [r, g, b] = CLAY.map(relievo::reference::terrain::blend::srgb_byte);
+        let [r, g, b] = CLAY.map(relievo::srgb::byte);
         Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([r, g, b, 255])))
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::height::height;
 use super::relief::Surface;
 use super::shadow::{light_ray, shaded, soft_shadow};
-use crate::reference::terrain::blend::linear;
+use crate::srgb::linear;
 use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
 use crate::surface::material::{Green, Material, Shadow};

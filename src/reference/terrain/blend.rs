@@ -2,6 +2,7 @@
 //! `wgsl/terrain/zones.wgsl`.
 
 use crate::reference::terrain::normals::unit_normal;
+use crate::srgb;
 use crate::terrain::blend::{MapZone, Shading, WeightMode};
 
 /// B's weight: 1 at `max`, 0 at `max` ± (`max` − `min`).
@@ -51,23 +52,9 @@ pub fn blend(
                     *sum += share * channel;
                 }
             }
-            let bytes = color.map(|channel| srgb_byte(channel * light));
+            let bytes = color.map(|channel| srgb::byte(channel * light));
             pixels.push(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], 255]));
         }
     }
     pixels
-}
-
-/// A linear channel as an sRGB byte.
-pub fn srgb_byte(linear: f32) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let encoded =
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::powf(linear, 1.0 / 2.4) - 0.055 };
-    (encoded * 255.0 + 0.5) as u8
-}
-
-/// An sRGB byte as a linear channel.
-pub fn linear(byte: u8) -> f32 {
-    let encoded = f32::from(byte) / 255.0;
-    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
 }

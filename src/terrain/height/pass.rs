@@ -12,11 +12,11 @@ use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features,
 use crate::terrain::fields::Fields;
 
 /// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
-const CELL_ROWS_SOFTWARE: u32 = 32;
+const CELL_ROWS_SOFTWARE: u32 = 43;
 const CELL_ROWS_HARDWARE: u32 = 2;
 
-/// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in four threads.
-const CELL_ROWS_TWO_LEVELS: u32 = 17;
+/// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in two threads, the 33 of 129 in one.
+const CELL_ROWS_TWO_LEVELS: u32 = 33;
 
 /// `Level` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -143,7 +143,7 @@ impl HeightPass {
         Window { patch: [0, 0], reach }.validate(config)?;
         let widths = level_widths(config, reach);
         output.check_holds("output", HeightJob::output_points(config, count, reach))?;
-        scratch.check(&widths, count)?;
+        scratch.check(self, &widths, count)?;
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
         let features = FeatureIndex::new(gpu, &widths, count, capacity)?;
         let origins: Vec<_> = (0..widths.len())
@@ -248,7 +248,7 @@ impl HeightBatch {
         Window { patch: [0, 0], reach }.validate(config)?;
         let largest = Fields::most(gpu, config.patch_size + 2 * reach) as u32;
         let parts = count.div_ceil(largest).max(1);
-        let scratch = HeightScratch::new(gpu, config, count.div_ceil(parts), reach)?;
+        let scratch = HeightScratch::new(gpu, pass, config, count.div_ceil(parts), reach)?;
         let (mut jobs, mut fields) = (Vec::new(), Vec::new());
         for part in 0..parts {
             let size = count * (part + 1) / parts - count * part / parts;
@@ -300,11 +300,11 @@ impl HeightBatch {
     }
 }
 
-/// Room for the levels before the last: about a third of the output. Jobs of one shape may share it.
+/// Room for the levels that one dispatch leaves to the next: with one level a dispatch about a third of the output, with
+/// two a fifteenth. Jobs of one pass and shape may share it.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // In turn, the level that the last dispatch reads in the first. With one level a dispatch: level L − 1, L − 3, …
-    // in the first, L − 2, L − 4, … in the second; with two they hold smaller ones.
+    // In turn, what the last dispatch reads in the first, what the one before reads in the second, …
     buffers: [Buffer<i32>; 2],
 }
 
@@ -313,17 +313,28 @@ impl HeightScratch {
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
-    pub fn new(gpu: &Gpu, config: &Config, count: u32, reach: u32) -> Result<Self, GpuError> {
-        let [first, second] = Self::points(&level_widths(config, reach), count);
+    pub fn new(
+        gpu: &Gpu,
+        pass: &HeightPass,
+        config: &Config,
+        count: u32,
+        reach: u32,
+    ) -> Result<Self, GpuError> {
+        let [first, second] = Self::points(pass, &level_widths(config, reach), count);
         let buffer = |points| Buffer::new(gpu, "terrain scratch", points);
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    // Widths fall from level to level, and the smallest windows stay five wide.
-    fn points(widths: &[u32], count: u32) -> [usize; 2] {
-        [2, 3].map(|back| {
-            widths.len().checked_sub(back).map_or(0, |level| widths[level] as usize).pow(2) * count as usize
-        })
+    fn points(pass: &HeightPass, widths: &[u32], count: u32) -> [usize; 2] {
+        let mut points = [0; 2];
+        for (left, &[level, _]) in pass.plan(widths.len() as u32 - 1).iter().rev().enumerate() {
+            // The base lattice is drawn, not loaded.
+            if level > 0 {
+                let needed = count as usize * (widths[level] as usize).pow(2);
+                points[left % 2] = needed.max(points[left % 2]);
+            }
+        }
+        points
     }
 
     /// Bytes on the device.
@@ -331,8 +342,8 @@ impl HeightScratch {
         self.buffers.iter().map(Buffer::bytes).sum()
     }
 
-    fn check(&self, widths: &[u32], count: u32) -> Result<(), InputError> {
-        let needed = Self::points(widths, count);
+    fn check(&self, pass: &HeightPass, widths: &[u32], count: u32) -> Result<(), InputError> {
+        let needed = Self::points(pass, widths, count);
         self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
 }
@@ -422,23 +433,25 @@ mod tests {
         assert_eq!(refused(None, 0, 1), (rows, "0".to_owned()));
     }
 
-    /// A scratch buffer is as large as the largest level that it ever holds.
+    /// Scratch buffers are as large as what they ever hold, and no larger.
     #[test]
-    fn scratch_holds_every_level() {
-        for (exponent, coarse_levels, reach) in
-            [(1, 0, 0), (1, 8, 0), (2, 3, 0), (2, 8, 1), (12, 8, 40), (5, 0, 0)]
-        {
-            let size = (1 << exponent) + 1;
+    fn scratch_holds_what_dispatches_leave() {
+        let gpu = Gpu::headless(&crate::gpu::Options::default()).expect("the suite needs an adapter");
+        let points = |size, coarse_levels, reach, levels| {
             let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
             let widths = level_widths(&config, reach);
-            let points = HeightScratch::points(&widths, 1);
-            for (back, width) in widths.iter().rev().enumerate().skip(1) {
-                let room = points[(back + 1) % 2];
-                assert!(
-                    (*width as usize).pow(2) <= room,
-                    "2^{exponent}+1 k={coarse_levels}: {width}² > {room}"
-                );
-            }
+            let blocks = Blocks { cell_rows: 1, levels };
+            let pass = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
+            HeightScratch::points(&pass, &widths, 3)
+        };
+        // Levels 131, 68, 36, 20, … wide before the last.
+        assert_eq!(points(257, 0, 0, 1), [3 * 131 * 131, 3 * 68 * 68]);
+        assert_eq!(points(3, 0, 0, 1), [0, 0], "one dispatch");
+        assert_eq!(points(5, 0, 0, 1), [3 * 5 * 5, 0], "two");
+        if !gpu.adapter().name.contains("SwiftShader") {
+            assert_eq!(points(257, 0, 0, 2), [3 * 68 * 68, 3 * 20 * 20]);
+            assert_eq!(points(5, 0, 0, 2), [0, 0], "one dispatch");
+            assert_eq!(points(9, 0, 0, 2), [3 * 6 * 6, 0], "one level, then two");
         }
     }
 

@@ -135,7 +135,7 @@ fn check(
     let gpu = cases.gpu;
     let count = patches.len() as u32;
     let output = Poisoned::new(gpu, HeightJob::output_points(config, count, reach))?;
-    let scratch = HeightScratch::new(gpu, config, count, reach)?;
+    let scratch = HeightScratch::new(gpu, pass, config, count, reach)?;
     let capacity = features.len() * patches.len();
     let job = pass.prepare(gpu, config, [count, reach], capacity, &output.buffer, &scratch)?;
     job.set(gpu, patches, features)?;

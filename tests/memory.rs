@@ -1,0 +1,140 @@
+//! Device memory: at most two `i32` for a sample of the enlarged windows, whatever a recipe asks for.
+#![cfg(feature = "gpu")]
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use relievo::gpu::{Gpu, Options};
+use relievo::reference::terrain::field::field;
+use relievo::terrain::config::{Border, Config};
+use relievo::terrain::despike::Despike;
+use relievo::terrain::features::{FeatureFile, FeatureIndex, FeatureMode, Features};
+use relievo::terrain::fields::Fields;
+use relievo::terrain::generator::Generator;
+use relievo::terrain::recipe::Recipe;
+use relievo::terrain::thermal::Thermal;
+
+/// Uniforms, origins and neighbours: some hundred bytes a patch.
+const SMALL: u64 = 64 << 10;
+
+const SIZE: u32 = 65;
+const PATCHES: [[i32; 2]; 12] =
+    [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [0, 2], [1, 2], [2, 2], [-7, 4], [-6, 4], [40, -3]];
+
+/// A device whose storage bindings hold no more than `bytes`.
+fn gpu(bytes: u64) -> Gpu {
+    let headless = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+    let name = headless.adapter().name.clone();
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
+    let limits = wgpu::Limits { max_storage_buffer_binding_size: bytes, ..Default::default() };
+    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
+    Gpu::from_wgpu(device, queue)
+}
+
+fn recipes() -> Vec<Recipe> {
+    let mut recipes = Vec::new();
+    for border in [Border::Seamless, Border::Wrap, Border::Blend(16)] {
+        let config = Config { border, ..Config::new(SIZE, 20.0, "memory").expect("valid") };
+        let some = (0..SIZE * SIZE).step_by(11);
+        let points = some.flat_map(|i| [f64::from(i % SIZE), f64::from(i / SIZE), f64::from(i % 7)]);
+        let file = FeatureFile { patch_coordinates: [1, 1], precomputed_heights: points.collect() };
+        for mode in [None, Some(FeatureMode::Keep), Some(FeatureMode::Additive)] {
+            for despike in [None, Some(Despike { threshold: 0.5 })] {
+                for iterations in [None, Some(0), Some(1), Some(4), Some(9)] {
+                    let thermal = iterations.map(|iterations| Thermal { iterations, talus: 30.0 });
+                    let features = mode.map_or(Features::default(), |mode| {
+                        Features::new(&config, std::slice::from_ref(&file), mode).expect("valid")
+                    });
+                    recipes.push(Recipe { config: config.clone(), features, despike, thermal });
+                }
+            }
+        }
+    }
+    recipes
+}
+
+/// Bytes of the lists of features, and of the index that finds them in every window.
+fn list_bytes(gpu: &Gpu, recipe: &Recipe, reach: u32) -> u64 {
+    if recipe.features.is_empty() {
+        return 0;
+    }
+    let width = SIZE + 2 * reach;
+    // Every level is at most half as wide as the next, and three points.
+    let widths: Vec<_> = (0..=6).map(|level| (width >> level) + 4).collect();
+    let room = PATCHES.len() * 9 * recipe.features.len();
+    FeatureIndex::new(gpu, &widths, PATCHES.len() as u32, room).expect("allocated").bytes()
+}
+
+/// The most that `work` allocates on the device beyond what is there, as wgpu's allocator and as relievo counts it.
+fn most_allocated<T>(gpu: &Gpu, work: impl FnOnce() -> T) -> (T, Option<u64>, u64) {
+    let report = || gpu.device().generate_allocator_report().map(|report| report.total_allocated_bytes);
+    let (done, most) = (AtomicBool::new(false), AtomicU64::new(0));
+    let (before, own_before) = (report(), gpu.memory().now());
+    gpu.memory().take_most();
+    let result = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::SeqCst) {
+                most.fetch_max(report().unwrap_or(0), Ordering::SeqCst);
+                std::thread::sleep(std::time::Duration::from_micros(100));
+            }
+        });
+        let result = work();
+        done.store(true, Ordering::SeqCst);
+        result
+    });
+    let seen = before.map(|before| most.into_inner().saturating_sub(before));
+    (result, seen, gpu.memory().take_most() - own_before)
+}
+
+/// Every border mode with and without despiking, erosion and features, in one part and in several.
+#[test]
+fn generation_holds_two_words_a_sample() {
+    let points = PATCHES.len() as u64 * u64::from(SIZE).pow(2);
+    // Several parts as soon as the windows are larger than the patches; `blend` needs all of those in one buffer.
+    for binding in [128 << 20, 4 * points + 64] {
+        let gpu = gpu(binding);
+        for recipe in recipes() {
+            for margin in [0, 1] {
+                let reach = recipe.reach(margin);
+                let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
+                let samples = PATCHES.len() as u64 * u64::from(SIZE + 2 * reach).pow(2);
+                let lists = list_bytes(&gpu, &recipe, reach);
+                let (parts, seen, own) = most_allocated(&gpu, || {
+                    generator.generate(&gpu, &PATCHES, margin, &mut |_| ()).expect("generated")
+                });
+                let case = format!(
+                    "{:?} {} despike {:?} thermal {:?} margin {margin}: {} parts, {samples} samples, {lists} of lists",
+                    recipe.config.border,
+                    recipe.features.len(),
+                    recipe.despike,
+                    recipe.thermal,
+                    parts.len(),
+                );
+                assert!(parts.len() == 1 || binding < 128 << 20, "{case}");
+                assert!(own >= 4 * samples, "{case}: {own} counted");
+                assert!(own <= 8 * samples + lists + SMALL, "{case}: {own} counted");
+                // wgpu's own staging of what is written to lists comes on top of them.
+                let bound = 8 * samples + 2 * lists + SMALL;
+                assert!(seen.is_none_or(|seen| seen <= bound), "{case}: {seen:?} allocated");
+                let held: u64 = parts.iter().map(|part| part.heights.bytes()).sum();
+                assert_eq!(held, gpu.memory().now(), "{case}: only results are left");
+                check(&gpu, &recipe, margin, &parts, &case);
+            }
+        }
+    }
+}
+
+/// Sharing memory changes no height.
+fn check(gpu: &Gpu, recipe: &Recipe, margin: u32, parts: &[Fields], case: &str) {
+    let expected = field(recipe, &PATCHES, margin).expect("computed");
+    let mut windows = expected.iter();
+    for part in parts {
+        let heights = part.heights.read_blocking(gpu).expect("read");
+        for actual in heights.chunks_exact((part.width as usize).pow(2)).take(part.count as usize) {
+            assert!(Some(actual) == windows.next().map(Vec::as_slice), "{case}: heights differ");
+        }
+    }
+    assert!(windows.next().is_none(), "{case}: windows are missing");
+}
