@@ -171,17 +171,34 @@ impl Job {
         submissions
     }
 
+    /// Records one compute pass with all steps of several jobs, in order.
+    pub fn record_together<'a>(
+        encoder: &mut wgpu::CommandEncoder,
+        label: &'static str,
+        jobs: impl IntoIterator<Item = &'a Self>,
+    ) {
+        record_steps(encoder, label, jobs.into_iter().flat_map(|job| &job.steps));
+    }
+
     fn record_steps(&self, encoder: &mut wgpu::CommandEncoder, steps: &[Step]) {
-        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: None };
-        let mut pass = encoder.begin_compute_pass(&descriptor);
-        for step in steps {
-            pass.set_pipeline(&step.kernel.pipeline);
-            for (index, group) in step.groups.iter().enumerate() {
-                pass.set_bind_group(index as u32, group, &[]);
-            }
-            let [x, y, z] = step.workgroups;
-            pass.dispatch_workgroups(x, y, z);
+        record_steps(encoder, self.label, steps);
+    }
+}
+
+fn record_steps<'a>(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &'static str,
+    steps: impl IntoIterator<Item = &'a Step>,
+) {
+    let descriptor = wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None };
+    let mut pass = encoder.begin_compute_pass(&descriptor);
+    for step in steps {
+        pass.set_pipeline(&step.kernel.pipeline);
+        for (index, group) in step.groups.iter().enumerate() {
+            pass.set_bind_group(index as u32, group, &[]);
         }
+        let [x, y, z] = step.workgroups;
+        pass.dispatch_workgroups(x, y, z);
     }
 }
 

@@ -1,13 +1,15 @@
-//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all.
+//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all. A mesh has one material:
+//! a model of several is drawn mesh by mesh.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
 use crate::animation::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
-use crate::render::color::ColorTexture;
+use crate::render::albedo::Albedo;
 use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
+use crate::skinning::material::Alpha;
 use crate::skinning::picture::Light;
 use crate::skinning::skin::Vertex;
 use crate::{Error, InputError};
@@ -17,14 +19,16 @@ use crate::{Error, InputError};
 pub(crate) struct SkinnedView {
     pub clip_from_world: Mat4,
     pub light: Vec4,
+    pub color: Vec4,
     pub vertices: u32,
+    pub cutoff: f32,
 }
 
 /// The pipelines.
 #[derive(Debug, Clone)]
 pub struct SkinnedRenderer {
-    /// Of meshes that are seen from outside, and from both sides.
-    pipelines: [RenderPipeline; 2],
+    /// Of meshes that are seen from outside, and from both sides; of each kind of alpha.
+    pipelines: [[RenderPipeline; 3]; 2],
 }
 
 /// What is drawn.
@@ -39,7 +43,7 @@ pub struct SkinnedInstances<'a> {
     /// The instances that are drawn.
     pub drawn: &'a Buffer<u32>,
     /// Colour.
-    pub albedo: &'a ColorTexture,
+    pub albedo: &'a Albedo,
     /// What lights them.
     pub light: Light,
 }
@@ -51,19 +55,26 @@ impl SkinnedRenderer {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let pipeline = |double_sided: bool| {
+        let pipeline = |double_sided: bool, alpha: u32| {
             let draws = Draws {
                 shader: &shaders::RENDER_SKINNED,
                 fragment: "fragment",
-                constants: &[("DOUBLE_SIDED", f64::from(double_sided))],
+                constants: &[("DOUBLE_SIDED", f64::from(double_sided)), ("ALPHA", f64::from(alpha))],
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: (!double_sided).then_some(wgpu::Face::Back),
                 vertices: &[],
             };
-            let key = format!("{} {color:?} {double_sided}", shaders::RENDER_SKINNED.name);
+            let key = format!("{} {color:?} {double_sided} {alpha}", shaders::RENDER_SKINNED.name);
             gpu.render_pipelines.get(key, || draws.compile(gpu, color))
         };
-        Ok(Self { pipelines: [pipeline(false)?, pipeline(true)?] })
+        let sided = |double_sided| {
+            Ok::<_, GpuError>([
+                pipeline(double_sided, 0)?,
+                pipeline(double_sided, 1)?,
+                pipeline(double_sided, 2)?,
+            ])
+        };
+        Ok(Self { pipelines: [sided(false)?, sided(true)?] })
     }
 
     /// Binds instances; all that `drawn` has room for are drawn until [`SkinnedScene::arguments`] says otherwise.
@@ -74,6 +85,11 @@ impl SkinnedRenderer {
         let SkinnedInstances { mesh, skinned, placements, drawn, albedo, light } = *instances;
         light.validate()?;
         let vertices = mesh.vertices.len();
+        let (kind, cutoff) = match albedo.alpha {
+            Alpha::Opaque => (0, 0.0),
+            Alpha::Mask(cutoff) => (1, cutoff),
+            Alpha::Screen => (2, 0.0),
+        };
         skinned.check_holds("skinned", vertices * placements.len())?;
         if drawn.len() > placements.len() {
             let bound = format!("must be at most {}, one a place", placements.len());
@@ -82,10 +98,12 @@ impl SkinnedRenderer {
         let view = SkinnedView {
             clip_from_world: Mat4::IDENTITY,
             light: light.direction.normalize().extend(light.ambient),
+            color: albedo.factor.into(),
             vertices: vertices as u32,
+            cutoff,
         };
         let uniform = Uniform::new(gpu, "skinned view", &view)?;
-        let texture = albedo.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let texture = albedo.texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let resources = [
             uniform.raw().as_entire_binding(),
             skinned.raw().as_entire_binding(),
@@ -93,9 +111,9 @@ impl SkinnedRenderer {
             placements.raw().as_entire_binding(),
             drawn.raw().as_entire_binding(),
             wgpu::BindingResource::TextureView(&texture),
-            wgpu::BindingResource::Sampler(&albedo.sampler),
+            wgpu::BindingResource::Sampler(&albedo.texture.sampler),
         ];
-        let (pipeline, layouts) = &self.pipelines[usize::from(mesh.double_sided)];
+        let (pipeline, layouts) = &self.pipelines[usize::from(mesh.double_sided)][kind];
         let group = bind(gpu, &shaders::RENDER_SKINNED, layouts, 0, &resources)?;
         let counts = [mesh.indices.len() as u32, drawn.len() as u32, 0, 0, 0];
         let arguments = Buffer::from_slice(gpu, "draw", &counts)?;

@@ -5,9 +5,11 @@ pub mod buffers;
 pub mod clusters;
 pub mod collapse;
 pub mod export;
+pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod lod;
+pub mod material;
 pub mod mesh;
 pub mod morph;
 pub mod palette;
@@ -16,6 +18,7 @@ pub mod select;
 pub mod skin;
 pub mod weights;
 
+pub use material::Material;
 pub use mesh::{Mesh, reaches};
 pub use morph::{MorphTarget, WeightKeys};
 pub use skin::{Blend, Vertex};
