@@ -21,9 +21,10 @@ use crate::Context;
 use crate::output::Staged;
 use crate::pose::{Backend, WrapName, find, on_cpu, open};
 
-/// Writes the skinned meshes of a model at a moment of a clip: where every vertex is, and a picture.
+/// Writes the meshes of a model at a moment of a clip: where every vertex is, and a picture.
 ///
-/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. Positions and
+/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes; then those of nodes
+/// without one, which follow the node that they hang on. Positions and
 /// normals are in the scene's space, with every digit; vertices are in the file's order. Points and lines have no
 /// faces. skin.png: all of it, lit, in the base colours and textures of its materials; clay where a mesh has none.
 #[derive(Args)]
