@@ -14,7 +14,7 @@ use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::skinning::Blend;
-use relievo::skinning::extent::ball_in_clips;
+use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::lod::standing;
 use relievo::skinning::picture::Light;
 use relievo::surface::mips::Mips;

@@ -10,7 +10,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use crate::skinning::Blend;
-use crate::skinning::extent::ball_in_clips;
+use crate::skinning::ball::ball_in_clips;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::lod::{LodJob, LodPass, LodView};
 use crate::skinning::picture::Light;

@@ -74,7 +74,7 @@ pub enum Alpha {
     /// What has less than this is not there.
     Mask(f32),
     /// As many of each 4 × 4 pixels are there as alpha says: a screen-door. It needs no order of triangles, and writes
-    /// depth.
+    /// depth. Of two such surfaces, one behind the other, the nearer hides all that is no denser than itself.
     Screen,
 }
 

@@ -1,11 +1,11 @@
 //! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
 
+pub mod ball;
 #[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod clusters;
 pub mod collapse;
 pub mod export;
-pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod lod;

@@ -3,7 +3,7 @@
 use glam::{Vec3, camera};
 use relievo::animation::sample::RotationPath;
 use relievo::animation::transform::Affine;
-use relievo::animation::{Model, creature};
+use relievo::animation::{Model, Order, creature};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::sample::sample;
@@ -23,6 +23,8 @@ const COUNT: usize = 20;
 
 struct Instances {
     models: Buffer<Affine>,
+    /// Nobody has.
+    moved: Buffer<u32>,
     placements: Buffer<Affine>,
 }
 
@@ -41,15 +43,19 @@ impl Instances {
         };
         let models: Vec<Affine> = (0..COUNT).flat_map(pose).collect();
         let places: Vec<Affine> = (0..COUNT).map(place).collect();
+        let words = COUNT * Order::new(&model.skeleton).words();
         Self {
+            moved: Buffer::new(gpu, "moved", words).expect("allocated"),
             models: Buffer::from_slice(gpu, "models", &models).expect("uploaded"),
             placements: Buffer::from_slice(gpu, "placements", &places).expect("uploaded"),
         }
     }
 
     fn character<'a>(&'a self, model: &'a Model, albedos: &'a [Albedo], blend: Blend) -> Character<'a> {
-        let Self { models, placements } = self;
-        Character { model, models, moved: None, placements, fade: [5.0, 25.0], blend, albedos }
+        let Self { models, moved, placements } = self;
+        // A gate decides on one of the two characters.
+        let moved = (blend == Blend::Linear).then_some(moved);
+        Character { model, models, moved, placements, fade: [5.0, 25.0], blend, albedos }
     }
 }
 
@@ -113,6 +119,15 @@ fn creatures_and_figures_in_one_picture() {
             assert_eq!((fades(frame), counts(scene)), (first.clone(), seen));
         }
     }
+    // Nobody moves, nobody is seen otherwise: what a gate decides on is not skinned again.
+    let skinned = || {
+        let frames = &crowd.characters()[0].frames;
+        frames[0].active.dispatched.read_blocking(&gpu).expect("read")[3]
+    };
+    assert!(skinned() > 0);
+    gpu.run("frame", |encoder| crowd.record(encoder)).expect("run");
+    assert_eq!(skinned(), 0);
+    target.draw(&gpu, SKY, |pass| crowd.draw(pass)).expect("drawn");
     let picture = LinearImage { size, pixels: target.read_linear(&gpu).expect("read") };
     if let Err(error) = check_golden("skin_characters", &picture.reduced(2).encoded(), Tolerance::IMAGE) {
         panic!("{error}");

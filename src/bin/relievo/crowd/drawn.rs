@@ -9,7 +9,7 @@ use relievo::reference::animation::crowd::Choice;
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, ColorTexture};
-use relievo::skinning::extent::ball_in_clips;
+use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LodJob, LodPass, LodView};
 use relievo::skinning::picture::Light;

@@ -1,4 +1,4 @@
-//! How far a model reaches in all of its clips.
+//! A ball around a model in all of its clips.
 
 use glam::Vec3;
 
