@@ -171,27 +171,18 @@ impl Job {
         submissions
     }
 
-    /// Records one compute pass with all steps of several jobs, in order.
-    pub fn record_together<'a>(
-        encoder: &mut wgpu::CommandEncoder,
-        label: &'static str,
-        jobs: impl IntoIterator<Item = &'a Self>,
-    ) {
-        record_steps(encoder, label, jobs.into_iter().flat_map(|job| &job.steps));
+    /// Adds all steps, in order, to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        dispatch(pass, &self.steps);
     }
 
     fn record_steps(&self, encoder: &mut wgpu::CommandEncoder, steps: &[Step]) {
-        record_steps(encoder, self.label, steps);
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: None };
+        dispatch(&mut encoder.begin_compute_pass(&descriptor), steps);
     }
 }
 
-fn record_steps<'a>(
-    encoder: &mut wgpu::CommandEncoder,
-    label: &'static str,
-    steps: impl IntoIterator<Item = &'a Step>,
-) {
-    let descriptor = wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None };
-    let mut pass = encoder.begin_compute_pass(&descriptor);
+fn dispatch(pass: &mut wgpu::ComputePass<'_>, steps: &[Step]) {
     for step in steps {
         pass.set_pipeline(&step.kernel.pipeline);
         for (index, group) in step.groups.iter().enumerate() {

@@ -117,7 +117,9 @@ impl LodJob {
         let all = all.into_iter();
         // The number of instances.
         all.clone().for_each(|lod| encoder.clear_buffer(lod.arguments.raw(), 4, Some(4)));
-        Job::record_together(encoder, "skinning/lod", all.map(|lod| &lod.job));
+        let descriptor = wgpu::ComputePassDescriptor { label: Some("skinning/lod"), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        all.for_each(|lod| lod.job.dispatch(&mut pass));
     }
 }
 
