@@ -24,11 +24,10 @@ pub(crate) struct SkinnedView {
     pub cutoff: f32,
 }
 
-/// The pipelines.
+/// Draws meshes on targets of a format.
 #[derive(Debug, Clone)]
 pub struct SkinnedRenderer {
-    /// Of meshes that are seen from outside, and from both sides; of each kind of alpha.
-    pipelines: [[RenderPipeline; 3]; 2],
+    color: wgpu::TextureFormat,
 }
 
 /// What is drawn.
@@ -49,32 +48,34 @@ pub struct SkinnedInstances<'a> {
 }
 
 impl SkinnedRenderer {
-    /// Compiles the pipelines, unless this device has them already, for targets of `color` format with a
-    /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
+    /// Compiles the pipelines of what is opaque, unless this device has them already, for targets of `color` format with
+    /// a [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer. The first mesh that is not compiles its own.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let pipeline = |double_sided: bool, alpha: u32| {
-            let draws = Draws {
-                shader: &shaders::RENDER_SKINNED,
-                fragment: "fragment",
-                constants: &[("DOUBLE_SIDED", f64::from(double_sided)), ("ALPHA", f64::from(alpha))],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                cull: (!double_sided).then_some(wgpu::Face::Back),
-                vertices: &[],
-            };
-            let key = format!("{} {color:?} {double_sided} {alpha}", shaders::RENDER_SKINNED.name);
-            gpu.render_pipelines.get(key, || draws.compile(gpu, color))
+        let renderer = Self { color };
+        for double_sided in [false, true] {
+            renderer.pipeline(gpu, double_sided, Alpha::Opaque)?;
+        }
+        Ok(renderer)
+    }
+
+    fn pipeline(&self, gpu: &Gpu, double_sided: bool, alpha: Alpha) -> Result<RenderPipeline, GpuError> {
+        let draws = Draws {
+            shader: &shaders::RENDER_SKINNED,
+            fragment: match alpha {
+                Alpha::Opaque => "opaque",
+                Alpha::Mask(_) => "masked",
+                Alpha::Screen => "screened",
+            },
+            constants: &[("DOUBLE_SIDED", f64::from(double_sided))],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: (!double_sided).then_some(wgpu::Face::Back),
+            vertices: &[],
         };
-        let sided = |double_sided| {
-            Ok::<_, GpuError>([
-                pipeline(double_sided, 0)?,
-                pipeline(double_sided, 1)?,
-                pipeline(double_sided, 2)?,
-            ])
-        };
-        Ok(Self { pipelines: [sided(false)?, sided(true)?] })
+        let key = format!("{} {:?} {double_sided} {}", draws.shader.name, self.color, draws.fragment);
+        gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
     }
 
     /// Binds instances; all that `drawn` has room for are drawn until [`SkinnedScene::arguments`] says otherwise.
@@ -85,11 +86,6 @@ impl SkinnedRenderer {
         let SkinnedInstances { mesh, skinned, placements, drawn, albedo, light } = *instances;
         light.validate()?;
         let vertices = mesh.vertices.len();
-        let (kind, cutoff) = match albedo.alpha {
-            Alpha::Opaque => (0, 0.0),
-            Alpha::Mask(cutoff) => (1, cutoff),
-            Alpha::Screen => (2, 0.0),
-        };
         skinned.check_holds("skinned", vertices * placements.len())?;
         if drawn.len() > placements.len() {
             let bound = format!("must be at most {}, one a place", placements.len());
@@ -100,7 +96,7 @@ impl SkinnedRenderer {
             light: light.direction.normalize().extend(light.ambient),
             color: albedo.factor.into(),
             vertices: vertices as u32,
-            cutoff,
+            cutoff: if let Alpha::Mask(cutoff) = albedo.alpha { cutoff } else { 0.0 },
         };
         let uniform = Uniform::new(gpu, "skinned view", &view)?;
         let texture = albedo.texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -113,12 +109,12 @@ impl SkinnedRenderer {
             wgpu::BindingResource::TextureView(&texture),
             wgpu::BindingResource::Sampler(&albedo.texture.sampler),
         ];
-        let (pipeline, layouts) = &self.pipelines[usize::from(mesh.double_sided)][kind];
-        let group = bind(gpu, &shaders::RENDER_SKINNED, layouts, 0, &resources)?;
+        let (pipeline, layouts) = self.pipeline(gpu, mesh.double_sided, albedo.alpha)?;
+        let group = bind(gpu, &shaders::RENDER_SKINNED, &layouts, 0, &resources)?;
         let counts = [mesh.indices.len() as u32, drawn.len() as u32, 0, 0, 0];
         let arguments = Buffer::from_slice(gpu, "draw", &counts)?;
         let indices = mesh.indices.clone();
-        Ok(SkinnedScene { pipeline: pipeline.clone(), view, uniform, group, indices, arguments })
+        Ok(SkinnedScene { pipeline, view, uniform, group, indices, arguments })
     }
 }
 

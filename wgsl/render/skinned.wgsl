@@ -2,8 +2,6 @@
 
 // Seen from both sides: what faces away turns its normal round.
 override DOUBLE_SIDED: bool = false;
-// What becomes of alpha: 0 nothing; 1 what has less than the cutoff is not there; 2 a screen-door.
-override ALPHA: u32 = 0u;
 
 struct SkinnedView {
     clip_from_world: mat4x4<f32>,
@@ -58,19 +56,41 @@ fn screen(place: vec2<u32>) -> f32 {
     return (f32(rank) + 0.5) / 16.0;
 }
 
-@fragment
-fn fragment(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
-    let color = textureSample(albedo, filtering, in.uv) * view.color;
-    if ALPHA == 1u && color.a < view.cutoff {
-        discard;
-    }
-    if ALPHA == 2u && color.a < screen(vec2<u32>(in.clip.xy)) {
-        discard;
-    }
+fn colored(in: Vertex) -> vec4<f32> {
+    return textureSample(albedo, filtering, in.uv) * view.color;
+}
+
+fn lit(color: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
     var normal = normalize(in.normal);
     if DOUBLE_SIDED {
         normal = select(-normal, normal, is_front);
     }
     let direct = max(dot(normal, view.light.xyz), 0.0);
-    return vec4<f32>(color.rgb * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
+    return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
+}
+
+// Nothing becomes of alpha. An entry of its own: what may be discarded is tested for depth late.
+@fragment
+fn opaque(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    return lit(colored(in).rgb, in, is_front);
+}
+
+// What has less than the cutoff is not there.
+@fragment
+fn masked(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    let color = colored(in);
+    if color.a < view.cutoff {
+        discard;
+    }
+    return lit(color.rgb, in, is_front);
+}
+
+// As many pixels are there as alpha says.
+@fragment
+fn screened(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    let color = colored(in);
+    if color.a < screen(vec2<u32>(in.clip.xy)) {
+        discard;
+    }
+    return lit(color.rgb, in, is_front);
 }
