@@ -43,6 +43,8 @@ pub fn creature() -> Result<Model, InputError> {
         skins: vec![skin],
         clips: clips.into_iter().collect::<Result<_, _>>()?,
         meshes: vec![mesh],
+        materials: vec![],
+        images: vec![],
     })
 }
 

@@ -7,9 +7,16 @@
 //!   files beside the document.
 //! - Channels that move no node, or one that is no bone, are left out, but count for the clip's duration.
 //! - Meshes are those of nodes with a skin, a [`Mesh`](crate::skinning::Mesh) a primitive, in the order of the nodes,
-//!   vertices in the file's order. Strips and fans become triangles; points and lines have none. Normals that are
+//!   vertices in the file's order; behind them those of nodes without one, in the same order. The latter follow one
+//!   bone, by a skin of their own: the lowest node at or above them that is a joint, lies above joints, or is animated;
+//!   where there is none, the root of their tree, which never moves. Such a node becomes a bone with all above it, as
+//!   joints do, but no joint. Strips and fans become triangles; points and lines have none. Normals that are
 //!   missing are smooth, tangents that are missing are solved from texture coordinates. Those that Draco compressed
 //!   are left out.
+//! - Of materials: base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or in files beside the
+//!   document; any set of texture coordinates, `KHR_texture_transform` applied to these), samplers, alpha, and
+//!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::skinning::material::Alpha::Screen). Colours of
+//!   vertices, everything else of materials, and materials of no mesh are left out.
 //!
 //! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic.
 
@@ -17,8 +24,10 @@ mod accessor;
 mod clips;
 mod container;
 mod document;
+mod materials;
 mod meshes;
 mod nodes;
+mod rigid;
 
 use std::path::Path;
 
@@ -48,7 +57,12 @@ impl Model {
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
         // What Draco compressed has no vertices here.
-        let meshes = if document.is_draco { Vec::new() } else { meshes::meshes(&document, &nodes.skins)? };
-        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes })
+        let mut materials = materials::Materials::default();
+        let meshes = match document.is_draco {
+            true => Vec::new(),
+            false => meshes::meshes(&document, &nodes, &mut materials)?,
+        };
+        let materials::Materials { materials, images, .. } = materials;
+        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, materials, images })
     }
 }

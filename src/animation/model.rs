@@ -3,7 +3,7 @@
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
 use crate::InputError;
-use crate::skinning::Mesh;
+use crate::skinning::{Material, Mesh};
 
 /// A skeleton with its skins, clips and meshes.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,9 +16,39 @@ pub struct Model {
     pub clips: Vec<Clip>,
     /// What is seen of it.
     pub meshes: Vec<Mesh>,
+    /// What its meshes look like.
+    pub materials: Vec<Material>,
+    /// What textures show: sRGB, alpha as it is, the first row on top.
+    pub images: Vec<image::RgbaImage>,
 }
 
 impl Model {
+    /// What a mesh looks like, where it has a material.
+    ///
+    /// # Errors
+    /// [`InputError`] for a material or an image that the model lacks, and an image without texels.
+    pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
+        let Some(index) = mesh.material else { return Ok(None) };
+        let Some(material) = self.materials.get(index) else {
+            let bound = format!("must be below {}", self.materials.len());
+            return Err(InputError::new("mesh.material", index, bound));
+        };
+        if let Some(texture) = material.texture {
+            let path = format!("materials[{index}].texture.image");
+            match self.images.get(texture.image) {
+                None => {
+                    let bound = format!("must be below {}", self.images.len());
+                    return Err(InputError::new(path, texture.image, bound));
+                }
+                Some(image) if image.is_empty() => {
+                    return Err(InputError::new(path, texture.image, "must have texels"));
+                }
+                Some(_) => {}
+            }
+        }
+        Ok(Some(material))
+    }
+
     /// The clip of this name, or of this number, counted from 0. A name that is a number wins.
     ///
     /// # Errors

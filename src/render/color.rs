@@ -2,6 +2,7 @@
 
 use crate::gpu::{Gpu, GpuError};
 use crate::srgb::linear;
+use crate::skinning::material::{Filter, Sampling, Wrapping};
 use crate::surface::mips::Mips;
 
 /// A filtered texture.
@@ -45,6 +46,38 @@ impl ColorTexture {
         };
         upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, 8, halves)
     }
+
+    /// The same texture, read in another way. Mip levels are those that were uploaded.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn with_sampling(self, gpu: &Gpu, sampling: &Sampling) -> Result<Self, GpuError> {
+        let address = |wrapping: Wrapping| match wrapping {
+            Wrapping::Repeat => wgpu::AddressMode::Repeat,
+            Wrapping::Mirror => wgpu::AddressMode::MirrorRepeat,
+            Wrapping::Clamp => wgpu::AddressMode::ClampToEdge,
+        };
+        let filter = |filter: Filter| match filter {
+            Filter::Nearest => wgpu::FilterMode::Nearest,
+            Filter::Linear => wgpu::FilterMode::Linear,
+        };
+        let [u, v] = sampling.wrap.map(address);
+        let sampler = gpu.scoped(|| {
+            gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("texture"),
+                address_mode_u: u,
+                address_mode_v: v,
+                mag_filter: filter(sampling.magnified),
+                min_filter: filter(sampling.minified),
+                mipmap_filter: match sampling.mips {
+                    Some(Filter::Linear) => wgpu::MipmapFilterMode::Linear,
+                    _ => wgpu::MipmapFilterMode::Nearest,
+                },
+                ..Default::default()
+            })
+        })?;
+        Ok(Self { sampler, ..self })
+    }
 }
 
 fn upload(
@@ -60,6 +93,17 @@ fn upload(
         height: level.height(),
         depth_or_array_layers: 1,
     };
+    let available = gpu.device().limits().max_texture_dimension_2d;
+    let needed = mips.levels[0].width().max(mips.levels[0].height());
+    if needed > available {
+        return Err(GpuError::Limit {
+            pass: "colour",
+            limit: "maxTextureDimension2D",
+            needed: needed.into(),
+            available: available.into(),
+            remedy: "use a smaller image",
+        });
+    }
     gpu.scoped(|| {
         let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("colour"),

@@ -1,7 +1,9 @@
 //! Drawing: a camera, an off-screen target, and passes that draw into the caller's render pass.
 
+pub mod albedo;
 pub mod camera;
 pub mod color;
+pub mod crowd;
 pub mod picture;
 mod pipeline;
 pub mod relief;
@@ -10,8 +12,10 @@ pub mod square;
 pub mod target;
 pub mod terrain;
 
+pub use albedo::Albedo;
 pub use camera::Camera;
 pub use color::ColorTexture;
+pub use crowd::{Character, CrowdScene};
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 pub use skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};

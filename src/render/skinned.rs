@@ -1,13 +1,15 @@
-//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all.
+//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all. A mesh has one material:
+//! a model of several is drawn mesh by mesh.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
 use crate::animation::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
-use crate::render::color::ColorTexture;
+use crate::render::albedo::Albedo;
 use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
+use crate::skinning::material::Alpha;
 use crate::skinning::picture::Light;
 use crate::skinning::skin::Vertex;
 use crate::{Error, InputError};
@@ -17,14 +19,15 @@ use crate::{Error, InputError};
 pub(crate) struct SkinnedView {
     pub clip_from_world: Mat4,
     pub light: Vec4,
+    pub color: Vec4,
     pub vertices: u32,
+    pub cutoff: f32,
 }
 
-/// The pipelines.
+/// Draws meshes on targets of a format.
 #[derive(Debug, Clone)]
 pub struct SkinnedRenderer {
-    /// Of meshes that are seen from outside, and from both sides.
-    pipelines: [RenderPipeline; 2],
+    color: wgpu::TextureFormat,
 }
 
 /// What is drawn.
@@ -39,31 +42,40 @@ pub struct SkinnedInstances<'a> {
     /// The instances that are drawn.
     pub drawn: &'a Buffer<u32>,
     /// Colour.
-    pub albedo: &'a ColorTexture,
+    pub albedo: &'a Albedo,
     /// What lights them.
     pub light: Light,
 }
 
 impl SkinnedRenderer {
-    /// Compiles the pipelines, unless this device has them already, for targets of `color` format with a
-    /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
+    /// Compiles the pipelines of what is opaque, unless this device has them already, for targets of `color` format with
+    /// a [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer. The first mesh that is not compiles its own.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let pipeline = |double_sided: bool| {
-            let draws = Draws {
-                shader: &shaders::RENDER_SKINNED,
-                fragment: "fragment",
-                constants: &[("DOUBLE_SIDED", f64::from(double_sided))],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                cull: (!double_sided).then_some(wgpu::Face::Back),
-                vertices: &[],
-            };
-            let key = format!("{} {color:?} {double_sided}", shaders::RENDER_SKINNED.name);
-            gpu.render_pipelines.get(key, || draws.compile(gpu, color))
+        let renderer = Self { color };
+        for double_sided in [false, true] {
+            renderer.pipeline(gpu, double_sided, Alpha::Opaque)?;
+        }
+        Ok(renderer)
+    }
+
+    fn pipeline(&self, gpu: &Gpu, double_sided: bool, alpha: Alpha) -> Result<RenderPipeline, GpuError> {
+        let draws = Draws {
+            shader: &shaders::RENDER_SKINNED,
+            fragment: match alpha {
+                Alpha::Opaque => "opaque",
+                Alpha::Mask(_) => "masked",
+                Alpha::Screen => "screened",
+            },
+            constants: &[("DOUBLE_SIDED", f64::from(double_sided))],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: (!double_sided).then_some(wgpu::Face::Back),
+            vertices: &[],
         };
-        Ok(Self { pipelines: [pipeline(false)?, pipeline(true)?] })
+        let key = format!("{} {:?} {double_sided} {}", draws.shader.name, self.color, draws.fragment);
+        gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
     }
 
     /// Binds instances; all that `drawn` has room for are drawn until [`SkinnedScene::arguments`] says otherwise.
@@ -82,10 +94,12 @@ impl SkinnedRenderer {
         let view = SkinnedView {
             clip_from_world: Mat4::IDENTITY,
             light: light.direction.normalize().extend(light.ambient),
+            color: albedo.factor.into(),
             vertices: vertices as u32,
+            cutoff: if let Alpha::Mask(cutoff) = albedo.alpha { cutoff } else { 0.0 },
         };
         let uniform = Uniform::new(gpu, "skinned view", &view)?;
-        let texture = albedo.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let texture = albedo.texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let resources = [
             uniform.raw().as_entire_binding(),
             skinned.raw().as_entire_binding(),
@@ -93,14 +107,14 @@ impl SkinnedRenderer {
             placements.raw().as_entire_binding(),
             drawn.raw().as_entire_binding(),
             wgpu::BindingResource::TextureView(&texture),
-            wgpu::BindingResource::Sampler(&albedo.sampler),
+            wgpu::BindingResource::Sampler(&albedo.texture.sampler),
         ];
-        let (pipeline, layouts) = &self.pipelines[usize::from(mesh.double_sided)];
-        let group = bind(gpu, &shaders::RENDER_SKINNED, layouts, 0, &resources)?;
+        let (pipeline, layouts) = self.pipeline(gpu, mesh.double_sided, albedo.alpha)?;
+        let group = bind(gpu, &shaders::RENDER_SKINNED, &layouts, 0, &resources)?;
         let counts = [mesh.indices.len() as u32, drawn.len() as u32, 0, 0, 0];
         let arguments = Buffer::from_slice(gpu, "draw", &counts)?;
         let indices = mesh.indices.clone();
-        Ok(SkinnedScene { pipeline: pipeline.clone(), view, uniform, group, indices, arguments })
+        Ok(SkinnedScene { pipeline, view, uniform, group, indices, arguments })
     }
 }
 

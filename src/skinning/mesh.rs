@@ -28,12 +28,14 @@ pub struct Mesh {
     /// One a vertex: a unit vector along u, and ±1; the bitangent along v is that times normal × tangent. glTF's
     /// fourth component has the other sign.
     pub tangents: Vec<[f32; 4]>,
-    /// One a vertex, v down the image.
+    /// One a vertex, v down the image; those of the material's texture.
     pub uv: Vec<[f32; 2]>,
     /// Three a triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
     /// Whether triangles are seen from inside too.
     pub double_sided: bool,
+    /// Which of the model's materials; without, it takes the colour of whoever draws it.
+    pub material: Option<usize>,
     /// What each vertex follows.
     pub influences: Influences,
     /// What moves vertices before they are skinned.
@@ -262,6 +264,7 @@ mod tests {
             positions,
             indices: vec![0, 1, 2],
             double_sided: false,
+            material: None,
             influences: Influences::new("w", 2, [one(0), one(0), both]).expect("valid"),
             targets: vec![MorphTarget { vertices: vec![2], deltas: vec![delta] }],
             weights: vec![-3.0],

@@ -1,5 +1,6 @@
 //! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
 
+pub mod ball;
 #[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod clusters;
@@ -8,6 +9,7 @@ pub mod export;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod lod;
+pub mod material;
 pub mod mesh;
 pub mod morph;
 pub mod palette;
@@ -16,6 +18,7 @@ pub mod select;
 pub mod skin;
 pub mod weights;
 
+pub use material::Material;
 pub use mesh::{Mesh, reaches};
 pub use morph::{MorphTarget, WeightKeys};
 pub use skin::{Blend, Vertex};

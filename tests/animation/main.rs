@@ -18,6 +18,8 @@ mod layers;
 mod malformed;
 mod meshes;
 mod player;
+mod rigid;
 mod root_motion;
 mod sampling;
 mod scene;
+mod textures;

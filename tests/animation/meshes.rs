@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use crate::scene::Scene;
 
 /// Two bones, and a node with a skinned mesh of one primitive of 4 vertices.
-struct Skinned(Scene);
+pub struct Skinned(pub Scene);
 
 impl Skinned {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let mut scene = Scene::of_two_bones();
         let positions = scene.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
         scene.json["accessors"][positions]["min"] = json!([0, 0, 0]);
@@ -26,22 +26,22 @@ impl Skinned {
         Self(scene)
     }
 
-    fn attribute(&mut self, name: &str, accessor: usize) {
+    pub fn attribute(&mut self, name: &str, accessor: usize) {
         self.primitive()["attributes"][name] = json!(accessor);
     }
 
-    fn primitive(&mut self) -> &mut Value {
+    pub fn primitive(&mut self) -> &mut Value {
         &mut self.0.json["meshes"][0]["primitives"][0]
     }
 
-    fn read(&self) -> Result<Mesh, InputError> {
+    pub fn read(&self) -> Result<Mesh, InputError> {
         let model = Model::from_gltf(&self.0.gltf(), None)?;
         assert_eq!(model, Model::from_gltf(&self.0.glb(), None)?);
         assert_eq!(model.meshes[0].validate(&model.skins), Ok(()));
         Ok(model.meshes.into_iter().next().expect("a mesh"))
     }
 
-    fn refused(&self, field: &str, words: &str) {
+    pub fn refused(&self, field: &str, words: &str) {
         let error = self.read().expect_err(field);
         assert!(error.field == field && error.to_string().contains(words), "{error}");
     }
@@ -214,7 +214,7 @@ fn targets_are_sparse_and_animated() {
     skinned.refused("nodes[2].weights.len", "must be 2");
 }
 
-/// Targets, their keys, indices, texture coordinates, tangents.
+/// Targets, their keys, indices, texture coordinates, tangents, a texture.
 fn full() -> Scene {
     let mut skinned = Skinned::new();
     let delta = skinned.0.floats("VEC3", &[0.5; 12]);
@@ -225,6 +225,7 @@ fn full() -> Scene {
     skinned.attribute("TEXCOORD_0", uv);
     let indices = skinned.0.integers("SCALAR", 2, &[0, 1, 2, 3]);
     skinned.primitive()["indices"] = json!(indices);
+    crate::textures::add_texture(&mut skinned);
     skinned.0.json["meshes"][0]["weights"] = json!([0.5]);
     let (times, values) = (skinned.0.floats("SCALAR", &[0.0, 2.0]), skinned.0.floats("SCALAR", &[0.0, 1.0]));
     skinned.0.animate(2, "weights", "LINEAR", times, values);
@@ -242,6 +243,7 @@ fn skin_all(model: &Model) {
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
     assert_eq!(reaches(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
     for mesh in &model.meshes {
+        assert!(model.material(mesh).is_ok());
         assert_eq!(mesh.validate(&model.skins), Ok(()));
         assert!(Clusters::new(mesh, &model.skins, &model.skeleton).is_ok());
         let weights = mesh.weights_at(0, 0.5);

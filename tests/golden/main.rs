@@ -4,9 +4,15 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod characters;
 mod cracks;
 mod curved;
 mod faults;
+mod figure;
+#[allow(dead_code, reason = "only some of it is needed here")]
+#[path = "../animation/scene.rs"]
+mod gltf;
+mod materials;
 mod scene;
 mod skinned;
 

@@ -9,7 +9,7 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::sample::sample;
 use relievo::render::target::LINEAR_FORMAT;
-use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
+use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LodPass, LodView, ball, standing};
 use relievo::skinning::picture::Light;
@@ -19,15 +19,15 @@ use relievo::surface::mips::Mips;
 
 use crate::harness::{Tolerance, check_golden, gpu};
 
-const SKY: [f64; 3] = [0.02, 0.025, 0.03];
+pub const SKY: [f64; 3] = [0.02, 0.025, 0.03];
 
 /// Squares of two colours.
-fn checks(gpu: &Gpu) -> ColorTexture {
+pub fn checks(gpu: &Gpu) -> Albedo {
     let square = |x: u32, y: u32| {
         if (x / 16 + y / 16).is_multiple_of(2) { [214, 150, 104, 255] } else { [150, 82, 52, 255] }
     };
     let image = RgbaImage::from_fn(64, 64, |x, y| Rgba(square(x, y)));
-    ColorTexture::linear(gpu, &Mips::of_color(image), true).expect("uploaded")
+    ColorTexture::linear(gpu, &Mips::of_color(image), true).expect("uploaded").into()
 }
 
 /// A limb along X around two bones that share the vertices in its middle.
@@ -64,6 +64,7 @@ fn limb() -> Model {
         indices: rings.collect(),
         // Its ends are open.
         double_sided: true,
+        material: None,
         influences: Influences::new("limb", 2, follows).expect("valid"),
         positions,
         normals,
@@ -72,7 +73,8 @@ fn limb() -> Model {
         weights: vec![],
         weight_keys: vec![],
     };
-    Model { skeleton, skins: vec![skin], clips: vec![], meshes: vec![mesh] }
+    let (clips, materials, images) = (vec![], vec![], vec![]);
+    Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], materials, images }
 }
 
 fn rows(matrix: Mat4) -> Affine {

@@ -1,4 +1,4 @@
-// Draws skinned instances of a mesh: textured, lit, each at a place of its own.
+// Draws skinned instances of a mesh: textured, lit, each at a place of its own; opaque, cut out, or through a screen.
 
 // Seen from both sides: what faces away turns its normal round.
 override DOUBLE_SIDED: bool = false;
@@ -7,8 +7,11 @@ struct SkinnedView {
     clip_from_world: mat4x4<f32>,
     // Unit vector towards the light; w: what faces away still gets, 0..1.
     light: vec4<f32>,
+    // Linear, and alpha: what the texture is multiplied with.
+    color: vec4<f32>,
     // Of the mesh.
     vertices: u32,
+    cutoff: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: SkinnedView;
@@ -45,13 +48,49 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u3
     return Vertex(view.clip_from_world * world, facing, texture_coordinates[vertex]);
 }
 
-@fragment
-fn fragment(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
-    let color = textureSample(albedo, filtering, in.uv).rgb;
+// The rank of a pixel's place among 4 × 4 (Bayer 1973), between 0 and 1.
+fn screen(place: vec2<u32>) -> f32 {
+    let fine = place & vec2<u32>(1u);
+    let coarse = (place >> vec2<u32>(1u)) & vec2<u32>(1u);
+    let rank = 8u * (fine.x ^ fine.y) + 4u * fine.y + 2u * (coarse.x ^ coarse.y) + coarse.y;
+    return (f32(rank) + 0.5) / 16.0;
+}
+
+fn colored(in: Vertex) -> vec4<f32> {
+    return textureSample(albedo, filtering, in.uv) * view.color;
+}
+
+fn lit(color: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
     var normal = normalize(in.normal);
     if DOUBLE_SIDED {
         normal = select(-normal, normal, is_front);
     }
     let direct = max(dot(normal, view.light.xyz), 0.0);
     return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
+}
+
+// Nothing becomes of alpha. An entry of its own: what may be discarded is tested for depth late.
+@fragment
+fn opaque(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    return lit(colored(in).rgb, in, is_front);
+}
+
+// What has less than the cutoff is not there.
+@fragment
+fn masked(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    let color = colored(in);
+    if color.a < view.cutoff {
+        discard;
+    }
+    return lit(color.rgb, in, is_front);
+}
+
+// As many pixels are there as alpha says.
+@fragment
+fn screened(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    let color = colored(in);
+    if color.a < screen(vec2<u32>(in.clip.xy)) {
+        discard;
+    }
+    return lit(color.rgb, in, is_front);
 }

@@ -236,6 +236,7 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
         positions,
         indices: surface.indices,
         double_sided: false,
+        material: None,
         targets: vec![],
         weights: vec![],
         weight_keys: vec![],

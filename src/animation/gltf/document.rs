@@ -111,7 +111,8 @@ impl<'a> Document<'a> {
         Ok(cell.get_or_init(|| bytes))
     }
 
-    fn resource(&self, path: &str, uri: &str) -> Result<Vec<u8>, InputError> {
+    /// The bytes of a `data:` URI, or of a file in the document's folder or below.
+    pub fn resource(&self, path: &str, uri: &str) -> Result<Vec<u8>, InputError> {
         let shown: String = uri.chars().take(60).collect();
         let refused = |bound: String| InputError::new(path, &shown, bound);
         if let Some(data) = uri.strip_prefix("data:") {

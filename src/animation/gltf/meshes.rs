@@ -1,12 +1,16 @@
-//! Meshes of nodes with a skin: vertices, triangles, influences, morph targets and the keys of their weights.
+//! Meshes of nodes: vertices, triangles, influences, morph targets and the keys of their weights.
 
 use gltf_json::Index;
 use gltf_json::accessor::Accessor;
 use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
+use gltf_json::material::Material as GltfMaterial;
 use gltf_json::mesh::{Mode, MorphTarget as GltfTarget, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
 use super::document::Document;
+use super::materials::{Coordinates, Materials};
+use super::nodes::{Nodes, node_name};
+use super::rigid::Rigid;
 use crate::InputError;
 use crate::animation::clip::Interpolation;
 use crate::animation::skeleton::Skin;
@@ -14,21 +18,32 @@ use crate::skinning::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals, solve
 use crate::skinning::morph::{MorphDelta, MorphTarget, WeightKeys};
 use crate::skinning::weights::{Influence, Influences};
 
-/// Every primitive of every node with a skin, in the order of the nodes.
-pub fn meshes(document: &Document<'_>, skins: &[Skin]) -> Result<Vec<Mesh>, InputError> {
+/// Every primitive of every node with a skin, in the order of the nodes; then of those without.
+pub fn meshes(
+    document: &Document<'_>,
+    nodes: &Nodes,
+    materials: &mut Materials,
+) -> Result<Vec<Mesh>, InputError> {
+    let all = document.root.nodes.iter().enumerate();
+    let skinned = all.filter_map(|(node, of_node)| Some((node, of_node.skin?.value(), None)));
+    let rigid = nodes.rigid.iter().zip(document.root.skins.len()..);
+    let rigid = rigid.map(|(rigid, skin)| (rigid.node, skin, Some(rigid)));
     let mut meshes = Vec::new();
-    for (node, of_node) in document.root.nodes.iter().enumerate() {
-        let (Some(mesh), Some(skin)) = (of_node.mesh, of_node.skin) else { continue };
-        let (mesh, skin) = (mesh.value(), skin.value());
+    for (node, skin, rigid) in skinned.chain(rigid) {
+        let Some(mesh) = document.root.nodes[node].mesh else { continue };
+        let mesh = mesh.value();
         let weights = weights(document, node, mesh)?;
         let weight_keys = weight_keys(document, node, weights.len())?;
-        let name = of_node.name.clone().unwrap_or_else(|| format!("node_{node}"));
+        let name = node_name(&document.root, node);
         for (at, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
-            let reader = Reader { document, primitive, path: format!("meshes[{mesh}].primitives[{at}]") };
-            let read = reader.mesh(&skins[skin], weights.len())?;
+            let path = format!("meshes[{mesh}].primitives[{at}]");
+            let reader = Reader { document, primitive, path, rigid };
+            let read = reader.mesh(&nodes.skins[skin], weights.len())?;
+            let material = primitive.material.map(|material| materials.read(document, material));
             meshes.push(Mesh {
                 name: format!("{name}_{at}"),
                 skin,
+                material: material.transpose()?,
                 weights: weights.clone(),
                 weight_keys: weight_keys.clone(),
                 ..read
@@ -96,6 +111,8 @@ struct Reader<'a, 'd> {
     document: &'a Document<'d>,
     primitive: &'a Primitive,
     path: String,
+    /// Of a node without a skin.
+    rigid: Option<&'a Rigid>,
 }
 
 impl Reader<'_, '_> {
@@ -110,16 +127,25 @@ impl Reader<'_, '_> {
         }
         in_range(&self.named("POSITION"), &positions)?;
         let vertices = positions.len();
-        let uv = self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices)?;
+        let uv = self.coordinates(vertices)?;
         let has_uv = uv.is_some();
         let uv = uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]);
-        let indices = self.triangles(vertices)?;
+        let mut indices = self.triangles(vertices)?;
         let normals = self.normals(&positions, &indices)?;
         let tangents = match self.attribute::<4>(&Semantic::Tangents, "TANGENT", vertices)? {
             Some(tangents) if has_uv => tangents.into_iter().map(flipped).collect(),
             _ => solved_tangents(&positions, &normals, &uv, &indices)?,
         };
-        let influences = self.influences(vertices, skin.bones.len())?;
+        let influences = match self.rigid {
+            Some(_) => {
+                let one = vec![Influence { bone: 0, weight: 1.0 }];
+                Influences::new(&self.named("POSITION"), 1, vec![one; vertices])?
+            }
+            None => self.influences(vertices, skin.bones.len())?,
+        };
+        if self.rigid.is_some_and(|rigid| rigid.is_mirrored) {
+            indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+        }
         let targets = self.targets(vertices, targets)?;
         let name = String::new();
         let (weights, weight_keys) = (vec![], vec![]);
@@ -131,7 +157,8 @@ impl Reader<'_, '_> {
             tangents,
             uv,
             indices,
-            double_sided: self.is_double_sided(),
+            double_sided: self.material().is_some_and(|material| material.double_sided),
+            material: None,
             influences,
             targets,
             weights,
@@ -139,10 +166,23 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Triangles without a material are not.
-    fn is_double_sided(&self) -> bool {
-        let material = self.primitive.material.map(|material| material.value());
-        material.is_some_and(|material| self.document.root.materials[material].double_sided)
+    fn material(&self) -> Option<&GltfMaterial> {
+        self.primitive.material.map(|material| &self.document.root.materials[material.value()])
+    }
+
+    /// The texture's coordinates, which there must be; or where there is no texture, the first, if any.
+    fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
+        let Some(texture) = self.material().and_then(Coordinates::of) else {
+            return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
+        };
+        let name = format!("TEXCOORD_{}", texture.set);
+        let Some(mut uv) = self.attribute::<2>(&Semantic::TexCoords(texture.set), &name, vertices)? else {
+            let bound = "must be given: the material's texture is read there";
+            return Err(InputError::new(self.named(&name), "missing", bound));
+        };
+        texture.apply(&mut uv);
+        in_range(&self.named(&name), &uv)?;
+        Ok(Some(uv))
     }
 
     fn named(&self, attribute: &str) -> String {

@@ -1,8 +1,10 @@
-//! Nodes and skins: the skeleton.
+//! Nodes and skins: the skeleton, and a skin for every mesh that has none.
 
+use gltf_json::Root;
 use gltf_json::scene::Node;
 
 use super::document::Document;
+use super::rigid::{Rigid, rigid};
 use crate::InputError;
 use crate::animation::skeleton::{Bone, Skeleton, Skin, inverse_bind};
 use crate::animation::transform::{Transform, decomposed};
@@ -10,7 +12,10 @@ use crate::animation::transform::{Transform, decomposed};
 /// The skeleton of all skins, and which node became which bone.
 pub struct Nodes {
     pub skeleton: Skeleton,
+    /// The document's, then one for each of [`Nodes::rigid`].
     pub skins: Vec<Skin>,
+    /// Nodes with a mesh and no skin.
+    pub rigid: Vec<Rigid>,
     bones: Vec<Option<u32>>,
 }
 
@@ -26,28 +31,40 @@ impl Nodes {
         }
         let parents = parents(&root.nodes)?;
         let joints = joints(document)?;
-        let order = order(&root.nodes, &parents, &joints)?;
+        let rigid = rigid(document, &parents, &joints)?;
+        let needed: Vec<_> = joints.iter().copied().chain(rigid.iter().map(|rigid| rigid.anchor)).collect();
+        let order = order(&root.nodes, &parents, &needed)?;
         let mut bones = vec![None; root.nodes.len()];
         for (node, bone) in order.iter().zip(0..) {
             bones[*node] = Some(bone);
         }
         let bone = |node: &usize| {
             let parent = parents[*node].and_then(|parent| bones[parent]);
-            let name = root.nodes[*node].name.clone().unwrap_or_else(|| format!("node_{node}"));
-            Ok(Bone { name, parent, rest: rest(*node, &root.nodes[*node])? })
+            Ok(Bone { name: node_name(root, *node), parent, rest: rest(*node, &root.nodes[*node])? })
         };
         let all = order.iter().map(bone).collect::<Result<Vec<_>, InputError>>()?;
         let joints = joints.iter().filter_map(|node| bones[*node]).collect();
         let skeleton = Skeleton::new(all, joints)?;
-        let skins =
-            (0..root.skins.len()).map(|skin| read_skin(document, skin, &bones)).collect::<Result<_, _>>()?;
-        Ok(Self { skeleton, skins, bones })
+        let mut skins = (0..root.skins.len())
+            .map(|skin| read_skin(document, skin, &bones))
+            .collect::<Result<Vec<_>, _>>()?;
+        skins.extend(rigid.iter().map(|rigid| Skin {
+            name: node_name(root, rigid.node),
+            bones: bones[rigid.anchor].into_iter().collect(),
+            inverse_binds: vec![rigid.bind],
+        }));
+        Ok(Self { skeleton, skins, rigid, bones })
     }
 
     /// The bone that a node became, if it did.
     pub fn bone(&self, node: usize) -> Option<usize> {
         self.bones.get(node).copied().flatten().map(|bone| bone as usize)
     }
+}
+
+/// The node's name, or one made of its number.
+pub fn node_name(root: &Root, node: usize) -> String {
+    root.nodes[node].name.clone().unwrap_or_else(|| format!("node_{node}"))
 }
 
 /// The joints of every skin, each once, as nodes.
@@ -96,12 +113,12 @@ fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
     Ok(parents)
 }
 
-/// The joints and all nodes above them, each with what lies below it behind it.
-fn order(nodes: &[Node], parents: &[Option<usize>], joints: &[usize]) -> Result<Vec<usize>, InputError> {
+/// These nodes and all above them, each with what lies below it behind it.
+fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Result<Vec<usize>, InputError> {
     let mut needed = vec![false; nodes.len()];
     let mut roots = Vec::new();
-    for joint in joints {
-        let mut node = *joint;
+    for wanted in wanted {
+        let mut node = *wanted;
         while !std::mem::replace(&mut needed[node], true) {
             match parents[node] {
                 Some(parent) => node = parent,
@@ -121,17 +138,16 @@ fn order(nodes: &[Node], parents: &[Option<usize>], joints: &[usize]) -> Result<
     // Who is its own ancestor hangs below no root.
     let mut reached = vec![false; nodes.len()];
     order.iter().for_each(|node| reached[*node] = true);
-    match joints.iter().find(|joint| !reached[**joint]) {
+    match wanted.iter().find(|node| !reached[**node]) {
         None => Ok(order),
-        Some(joint) => Err(InputError::new(
-            format!("nodes[{joint}]"),
-            joint,
-            "must not lie below itself: nodes are trees",
-        )),
+        Some(node) => {
+            Err(InputError::new(format!("nodes[{node}]"), node, "must not lie below itself: nodes are trees"))
+        }
     }
 }
 
-fn rest(index: usize, node: &Node) -> Result<Transform, InputError> {
+/// Where a node is when nothing moves it.
+pub fn rest(index: usize, node: &Node) -> Result<Transform, InputError> {
     let path = format!("nodes[{index}]");
     if let Some(matrix) = &node.matrix {
         return decomposed(&format!("{path}.matrix"), matrix);

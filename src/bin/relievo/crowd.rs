@@ -75,8 +75,8 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///   "jump" {"max_metres", "max_pixels"}: the largest change of a point's error from one frame to the next
 /// and cost.png, interpolations.png, error.png: the same against distance.
 ///
-/// With --image, on the GPU, DIR/crowd_<distance>.png too: the last frame of the gated crowd, its skin textured and lit,
-/// 1920 × 1080 pixels. Clusters of 64 vertices with a bone that moved are skinned, once, in compute, and drawn from
+/// With --image, on the GPU, DIR/crowd_<distance>.png too: the last frame of the gated crowd, textured and lit (clay of
+/// two colours where a mesh has no material), 1920 × 1080 pixels. Clusters of 64 vertices with a bone that moved are skinned, once, in compute, and drawn from
 /// there; morph targets stay as at rest; the gate watches every vertex. "skinning" is what vertices follow (--skinning),
 /// and "distances" also have
 ///   "nanoseconds_per_vertex": palettes, the choice of clusters and vertices, divided by all vertices of the crowd

@@ -7,8 +7,9 @@ use clap::Args;
 use relievo::animation::Model;
 use relievo::reference::skinning::morph::morph;
 use relievo::reference::skinning::palette::palette_for;
-use relievo::reference::skinning::picture::Scene;
+use relievo::reference::skinning::picture::{Part, Scene};
 use relievo::reference::skinning::skin::skin;
+use relievo::reference::skinning::texture::Surface;
 use relievo::skinning::export::obj;
 use relievo::skinning::mesh::COORDINATE_LIMIT;
 use relievo::skinning::picture::{Light, framing};
@@ -20,11 +21,12 @@ use crate::Context;
 use crate::output::Staged;
 use crate::pose::{Backend, WrapName, find, on_cpu, open};
 
-/// Writes the skinned meshes of a model at a moment of a clip: where every vertex is, and a picture.
+/// Writes the meshes of a model at a moment of a clip: where every vertex is, and a picture.
 ///
-/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. Positions and
+/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes; then those of nodes
+/// without one, which follow the node that they hang on. Positions and
 /// normals are in the scene's space, with every digit; vertices are in the file's order. Points and lines have no
-/// faces. skin.png: all of it, lit, in one colour.
+/// faces. skin.png: all of it, lit, in the base colours and textures of its materials; clay where a mesh has none.
 #[derive(Args)]
 pub struct Skin {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
@@ -70,7 +72,7 @@ impl Skin {
         let reduction = reduction(&self.influences)?;
         let model = open(&self.model)?;
         if model.meshes.is_empty() {
-            let bound = "must be at least one that follows a skin, and is not compressed with Draco";
+            let bound = "must be at least one that is not compressed with Draco";
             return Err(Error::InputFile {
                 path: self.model.clone(),
                 source: InputError::new("meshes", "none", bound),
@@ -157,11 +159,16 @@ fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error
     let scene = Scene {
         clip_from_model: framing(skinned.iter().flatten()),
         light: Light::default(),
-        albedo: CLAY,
         size: [FINER * EDGE; 2],
     };
-    let parts: Vec<_> =
-        model.meshes.iter().zip(&skinned).map(|(mesh, v)| (&v[..], &mesh.indices[..])).collect();
+    let surface = |mesh: &Mesh| {
+        let material = model.material(mesh)?;
+        Ok(material.map_or(Surface::plain(CLAY), |material| Surface::of(model, material)))
+    };
+    let surfaces = model.meshes.iter().map(surface).collect::<Result<Vec<_>, InputError>>()?;
+    let parts: Vec<_> = (model.meshes.iter().zip(&skinned).zip(&surfaces))
+        .map(|((mesh, vertices), surface)| Part { mesh, vertices, surface })
+        .collect();
     let picture = scene.draw(&parts, SKY);
     Ok((skinned, picture))
 }
@@ -176,9 +183,9 @@ mod device {
     use relievo::animation::transform::AFFINE_IDENTITY;
     use relievo::animation::{ClipSet, Instance};
     use relievo::gpu::{Buffer, Gpu};
-    use relievo::render::ColorTexture;
     use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
     use relievo::render::target::{LINEAR_FORMAT, Target};
+    use relievo::render::{Albedo, ColorTexture};
     use relievo::skinning::frame::SkinFrame;
     use relievo::surface::mips::Mips;
 
@@ -186,9 +193,10 @@ mod device {
     pub fn skinned(gpu: &Gpu, moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error> {
         let crowd = posed(gpu, moment)?;
         let (mut all, mut scenes) = (Vec::new(), Vec::new());
-        let color = ColorTexture::linear(gpu, &clay(), true)?;
-        for index in 0..moment.model.meshes.len() {
-            let (vertices, scene) = skinned_mesh(gpu, moment, index, &crowd, &color)?;
+        let clay = ColorTexture::linear(gpu, &clay(), true)?.into();
+        let albedos = Albedo::of_meshes(gpu, moment.model, &clay, ColorTexture::linear)?;
+        for (index, albedo) in albedos.iter().enumerate() {
+            let (vertices, scene) = skinned_mesh(gpu, moment, index, &crowd, albedo)?;
             check_range(index, &vertices)?;
             all.push(vertices);
             scenes.push(scene);
@@ -222,7 +230,7 @@ mod device {
         moment: &Moment<'_>,
         mesh: usize,
         posed: &Crowd,
-        color: &ColorTexture,
+        albedo: &Albedo,
     ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
         let frame = SkinFrame::new(gpu, moment.model, mesh, &posed.models, 1, moment.blend)?;
         frame.crowd.reductions.write(gpu, &[moment.reduction])?;
@@ -233,7 +241,7 @@ mod device {
             skinned: &frame.skinned,
             placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY])?,
             drawn: &Buffer::from_slice(gpu, "drawn", &[0])?,
-            albedo: color,
+            albedo,
             light: Light::default(),
         };
         let scene = SkinnedRenderer::new(gpu, LINEAR_FORMAT)?.scene(gpu, &instances)?;

@@ -6,4 +6,5 @@ pub mod palette;
 pub mod picture;
 pub mod select;
 pub mod skin;
+pub mod texture;
 pub mod weights;

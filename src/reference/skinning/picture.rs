@@ -1,7 +1,10 @@
-//! A picture of skinned meshes without a GPU: twin of `wgsl/render/skinned.wgsl`, for one instance of one colour.
+//! A picture of skinned meshes without a GPU: twin of `wgsl/render/skinned.wgsl`, for one instance.
 
 use glam::{Mat4, Vec3, Vec4};
 
+use super::texture::Surface;
+use crate::skinning::Mesh;
+use crate::skinning::material::{Alpha, screen};
 use crate::skinning::picture::Light;
 use crate::skinning::skin::Vertex;
 use crate::surface::linear_image::LinearImage;
@@ -13,27 +16,50 @@ pub struct Scene {
     pub clip_from_model: Mat4,
     /// What lights them.
     pub light: Light,
-    /// Linear colour.
-    pub albedo: [f32; 3],
     /// Columns and rows.
     pub size: [u32; 2],
 }
 
+/// A mesh, where its vertices are, and what it looks like.
+#[derive(Debug, Clone, Copy)]
+pub struct Part<'a> {
+    /// Triangles and texture coordinates.
+    pub mesh: &'a Mesh,
+    /// One a vertex of the mesh, in its order.
+    pub vertices: &'a [Vertex],
+    /// Colour.
+    pub surface: &'a Surface,
+}
+
 impl Scene {
-    /// Triangles, each mesh's vertices with its indices, over a linear `background`; one sample a pixel.
-    pub fn draw(&self, meshes: &[(&[Vertex], &[u32])], background: [f32; 3]) -> LinearImage {
+    /// The meshes over a linear `background`; one sample a pixel.
+    pub fn draw(&self, parts: &[Part<'_>], background: [f32; 3]) -> LinearImage {
         let pixels = (self.size[0] * self.size[1]) as usize;
         let mut canvas = Canvas { scene: self, depths: vec![1.0; pixels], pixels: vec![background; pixels] };
-        for (vertices, indices) in meshes {
-            let clip = |vertex: &Vertex| self.clip_from_model * Vec3::from(vertex.position).extend(1.0);
-            let corners: Vec<(Vec4, Vec3)> =
-                vertices.iter().map(|vertex| (clip(vertex), vertex.normal.into())).collect();
-            for triangle in indices.chunks_exact(3) {
-                canvas.triangle([0, 1, 2].map(|corner| corners[triangle[corner] as usize]));
+        for part in parts {
+            for triangle in part.mesh.indices.chunks_exact(3) {
+                let corner = |corner: usize| self.corner(part, triangle[corner] as usize);
+                canvas.triangle(part, [0, 1, 2].map(corner));
             }
         }
         LinearImage { size: self.size, pixels: canvas.pixels }
     }
+
+    fn corner(&self, part: &Part<'_>, at: usize) -> Corner {
+        let Vertex { position, normal, .. } = part.vertices[at];
+        Corner {
+            clip: self.clip_from_model * Vec3::from(position).extend(1.0),
+            normal: normal.into(),
+            uv: part.mesh.uv[at],
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Corner {
+    clip: Vec4,
+    normal: Vec3,
+    uv: [f32; 2],
 }
 
 struct Canvas<'a> {
@@ -42,54 +68,93 @@ struct Canvas<'a> {
     pixels: Vec<[f32; 3]>,
 }
 
+/// A triangle on the screen: pixels, depth, and 1/w, which is linear there.
+struct Triangle<'a> {
+    part: &'a Part<'a>,
+    corners: [Corner; 3],
+    screen: [Vec4; 3],
+    area: f32,
+}
+
 impl Canvas<'_> {
     /// A triangle in front of the near plane; others are left out whole.
-    fn triangle(&mut self, corners: [(Vec4, Vec3); 3]) {
-        if corners.iter().any(|(clip, _)| clip.w <= 0.0 || !clip.is_finite()) {
+    fn triangle(&mut self, part: &Part<'_>, corners: [Corner; 3]) {
+        if corners.iter().any(|corner| corner.clip.w <= 0.0 || !corner.clip.is_finite()) {
             return;
         }
         let size = self.scene.size.map(|edge| edge as f32);
-        // Pixels, depth, and 1/w, which is linear on the screen.
-        let screen = corners.map(|(clip, _)| {
+        let screen = corners.map(|Corner { clip, .. }| {
             let [x, y, z] = (clip.truncate() / clip.w).to_array();
             Vec4::new((0.5 + 0.5 * x) * size[0], (0.5 - 0.5 * y) * size[1], z, 1.0 / clip.w)
         });
         let [a, b, c] = screen;
+        // Negative from outside: y points down here.
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        if area == 0.0 {
+        if area == 0.0 || area > 0.0 && !part.mesh.double_sided {
             return;
         }
+        let triangle = Triangle { part, corners, screen, area };
         let range = |low: f32, high: f32, edge: f32| {
             (low.floor().max(0.0) as u32)..(high.ceil().clamp(0.0, edge) as u32)
         };
         let [low, high] = [a.min(b).min(c), a.max(b).max(c)];
         for row in range(low.y, high.y, size[1]) {
             for column in range(low.x, high.x, size[0]) {
-                let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
-                let share = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / area;
-                let shares = Vec3::new(share(b, c), share(c, a), share(a, b));
-                if shares.min_element() >= 0.0 {
-                    self.fragment(
-                        (row * self.scene.size[0] + column) as usize,
-                        shares,
-                        screen,
-                        corners.map(|corner| corner.1),
-                    );
-                }
+                self.fragment([column, row], &triangle);
             }
         }
     }
 
-    fn fragment(&mut self, pixel: usize, shares: Vec3, screen: [Vec4; 3], normals: [Vec3; 3]) {
-        let depth = shares.dot(Vec3::new(screen[0].z, screen[1].z, screen[2].z));
+    fn fragment(&mut self, place: [u32; 2], triangle: &Triangle<'_>) {
+        let [x, y] = place.map(|at| at as f32 + 0.5);
+        let shares = triangle.shares(x, y);
+        if shares.min_element() < 0.0 {
+            return;
+        }
+        let pixel = (place[1] * self.scene.size[0] + place[0]) as usize;
+        let depth = shares.dot(Vec3::from(triangle.screen.map(|corner| corner.z)));
         if !(0.0..self.depths[pixel]).contains(&depth) {
             return;
         }
+        let uv = triangle.uv(x, y);
+        let step = |[u, v]: [f32; 2]| [u - uv[0], v - uv[1]];
+        let steps = [step(triangle.uv(x + 1.0, y)), step(triangle.uv(x, y + 1.0))];
+        let surface = triangle.part.surface;
+        let [r, g, b, alpha] = surface.at(uv, steps);
+        let least = match surface.alpha {
+            Alpha::Opaque => f32::NEG_INFINITY,
+            Alpha::Mask(cutoff) => cutoff,
+            Alpha::Screen => screen(place),
+        };
+        if alpha < least {
+            return;
+        }
         self.depths[pixel] = depth;
-        let weights = shares * Vec3::new(screen[0].w, screen[1].w, screen[2].w);
-        let normal = weights.x * normals[0] + weights.y * normals[1] + weights.z * normals[2];
+        let weights = triangle.weights(x, y).to_array();
+        let normals = triangle.corners.iter().zip(weights).map(|(corner, weight)| weight * corner.normal);
+        let side = if triangle.area > 0.0 { -1.0 } else { 1.0 };
         let Light { direction, ambient } = self.scene.light;
-        let direct = normal.normalize_or_zero().dot(direction.normalize()).max(0.0);
-        self.pixels[pixel] = self.scene.albedo.map(|color| color * (ambient + (1.0 - ambient) * direct));
+        let facing = side * normals.sum::<Vec3>().normalize_or_zero().dot(direction.normalize());
+        self.pixels[pixel] = [r, g, b].map(|color| color * (ambient + (1.0 - ambient) * facing.max(0.0)));
+    }
+}
+
+impl Triangle<'_> {
+    /// What each corner has of a place on the screen.
+    fn shares(&self, x: f32, y: f32) -> Vec3 {
+        let [a, b, c] = self.screen;
+        let share = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
+        Vec3::new(share(b, c), share(c, a), share(a, b))
+    }
+
+    /// The same of the triangle itself.
+    fn weights(&self, x: f32, y: f32) -> Vec3 {
+        let weights = self.shares(x, y) * Vec3::from(self.screen.map(|corner| corner.w));
+        weights / weights.element_sum()
+    }
+
+    fn uv(&self, x: f32, y: f32) -> [f32; 2] {
+        let weights = self.weights(x, y);
+        [0, 1].map(|axis| weights.dot(Vec3::from(self.corners.map(|corner| corner.uv[axis]))))
     }
 }

@@ -106,9 +106,20 @@ impl LodJob {
 
     /// Records the decisions.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        Self::record_together(encoder, [self]);
+    }
+
+    /// Records the decisions on several crowds, in one compute pass.
+    pub fn record_together<'a>(
+        encoder: &mut wgpu::CommandEncoder,
+        all: impl IntoIterator<Item = &'a Self, IntoIter: Clone>,
+    ) {
+        let all = all.into_iter();
         // The number of instances.
-        encoder.clear_buffer(self.arguments.raw(), 4, Some(4));
-        self.job.record(encoder);
+        all.clone().for_each(|lod| encoder.clear_buffer(lod.arguments.raw(), 4, Some(4)));
+        let descriptor = wgpu::ComputePassDescriptor { label: Some("skinning/lod"), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        all.for_each(|lod| lod.job.dispatch(&mut pass));
     }
 }
 

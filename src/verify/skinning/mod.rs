@@ -60,13 +60,15 @@ pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
         uv: vertices.clone().map(|_| [0; 2].map(|_| draw.signed())).collect(),
         indices: (0..shape.vertices as u32 / 3 * 3).collect(),
         double_sided: true,
+        material: None,
         influences: influences(&mut draw, shape, skin.bones.len())?,
         targets: (0..shape.targets).map(|_| target(&mut draw, shape.vertices)).collect(),
         weights: vec![0.0; shape.targets],
         weight_keys: vec![],
     };
     mesh.validate(std::slice::from_ref(&skin))?;
-    Ok(Model { skeleton, skins: vec![skin], clips: vec![], meshes: vec![mesh] })
+    let (clips, materials, images) = (vec![], vec![], vec![]);
+    Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], materials, images })
 }
 
 fn unit(draw: &mut Draw) -> [f32; 3] {

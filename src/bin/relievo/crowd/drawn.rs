@@ -6,11 +6,12 @@ use image::{Rgba, RgbaImage};
 use relievo::animation::Choice;
 use relievo::animation::{Affine, GateTable, Lod};
 use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
-use relievo::render::ColorTexture;
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
+use relievo::render::{Albedo, ColorTexture};
+use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodJob, LodPass, LodView, ball};
+use relievo::skinning::lod::{LodJob, LodPass, LodView};
 use relievo::skinning::picture::Light;
 use relievo::skinning::{Blend, Reduction};
 use relievo::surface::mips::Mips;
@@ -244,26 +245,30 @@ struct World<'a> {
     stage: &'a Stage<'a>,
     placements: Buffer<Affine>,
     clip_from_world: Mat4,
+    ball: (Vec3, f32),
     renderer: SkinnedRenderer,
-    albedo: ColorTexture,
+    /// One a mesh.
+    albedos: Vec<Albedo>,
 }
 
 impl<'a> World<'a> {
     fn new(gpu: &'a Gpu, stage: &'a Stage<'a>, scene: &Scene) -> Result<Self, Error> {
         if stage.plan.model.meshes.is_empty() {
-            let bound = "must be at least one that follows a skin, and is not compressed with Draco";
+            let bound = "must be at least one that is not compressed with Draco";
             return Err(InputError::new("model.meshes", "none", bound).into());
         }
         let deepest = scene.origins.iter().map(|origin| origin[2]).fold(0.0, f32::max);
         let far = 2.0 * deepest + 4.0 * stage.plan.size * stage.metres_a_unit;
         let aspect = ASPECT[0] as f32 / ASPECT[1] as f32;
         let lens = camera::rh::proj::directx::perspective(FIELD_OF_VIEW, aspect, stage.lens.near, far);
+        let checks = ColorTexture::new(gpu, &checks(), true)?.into();
         Ok(Self {
             placements: Buffer::from_slice(gpu, "placements", &placements(scene))?,
             // The camera is at the origin and looks along -Z.
             clip_from_world: lens,
+            ball: ball_in_clips(&stage.plan.model),
             renderer: SkinnedRenderer::new(gpu, COLOR_FORMAT)?,
-            albedo: ColorTexture::new(gpu, &checks(), true)?,
+            albedos: Albedo::of_meshes(gpu, &stage.plan.model, &checks, ColorTexture::new)?,
             gpu,
             stage,
         })
@@ -288,7 +293,7 @@ impl<'a> World<'a> {
             By::Gate => SkinFrame::new(gpu, model, mesh, &device.gated.crowd.models, count, Blend::Linear)?
                 .with_moved(gpu, &device.gated.frame.active.dirty)?,
         };
-        let mesh = &model.meshes[mesh];
+        let (mesh, albedo) = (&model.meshes[mesh], &self.albedos[mesh]);
         // Morph targets stay as they are at rest.
         skin.crowd.weights.write(gpu, &mesh.weights.repeat(count))?;
         let drawn = Buffer::new(gpu, "drawn", count)?;
@@ -297,7 +302,7 @@ impl<'a> World<'a> {
             skinned: &skin.skinned,
             placements,
             drawn: &drawn,
-            albedo: &self.albedo,
+            albedo,
             light: Light::default(),
         };
         let mut scene = self.renderer.scene(gpu, &instances)?;
@@ -310,16 +315,14 @@ impl<'a> World<'a> {
                 (Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?, stage.plan.range)
             }
         };
-        let (center, radius) = ball(mesh.positions.iter().map(|position| Vec3::from(*position)));
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
             near: range.min * stage.metres_a_unit,
             far: range.max * stage.metres_a_unit,
             steps: STEPS,
-            center,
-            // Clips move vertices out of the ball at rest.
-            radius: 2.0 * radius,
+            center: self.ball.0,
+            radius: self.ball.1,
         };
         let lod =
             LodPass::new(gpu)?.prepare(gpu, &view, placements, &reductions, &drawn, &scene.arguments)?;

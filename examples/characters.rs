@@ -1,0 +1,96 @@
+//! Several characters in one picture: the built-in creature, and every `.glb` or `.gltf` that is named. Each plays its
+//! first clip; instances are posed, seen, faded, skinned and drawn by the device. Writes `characters.png`.
+//!
+//! `cargo run --release --example characters -- [FILE …]`
+
+use glam::{Vec3, camera};
+use image::{Rgba, RgbaImage};
+use relievo::animation::concat::{ConcatPass, Walk};
+use relievo::animation::crowd::{ClipBuffers, Crowd};
+use relievo::animation::place::PlacePass;
+use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
+use relievo::animation::{Affine, ClipSet, Instance, Model, creature};
+use relievo::gpu::{Buffer, Gpu, Options};
+use relievo::render::target::{COLOR_FORMAT, Target};
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::skinning::Blend;
+use relievo::skinning::ball::ball_in_clips;
+use relievo::skinning::lod::standing;
+use relievo::skinning::picture::Light;
+use relievo::surface::mips::Mips;
+
+/// Instances of each character.
+const COUNT: usize = 40;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Yours: `Gpu::from_wgpu(device, queue)`.
+    let gpu = Gpu::headless(&Options::default())?;
+    let mut models = vec![creature()?];
+    for path in std::env::args().skip(1) {
+        models.push(Model::from_file(path.as_ref())?);
+    }
+
+    // At load time: pipelines and bind groups. What has no material is made of clay.
+    let clay = Mips::of_color(RgbaImage::from_pixel(1, 1, Rgba([200, 140, 98, 255])));
+    let clay: Albedo = ColorTexture::new(&gpu, &clay, true)?.into();
+    let mut crowd = CrowdScene::new(&gpu, COLOR_FORMAT, Light::default())?;
+    let mut animations = Vec::new();
+    for (index, model) in models.iter().enumerate() {
+        let clip = model.clips.first().ok_or("a character needs a clip")?;
+        let (set, duration) = (ClipSet::new(&[clip])?, clip.duration());
+        let play = |at: usize| Instance::new(0, Wrap::Loop, duration * (0.618 * at as f32).fract(), 1.0);
+        let posed = Crowd::new(&gpu, &set, &(0..COUNT).map(play).collect::<Vec<_>>())?;
+        let clips = ClipBuffers::new(&gpu, &set)?;
+        let place = PlacePass::new(&gpu)?.prepare(&gpu, &clips, &posed)?;
+        let sample = SamplePass::new(&gpu, RotationPath::Slerp)?.prepare(&gpu, &clips, &posed)?;
+        let concat = ConcatPass::new(&gpu, Walk::of(&gpu))?.prepare(&gpu, &model.skeleton, &posed)?;
+        let placements = Buffer::from_slice(&gpu, "placements", &places(model, index, models.len()))?;
+        let albedos = Albedo::of_meshes(&gpu, model, &clay, ColorTexture::new)?;
+        crowd.add(
+            &gpu,
+            &Character {
+                model,
+                models: &posed.models,
+                moved: None,
+                placements: &placements,
+                fade: [10.0, 40.0],
+                blend: Blend::Linear,
+                albedos: &albedos,
+            },
+        )?;
+        animations.push((place, sample, concat));
+    }
+
+    // A frame.
+    let (size, eye) = ([960, 540], Vec3::new(0.0, 4.0, 8.0));
+    let view = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.5, -6.0), Vec3::Y);
+    let lens = camera::rh::proj::directx::perspective(0.8, 960.0 / 540.0, 0.1, 200.0);
+    crowd.set_camera(&gpu, lens * view, eye)?;
+    let target = Target::new(&gpu, size)?;
+    let mut encoder = gpu.encoder("frame");
+    for (place, sample, concat) in &animations {
+        place.record(&mut encoder);
+        sample.record(&mut encoder);
+        concat.record(&mut encoder);
+    }
+    crowd.record(&mut encoder);
+    // Yours: any render pass with depth.
+    target.record(&mut encoder, [0.02, 0.025, 0.03], |pass| crowd.draw(pass));
+    gpu.queue().submit([encoder.finish()]);
+
+    target.read(&gpu)?.save("characters.png")?;
+    Ok(())
+}
+
+/// In rows away from the eye, every character two metres large, turned every way.
+fn places(model: &Model, index: usize, characters: usize) -> Vec<Affine> {
+    let (center, radius) = ball_in_clips(model);
+    let scale = 1.5 / radius.max(1e-6);
+    let place = |at: usize| {
+        let (row, column) = (at / 8, (at % 8 * characters + index) as f32);
+        let x = (column - 4.0 * characters as f32 + 0.5) * 2.0 / characters as f32;
+        let at_ground = Vec3::new(x * 1.3, -scale * center.y + 1.0, -3.0 * row as f32 - index as f32);
+        standing(at_ground, 0.7 * at as f32, scale)
+    };
+    (0..COUNT).map(place).collect()
+}

@@ -1,0 +1,179 @@
+//! Materials that meshes use: base colour, its texture, and alpha; images of PNG or JPEG, decoded.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+
+use gltf_json::extensions::texture::TextureTransform;
+use gltf_json::material::{AlphaMode, Material as GltfMaterial};
+use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, WrappingMode};
+use gltf_json::validation::Checked;
+use gltf_json::{Image, Index};
+use image::{ImageFormat, ImageReader, RgbaImage};
+
+use super::document::Document;
+use crate::InputError;
+use crate::skinning::material::{Alpha, Filter, MOST_TEXELS, Material, Sampling, Texture, Wrapping};
+
+/// What has been read of them so far: each once, in the order of their use.
+#[derive(Default)]
+pub struct Materials {
+    pub materials: Vec<Material>,
+    pub images: Vec<RgbaImage>,
+    of_materials: HashMap<usize, usize>,
+    of_images: HashMap<usize, usize>,
+}
+
+impl Materials {
+    /// Reads a material, unless it has been read: its place in the list.
+    pub fn read(&mut self, document: &Document<'_>, index: Index<GltfMaterial>) -> Result<usize, InputError> {
+        let at = index.value();
+        if let Some(known) = self.of_materials.get(&at) {
+            return Ok(*known);
+        }
+        let path = format!("materials[{at}]");
+        let material = &document.root.materials[at];
+        let base = &material.pbr_metallic_roughness;
+        let of_color = format!("{path}.pbrMetallicRoughness");
+        let color = base.base_color_factor.0;
+        if let Some(channel) = color.iter().position(|value| !(0.0..=1.0).contains(value)) {
+            let field = format!("{of_color}.baseColorFactor[{channel}]");
+            return Err(InputError::new(field, color[channel], "must be in 0..=1"));
+        }
+        let texture = match &base.base_color_texture {
+            Some(info) => Some(self.texture(document, &format!("{of_color}.baseColorTexture"), info)?),
+            None => None,
+        };
+        let alpha = alpha(&path, material)?;
+        let name = material.name.clone().unwrap_or_else(|| format!("material_{at}"));
+        self.materials.push(Material { name, color, texture, alpha });
+        self.of_materials.insert(at, self.materials.len() - 1);
+        Ok(self.materials.len() - 1)
+    }
+
+    fn texture(&mut self, document: &Document<'_>, path: &str, info: &Info) -> Result<Texture, InputError> {
+        let at = info.index.value();
+        let Some(texture) = document.root.textures.get(at) else {
+            return Err(InputError::new(format!("{path}.index"), at, "must exist"));
+        };
+        let sampling = match texture.sampler {
+            Some(sampler) => {
+                let path = format!("samplers[{}]", sampler.value());
+                sampling(&path, &document.root.samplers[sampler.value()])?
+            }
+            None => Sampling::default(),
+        };
+        Ok(Texture { image: self.image(document, texture.source)?, sampling })
+    }
+
+    fn image(&mut self, document: &Document<'_>, index: Index<Image>) -> Result<usize, InputError> {
+        let at = index.value();
+        if let Some(known) = self.of_images.get(&at) {
+            return Ok(*known);
+        }
+        let path = format!("images[{at}]");
+        let image = &document.root.images[at];
+        let decoded = match (image.buffer_view, &image.uri) {
+            (Some(view), _) => decode(&path, document.view(view)?.0)?,
+            (None, Some(uri)) => decode(&path, &document.resource(&format!("{path}.uri"), uri)?)?,
+            (None, None) => return Err(InputError::new(path, "empty", "must have a bufferView or a uri")),
+        };
+        self.images.push(decoded);
+        self.of_images.insert(at, self.images.len() - 1);
+        Ok(self.images.len() - 1)
+    }
+}
+
+/// What is in the bytes counts, whatever `mimeType` says.
+fn decode(path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
+    let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
+    let format = image::guess_format(bytes).ok();
+    let Some(format) = format.filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) else {
+        return Err(refused("must be PNG or JPEG".to_owned()));
+    };
+    let reader = || ImageReader::with_format(Cursor::new(bytes), format);
+    let unreadable = |error| refused(format!("must be a whole {format:?}: {error}"));
+    let (width, height) = reader().into_dimensions().map_err(unreadable)?;
+    if width.max(height) > MOST_TEXELS {
+        let bound = format!("must be at most {MOST_TEXELS} texels wide and high");
+        return Err(InputError::new(path, format!("{width} × {height}"), bound));
+    }
+    Ok(reader().decode().map_err(unreadable)?.into_rgba8())
+}
+
+fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
+    let cutoff = material.alpha_cutoff.unwrap_or_default().0;
+    match material.alpha_mode {
+        Checked::Valid(AlphaMode::Opaque) => Ok(Alpha::Opaque),
+        Checked::Valid(AlphaMode::Blend) => Ok(Alpha::Screen),
+        Checked::Valid(AlphaMode::Mask) if cutoff >= 0.0 && cutoff.is_finite() => Ok(Alpha::Mask(cutoff)),
+        Checked::Valid(AlphaMode::Mask) => {
+            let bound = "must be finite, and not negative";
+            Err(InputError::new(format!("{path}.alphaCutoff"), cutoff, bound))
+        }
+        Checked::Invalid => {
+            let bound = "must be OPAQUE, MASK or BLEND";
+            Err(InputError::new(format!("{path}.alphaMode"), "unknown", bound))
+        }
+    }
+}
+
+/// What a sampler leaves open is linear, with mip levels.
+fn sampling(path: &str, sampler: &Sampler) -> Result<Sampling, InputError> {
+    let unknown =
+        |field: &str| InputError::new(format!("{path}.{field}"), "unknown", "must be one of glTF's");
+    let wrapping = |field: &str, mode: Checked<WrappingMode>| match mode {
+        Checked::Valid(WrappingMode::Repeat) => Ok(Wrapping::Repeat),
+        Checked::Valid(WrappingMode::MirroredRepeat) => Ok(Wrapping::Mirror),
+        Checked::Valid(WrappingMode::ClampToEdge) => Ok(Wrapping::Clamp),
+        Checked::Invalid => Err(unknown(field)),
+    };
+    let (nearest, linear) = (Filter::Nearest, Filter::Linear);
+    let magnified = match sampler.mag_filter {
+        None | Some(Checked::Valid(MagFilter::Linear)) => linear,
+        Some(Checked::Valid(MagFilter::Nearest)) => nearest,
+        Some(Checked::Invalid) => return Err(unknown("magFilter")),
+    };
+    let (minified, mips) = match sampler.min_filter {
+        None => (linear, Some(linear)),
+        Some(Checked::Valid(filter)) => match filter {
+            MinFilter::Nearest => (nearest, None),
+            MinFilter::Linear => (linear, None),
+            MinFilter::NearestMipmapNearest => (nearest, Some(nearest)),
+            MinFilter::LinearMipmapNearest => (linear, Some(nearest)),
+            MinFilter::NearestMipmapLinear => (nearest, Some(linear)),
+            MinFilter::LinearMipmapLinear => (linear, Some(linear)),
+        },
+        Some(Checked::Invalid) => return Err(unknown("minFilter")),
+    };
+    let wrap = [wrapping("wrapS", sampler.wrap_s)?, wrapping("wrapT", sampler.wrap_t)?];
+    Ok(Sampling { wrap, magnified, minified, mips })
+}
+
+/// Which texture coordinates a material's base colour is read at, and what takes them there; none where it has no
+/// texture.
+pub struct Coordinates<'a> {
+    /// `TEXCOORD_n`
+    pub set: u32,
+    /// `KHR_texture_transform`
+    transform: Option<&'a TextureTransform>,
+}
+
+impl<'a> Coordinates<'a> {
+    pub fn of(material: &'a GltfMaterial) -> Option<Self> {
+        let info = material.pbr_metallic_roughness.base_color_texture.as_ref()?;
+        let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
+        let set = transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord);
+        Some(Self { set, transform })
+    }
+
+    /// Scales, turns, then moves.
+    pub fn apply(&self, uv: &mut [[f32; 2]]) {
+        let Some(transform) = self.transform else { return };
+        let ([x, y], [dx, dy]) = (transform.scale.0, transform.offset.0);
+        let (sine, cosine) = (libm::sinf(transform.rotation.0), libm::cosf(transform.rotation.0));
+        for [u, v] in uv {
+            let (along, down) = (*u * x, *v * y);
+            [*u, *v] = [cosine * along + sine * down + dx, cosine * down - sine * along + dy];
+        }
+    }
+}

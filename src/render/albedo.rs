@@ -1,0 +1,83 @@
+//! What skinned meshes look like on the device: a material's colour, its texture, and alpha.
+
+use std::collections::HashMap;
+
+use crate::Error;
+use crate::animation::Model;
+use crate::gpu::{Gpu, GpuError};
+use crate::render::color::ColorTexture;
+use crate::skinning::material::{Alpha, Material, Texture};
+use crate::surface::mips::Mips;
+
+/// The colour of a surface.
+#[derive(Debug, Clone)]
+pub struct Albedo {
+    /// Colour and alpha.
+    pub texture: ColorTexture,
+    /// What these are multiplied with: linear red, green, blue, and alpha.
+    pub factor: [f32; 4],
+    /// What becomes of alpha.
+    pub alpha: Alpha,
+}
+
+impl From<ColorTexture> for Albedo {
+    /// A texture as it is, opaque.
+    fn from(texture: ColorTexture) -> Self {
+        Self { texture, factor: [1.0; 4], alpha: Alpha::Opaque }
+    }
+}
+
+/// How textures are uploaded: [`ColorTexture::new`] or [`ColorTexture::linear`].
+pub type Upload = fn(&Gpu, &Mips, bool) -> Result<ColorTexture, GpuError>;
+
+impl Albedo {
+    /// One for each mesh of a model, each texture uploaded once. Meshes without a material get `other`.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for materials and images that the model lacks; [`GpuError`].
+    pub fn of_meshes(gpu: &Gpu, model: &Model, other: &Self, upload: Upload) -> Result<Vec<Self>, Error> {
+        let mut textures = Textures { gpu, model, upload, known: HashMap::new() };
+        let mut all = Vec::with_capacity(model.meshes.len());
+        for mesh in &model.meshes {
+            all.push(match model.material(mesh)? {
+                Some(material) => textures.albedo(material)?,
+                None => other.clone(),
+            });
+        }
+        Ok(all)
+    }
+}
+
+/// What has been uploaded: images, with or without mip levels. Nothing but white is under no image.
+struct Textures<'a> {
+    gpu: &'a Gpu,
+    model: &'a Model,
+    upload: Upload,
+    known: HashMap<Option<(usize, bool)>, ColorTexture>,
+}
+
+impl Textures<'_> {
+    fn albedo(&mut self, material: &Material) -> Result<Albedo, GpuError> {
+        let key = material.texture.map(|Texture { image, sampling }| (image, sampling.mips.is_some()));
+        let known = match self.known.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let uploaded = (self.upload)(self.gpu, &self.mips(key), true)?;
+                self.known.entry(key).or_insert(uploaded).clone()
+            }
+        };
+        let texture = match material.texture {
+            Some(Texture { sampling, .. }) => known.with_sampling(self.gpu, &sampling)?,
+            None => known,
+        };
+        Ok(Albedo { texture, factor: material.color, alpha: material.alpha })
+    }
+
+    fn mips(&self, key: Option<(usize, bool)>) -> Mips {
+        match key {
+            None => Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([255; 4]))),
+            Some((image, true)) => Mips::of_color(self.model.images[image].clone()),
+            Some((image, false)) => Mips { levels: vec![self.model.images[image].clone()], is_srgb: true },
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! A ball around a model in all of its clips.
+
+use glam::Vec3;
+
+use super::mesh::reaches;
+use crate::animation::Model;
+use crate::animation::sample::RotationPath;
+use crate::reference::animation::bounds::bounds;
+use crate::reference::animation::concat::concat;
+use crate::reference::animation::sample::sample;
+
+/// Moments of each clip that are looked at.
+const MOMENTS: u32 = 32;
+
+/// A ball in the model's space around all meshes at rest and at 32 moments of every clip, larger by a twentieth for what
+/// lies between these: for [`LodView`](super::lod::LodView). Of vertices it knows how far they reach from their bones
+/// alone, so it may be half again as large as it had to be; morph targets count as [`reaches`] says.
+///
+/// # Panics
+/// As [`reaches`].
+pub fn ball_in_clips(model: &Model) -> (Vec3, f32) {
+    let skeleton = &model.skeleton;
+    let reaches = reaches(skeleton.len(), &model.skins, &model.meshes);
+    let followed = followed(model);
+    let weighted: Vec<usize> = (0..reaches.len()).filter(|bone| followed[*bone]).collect();
+    let of_clips = model.clips.iter().flat_map(|clip| {
+        let time = |moment| clip.duration() * moment as f32 / (MOMENTS - 1) as f32;
+        (0..MOMENTS).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
+    });
+    let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
+    let reaches: Vec<f32> = weighted.iter().map(|bone| reaches[*bone]).collect();
+    for locals in std::iter::once(skeleton.rest()).chain(of_clips) {
+        let models = concat(skeleton, &locals);
+        let models: Vec<_> = weighted.iter().map(|bone| models[*bone]).collect();
+        if let Some(found) = (!reaches.is_empty()).then(|| bounds(&models, &reaches)[0]) {
+            low = low.min(Vec3::from_slice(&found.low));
+            high = high.max(Vec3::from_slice(&found.high));
+        }
+    }
+    match low.cmple(high).all() {
+        true => (low.midpoint(high), 1.05 * low.distance(high) / 2.0),
+        false => (Vec3::ZERO, 0.0),
+    }
+}
+
+/// Whether any vertex follows each bone.
+fn followed(model: &Model) -> Vec<bool> {
+    let mut followed = vec![false; model.skeleton.len()];
+    for mesh in &model.meshes {
+        let bones = &model.skins[mesh.skin].bones;
+        for influence in mesh.influences.all() {
+            followed[bones[influence.bone as usize] as usize] = true;
+        }
+    }
+    followed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::skinning::morph::morph;
+    use crate::reference::skinning::palette::palette_for;
+    use crate::reference::skinning::skin::skin;
+    use crate::skinning::{Blend, Reduction};
+
+    #[test]
+    fn the_ball_holds_every_vertex_and_not_much_more() {
+        let model = crate::animation::creature().expect("valid");
+        let (center, radius) = ball_in_clips(&model);
+        let mesh = &model.meshes[0];
+        let mut farthest = 0.0_f32;
+        for clip in &model.clips {
+            for moment in 0..45 {
+                let locals = sample(clip, clip.duration() * moment as f32 / 44.0, RotationPath::Slerp);
+                let models = concat(&model.skeleton, &locals);
+                let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
+                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL);
+                let away = vertices.iter().map(|vertex| Vec3::from(vertex.position).distance(center));
+                farthest = away.fold(farthest, f32::max);
+            }
+        }
+        assert!((farthest..1.6 * farthest).contains(&radius), "{radius} for {farthest}");
+        let bare = Model { meshes: vec![], ..model };
+        assert_eq!(ball_in_clips(&bare), (Vec3::ZERO, 0.0));
+    }
+}

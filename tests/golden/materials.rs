@@ -1,0 +1,70 @@
+//! Materials of glTF: textures, colours, holes and what one sees through; on the device and in the twin.
+
+use image::RgbaImage;
+use relievo::animation::sample::RotationPath;
+use relievo::animation::transform::{AFFINE_IDENTITY, Affine};
+use relievo::gpu::Buffer;
+use relievo::reference::animation::concat::concat;
+use relievo::reference::animation::sample::sample;
+use relievo::reference::skinning::morph::morph;
+use relievo::reference::skinning::palette::palette_for;
+use relievo::reference::skinning::picture::{Part, Scene};
+use relievo::reference::skinning::skin::skin;
+use relievo::reference::skinning::texture::Surface;
+use relievo::render::target::LINEAR_FORMAT;
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
+use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::{Blend, Reduction, Vertex};
+use relievo::surface::linear_image::LinearImage;
+
+use crate::figure::figure;
+use crate::harness::{Difference, Tolerance, check_golden, gpu};
+use crate::skinned::{SKY, checks};
+
+const SIZE: [u32; 2] = [2 * 160; 2];
+
+#[test]
+fn a_figure_in_its_materials() {
+    let (gpu, model) = (gpu(), figure());
+    let models: Vec<Affine> = concat(&model.skeleton, &sample(&model.clips[0], 0.8, RotationPath::Slerp));
+    let vertices = |mesh: &relievo::skinning::Mesh| -> Vec<Vertex> {
+        let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
+        skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL)
+    };
+    let skinned: Vec<_> = model.meshes.iter().map(vertices).collect();
+    let clip_from_model = framing(skinned.iter().flatten());
+
+    let albedos = Albedo::of_meshes(&gpu, &model, &checks(&gpu), ColorTexture::linear).expect("uploaded");
+    let mut crowd = CrowdScene::new(&gpu, LINEAR_FORMAT, Light::default()).expect("compiled");
+    let character = Character {
+        model: &model,
+        models: &Buffer::from_slice(&gpu, "models", &models).expect("uploaded"),
+        moved: None,
+        placements: &Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
+        fade: [1e3, 2e3],
+        blend: Blend::Linear,
+        albedos: &albedos,
+    };
+    crowd.add(&gpu, &character).expect("prepared");
+    crowd.set_camera(&gpu, clip_from_model, glam::Vec3::ZERO).expect("set");
+    let target = Target::linear(&gpu, SIZE).expect("allocated");
+    gpu.run("skin", |encoder| crowd.record(encoder)).expect("run");
+    target.draw(&gpu, SKY, |pass| crowd.draw(pass)).expect("drawn");
+    let picture = LinearImage { size: SIZE, pixels: target.read_linear(&gpu).expect("read") };
+    let picture: RgbaImage = picture.reduced(2).encoded();
+
+    let surfaces: Vec<_> = (model.meshes.iter())
+        .map(|mesh| Surface::of(&model, model.material(mesh).expect("fits").expect("has one")))
+        .collect();
+    let parts: Vec<_> = (model.meshes.iter().zip(&skinned).zip(&surfaces))
+        .map(|((mesh, vertices), surface)| Part { mesh, vertices, surface })
+        .collect();
+    let scene = Scene { clip_from_model, light: Light::default(), size: SIZE };
+    let twin = scene.draw(&parts, SKY.map(|light| light as f32)).reduced(2).encoded();
+    let difference = Difference::of(&picture, &twin, Tolerance::IMAGE.levels);
+    assert!(difference.within(Tolerance::IMAGE), "{difference:?}");
+
+    if let Err(error) = check_golden("skin_materials", &picture, Tolerance::IMAGE) {
+        panic!("{error}");
+    }
+}
