@@ -12,6 +12,8 @@ struct LodParams {
     // Steps of the fade.
     steps: f32,
     instances: u32,
+    // The most influences.
+    most: u32,
 }
 
 struct Reduction {
@@ -31,7 +33,7 @@ struct Arguments {
 @group(0) @binding(0) var<uniform> params: LodParams;
 // Three rows an instance: from the model's space into the world.
 @group(0) @binding(1) var<storage, read> placements: array<vec4<f32>>;
-// Of the instances that are seen; others keep theirs.
+// With no influences of those that are not seen.
 @group(0) @binding(2) var<storage, read_write> reductions: array<Reduction>;
 // The instances that are seen.
 @group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
@@ -61,10 +63,12 @@ fn main(
         let side = params.planes[plane];
         is_seen = is_seen && dot(side.xyz, center) + side.w >= -radius;
     }
+    var reduction = Reduction(0.0, 0u);
     if is_seen {
         let away = length(center - params.eye.xyz);
         let way = clamp((away - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
-        reductions[instance] = Reduction(floor(way * params.steps) / params.steps, 8u);
+        reduction = Reduction(floor(way * params.steps) / params.steps, params.most);
         drawn[atomicAdd(&arguments.instances, 1u)] = instance;
     }
+    reductions[instance] = reduction;
 }

@@ -5,6 +5,7 @@
 mod harness;
 
 mod cracks;
+mod culled;
 mod curved;
 mod faults;
 mod scene;

@@ -85,7 +85,8 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///   "full_…" of each: the same crowd without a gate, fully skinned
 ///   "skinned_share": clusters that were skinned, of all, in the frames that were timed
 ///   "drawn_timed_by": as "timed_by", of these; on a processor wall
-///   "vertex_error": as "error", of all skinned vertices from those of the full crowd, in the frames that were timed
+///   "vertex_error": as "error", of all skinned vertices from those of the full crowd, in the frames that were timed;
+///     "unseen" are those of instances out of view too, which are not skinned
 ///
 /// With --scene, instead: the whole frame at each distance in four ways, which differ in nothing else: "off" (all bones,
 /// all influences), "animation" (the gate), "skinning" (--skinning), "both". DIR/scene.json: what report.json says of

@@ -26,9 +26,12 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), way: way.clamp(0.0, 1.0) }
 }
 
-/// What an instance is drawn with; nothing where it is not seen.
-pub fn lod(view: &LodView, placement: &Affine) -> Option<Reduction> {
+/// What an instance is drawn with; [`Reduction::UNSEEN`] where it is not seen.
+pub fn lod(view: &LodView, placement: &Affine) -> Reduction {
     let Seen { depth, way } = seen(view, placement);
     let steps = view.steps as f32;
-    (depth >= 0.0).then(|| Reduction { fade: (way * steps).floor() / steps, ..Reduction::FULL })
+    if depth < 0.0 {
+        return Reduction::UNSEEN;
+    }
+    Reduction { fade: (way * steps).floor() / steps, most: view.most }
 }

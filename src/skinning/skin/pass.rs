@@ -6,7 +6,7 @@ use encase::ShaderType;
 
 use super::{Blend, Vertex};
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders};
-use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::buffers::{ActiveClusters, ActiveJob, MeshBuffers, SkinnedCrowd};
 use crate::{Error, InputError};
 
 /// `SkinParams` of the kernel.
@@ -42,7 +42,7 @@ impl SkinPass {
         Ok(Self { kernels, blend })
     }
 
-    /// Prepares every vertex of some instances, which are `skinned` one after the other, in the mesh's clusters.
+    /// Prepares every vertex of those that are seen of some instances, which are `skinned` one after the other, in the mesh's clusters.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another mesh or kind of blending, instances that it lacks, and too small an
@@ -68,7 +68,7 @@ impl SkinPass {
         Ok(Job::new(gpu, "skinning/skin", vec![step])?)
     }
 
-    /// Prepares the active clusters of all instances; the other vertices stay.
+    /// Prepares the active clusters of all instances, of those that are seen; the other vertices stay.
     ///
     /// # Errors
     /// As [`SkinPass::prepare`].
@@ -79,10 +79,15 @@ impl SkinPass {
         crowd: &SkinnedCrowd,
         skinned: &Buffer<Vertex>,
         active: &ActiveClusters,
-    ) -> Result<SkinActiveJob, Error> {
+    ) -> Result<ActiveJob, Error> {
         let kernel = self.kernel(true, mesh);
         let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, (skinned, active))?;
-        Ok(SkinActiveJob { kernel: kernel.clone(), group, dispatched: active.dispatched.clone() })
+        Ok(ActiveJob {
+            label: "skinning/skin",
+            kernel: kernel.clone(),
+            group,
+            dispatched: active.dispatched.clone(),
+        })
     }
 
     fn kernel(&self, compacted: bool, mesh: &MeshBuffers) -> &Kernel {
@@ -134,22 +139,10 @@ impl SkinPass {
     }
 }
 
-/// Prepared skinning of clusters that a kernel or the host chooses.
-#[derive(Debug, Clone)]
-pub struct SkinActiveJob {
-    kernel: Kernel,
-    group: Group,
-    dispatched: Buffer<u32>,
-}
-
-impl SkinActiveJob {
-    /// Records the skinning.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kernel.dispatch_indirect(encoder, "skinning/skin", &self.group, (self.dispatched.raw(), 0));
-    }
-}
-
 /// Records a copy of vertices as they are, before the next skinning changes them: last frame's, for motion vectors.
+///
+/// Instances that were not seen in the frame before have no vertices of that frame: theirs are of the time when they
+/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are.
 ///
 /// # Errors
 /// [`InputError`] for buffers of different lengths.

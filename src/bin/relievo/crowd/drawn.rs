@@ -10,7 +10,7 @@ use relievo::render::ColorTexture;
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodJob, LodPass, LodView, ball};
+use relievo::skinning::lod::{LodJob, LodPass, LodView, NO_FADE, ball};
 use relievo::skinning::picture::Light;
 use relievo::skinning::{Blend, Reduction};
 use relievo::surface::mips::Mips;
@@ -115,7 +115,10 @@ impl<'a> Drawing<'a> {
             } else {
                 self.gpu.run("frame", |encoder| {
                     self.device.gated.record(encoder);
-                    self.looks.iter().filter(|look| look.by == By::Gate).for_each(|look| look.skin(encoder));
+                    self.looks
+                        .iter()
+                        .filter(|look| look.by == By::Gate)
+                        .for_each(|look| look.compute(encoder));
                 })?;
             }
             step();
@@ -175,7 +178,7 @@ impl<'a> Drawing<'a> {
             match chosen {
                 None => look.times.skin.push(timed(&|encoder| look.skin(encoder))?),
                 Some(chosen) if chosen == index => {}
-                Some(_) => gpu.run("skinning", |encoder| look.skin(encoder))?,
+                Some(_) => gpu.run("skinning", |encoder| look.compute(encoder))?,
             }
         }
         Ok(())
@@ -184,14 +187,19 @@ impl<'a> Drawing<'a> {
     /// Reads all looks back, and compares them with the first.
     fn compare(&mut self) -> Result<(), Error> {
         for mesh in 0..self.stage.plan.model.meshes.len() {
-            let fresh = self.looks[0].meshes[mesh].skin.skinned.read_blocking(self.gpu)?;
+            let first = &self.looks[0].meshes[mesh].skin;
+            let fresh = first.skinned.read_blocking(self.gpu)?;
+            // The same in all looks.
+            let reductions = first.crowd.reductions.read_blocking(self.gpu)?;
+            let is_seen: Vec<bool> = reductions.iter().map(|reduction| reduction.most > 0).collect();
+            let seen = is_seen.iter().filter(|is_seen| **is_seen).count();
             for look in &mut self.looks {
                 let skin = &look.meshes[mesh].skin;
                 let own = skin.skinned.read_blocking(self.gpu)?;
-                look.spread.add(self.stage, self.scene, &own, &fresh);
+                look.spread.add(self.stage, self.scene, &is_seen, &own, &fresh);
                 let all = skin.crowd.instances * skin.clusters.len();
                 let some = match look.by {
-                    By::All => all,
+                    By::All => seen * skin.clusters.len(),
                     By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3] as usize,
                 };
                 look.clusters = [look.clusters[0] + some as u64, look.clusters[1] + all as u64];
@@ -302,27 +310,32 @@ impl<'a> World<'a> {
         };
         let mut scene = self.renderer.scene(gpu, &instances)?;
         scene.set_camera(gpu, self.clip_from_world)?;
-        // Where nothing fades, nobody reads what the kernel writes here.
-        let (reductions, range) = match skinning {
-            Skinning::Fade(range) => (skin.crowd.reductions.clone(), range),
-            Skinning::All(reduction) => {
-                skin.crowd.reductions.write(gpu, &vec![reduction; count])?;
-                (Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?, stage.plan.range)
+        let ([near, far], most) = match skinning {
+            Skinning::Fade(range) => {
+                ([range.min, range.max].map(|units| units * stage.metres_a_unit), Reduction::FULL.most)
             }
+            Skinning::All(reduction) => (NO_FADE, reduction.most),
         };
         let (center, radius) = ball(mesh.positions.iter().map(|position| Vec3::from(*position)));
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
-            near: range.min * stage.metres_a_unit,
-            far: range.max * stage.metres_a_unit,
+            near,
+            far,
             steps: STEPS,
+            most,
             center,
             // Clips move vertices out of the ball at rest.
             radius: 2.0 * radius,
         };
-        let lod =
-            LodPass::new(gpu)?.prepare(gpu, &view, placements, &reductions, &drawn, &scene.arguments)?;
+        let lod = LodPass::new(gpu)?.prepare(
+            gpu,
+            &view,
+            placements,
+            &skin.crowd.reductions,
+            &drawn,
+            &scene.arguments,
+        )?;
         Ok(Drawable { skin, lod, scene })
     }
 }
