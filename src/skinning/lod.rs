@@ -75,14 +75,20 @@ impl LodView {
     }
 }
 
-/// A ball around a model: around these places of its vertices, with a margin for what lies between.
+/// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
+/// its clips: [`Extent`](super::extent::Extent).
 pub fn ball(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
     let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    if !low.cmple(high).all() {
-        return (Vec3::ZERO, 0.0);
-    }
-    let center = low.midpoint(high);
-    (center, 1.05 * places.map(|place| place.distance(center)).fold(0.0, f32::max))
+    let center = middle_of(low, high);
+    (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
+}
+
+/// Of a ball.
+pub(crate) const MARGIN: f32 = 1.05;
+
+/// The middle of a box, if it has any.
+pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
+    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }
 
 /// Where an instance of uniform scale stands: turned about +Y, then moved.

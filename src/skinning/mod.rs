@@ -5,6 +5,7 @@ pub mod buffers;
 pub mod clusters;
 pub mod collapse;
 pub mod export;
+pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod lod;
@@ -16,6 +17,7 @@ pub mod select;
 pub mod skin;
 pub mod weights;
 
+pub use extent::Extent;
 pub use mesh::{Mesh, reaches};
 pub use morph::{MorphTarget, WeightKeys};
 pub use skin::{Blend, Vertex};

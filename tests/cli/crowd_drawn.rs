@@ -73,7 +73,8 @@ fn the_gate_off_is_exact() {
 #[test]
 fn scenes_compare_four_ways() {
     let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
-    let ([near, far], out, _folder) = rows("scene.json", &gate);
+    let fade = ["--skinning", "fade"];
+    let ([near, far], out, _folder) = rows("scene.json", &[&gate[..], &fade].concat());
     let worst = |row: &Value, way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
     for row in [&near, &far] {
         assert_eq!(worst(row, "off"), 0.0);
@@ -98,6 +99,25 @@ fn scenes_compare_four_ways() {
     assert!(metres(&truncated_near) > metres(&near));
 }
 
+/// Half a pixel for the gate, half a pixel for the fade: one for both, wherever the crowd stands.
+#[test]
+fn both_levels_of_detail_keep_a_pixel() {
+    let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
+    let (rows, out, _folder) = rows("scene.json", &gate);
+    let text = std::fs::read(out.join("scene.json")).expect("written");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(report["skinning"], "bounded:0.5");
+    let [near, far] = [0, 1].map(|end| number(&report["fade"][0][end]));
+    assert!(near > 50.0 && near < 300.0 && far > 2000.0, "{near} to {far}");
+    assert!((0.001..0.1).contains(&number(&report["stray_metres"][0])));
+    for row in rows {
+        let worst = |way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
+        // As far as places of the picture round.
+        assert!(worst("animation") <= 0.501 && worst("skinning") <= 0.501 && worst("both") <= 1.002, "{row}");
+        assert!(worst("skinning") > 0.03 && worst("both") >= 0.03, "{row}");
+    }
+}
+
 #[test]
 fn bad_input_is_refused_and_nothing_written() {
     for (arguments, words) in [
@@ -107,6 +127,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--skinning", "fade"], &["skinning", "--image"]),
         (&["--image", "--skinning", "half"], &["skinning", "half", "truncate:K"]),
         (&["--image", "--skinning", "truncate:0"], &["skinning", "truncate:0"]),
+        (&["--image", "--skinning", "bounded:-1"], &["skinning", "bounded:-1", "1e6"]),
         (&["--image", "--scene"], &["--image", "--scene"]),
         (&["--scene", "--pareto"], &["--pareto", "--scene"]),
     ] {

@@ -90,7 +90,8 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///
 /// With --scene, instead: the whole frame at each distance in four ways, which differ in nothing else: "off" (all bones,
 /// all influences), "animation" (the gate), "skinning" (--skinning), "both". DIR/scene.json: what report.json says of
-/// the crowd, "vertices", and "distances": "distance", "tall_pixels" (size of the nearest instance), "mean_omega", for
+/// the crowd, "vertices", for each mesh "fade" (units from which on it fades, and from which on it is rigid, or null) and
+/// "stray_metres" (how far fading alone takes a vertex), and "distances": "distance", "tall_pixels" (size of the nearest instance), "mean_omega", for
 /// each way the fields above, and "cheaper" {"frame", "compute"}, off divided by both. scene.png: "frame_nanoseconds"
 /// against distance; crowd_<distance>.png: both.
 ///
@@ -168,9 +169,10 @@ pub struct Crowd {
     /// Draws the crowd with and without level of detail in animation and skinning.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
-    /// Which bones vertices follow: all of theirs; the K strongest; or all, fading to one over --range. Default: full,
-    /// with --scene fade.
-    #[arg(long, value_name = "full|truncate:K|fade")]
+    /// Which bones vertices follow: all of theirs; the K strongest; all, fading to one over --range; or all, fading as far
+    /// as no vertex is more than PIXELS off, which with the gate's own --pixels add up. Default: full, with --scene
+    /// bounded:0.5.
+    #[arg(long, value_name = "full|truncate:K|fade|bounded:PIXELS")]
     skinning: Option<String>,
     /// The folder.
     #[arg(long, value_name = "DIR")]

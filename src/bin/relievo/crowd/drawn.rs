@@ -10,9 +10,9 @@ use relievo::render::ColorTexture;
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodJob, LodPass, LodView, NO_FADE, ball};
+use relievo::skinning::lod::{LodJob, LodPass, LodView, NO_FADE};
 use relievo::skinning::picture::Light;
-use relievo::skinning::{Blend, Reduction};
+use relievo::skinning::{Blend, Extent, Reduction};
 use relievo::surface::mips::Mips;
 use relievo::{Error, InputError};
 
@@ -34,6 +34,9 @@ const SKY: [f64; 3] = [0.02, 0.025, 0.03];
 
 /// Width of the picture over its height.
 const ASPECT: [u32; 2] = [16, 9];
+
+/// In pixels.
+const PICTURE: [u32; 2] = [LINES * ASPECT[0] / ASPECT[1], LINES];
 
 /// Who animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,7 +96,7 @@ impl<'a> Drawing<'a> {
         let look = |(by, skinning): &(By, Skinning)| world.look(&device, *by, *skinning);
         Ok(Self {
             looks: ways.iter().map(look).collect::<Result<_, Error>>()?,
-            target: Target::new(gpu, [LINES * ASPECT[0] / ASPECT[1], LINES])?,
+            target: Target::new(gpu, PICTURE)?,
             timer: Timer::for_drawing(gpu)?,
             gpu,
             stage,
@@ -288,15 +291,15 @@ impl<'a> World<'a> {
         })
     }
 
-    fn drawable(&self, device: &Device, by: By, skinning: Skinning, mesh: usize) -> Result<Drawable, Error> {
+    fn drawable(&self, device: &Device, by: By, skinning: Skinning, index: usize) -> Result<Drawable, Error> {
         let Self { gpu, stage, placements, .. } = self;
         let (model, count) = (&stage.plan.model, stage.instances.len());
         let skin = match by {
-            By::All => SkinFrame::new(gpu, model, mesh, &device.full.crowd.models, count, Blend::Linear)?,
-            By::Gate => SkinFrame::new(gpu, model, mesh, &device.gated.crowd.models, count, Blend::Linear)?
+            By::All => SkinFrame::new(gpu, model, index, &device.full.crowd.models, count, Blend::Linear)?,
+            By::Gate => SkinFrame::new(gpu, model, index, &device.gated.crowd.models, count, Blend::Linear)?
                 .with_moved(gpu, &device.gated.active.dirty)?,
         };
-        let mesh = &model.meshes[mesh];
+        let mesh = &model.meshes[index];
         // Morph targets stay as they are at rest.
         skin.crowd.weights.write(gpu, &mesh.weights.repeat(count))?;
         let drawn = Buffer::new(gpu, "drawn", count)?;
@@ -310,23 +313,17 @@ impl<'a> World<'a> {
         };
         let mut scene = self.renderer.scene(gpu, &instances)?;
         scene.set_camera(gpu, self.clip_from_world)?;
-        let ([near, far], most) = match skinning {
-            Skinning::Fade(range) => {
-                ([range.min, range.max].map(|units| units * stage.metres_a_unit), Reduction::FULL.most)
-            }
-            Skinning::All(reduction) => (NO_FADE, reduction.most),
-        };
-        let (center, radius) = ball(mesh.positions.iter().map(|position| Vec3::from(*position)));
+        let [near, far] = fade(stage, skinning, index).unwrap_or(NO_FADE);
+        let Extent { center, radius, .. } = stage.extents[index];
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
             near,
             far,
             steps: STEPS,
-            most,
+            most: if let Skinning::All(reduction) = skinning { reduction.most } else { Reduction::FULL.most },
             center,
-            // Clips move vertices out of the ball at rest.
-            radius: 2.0 * radius,
+            radius,
         };
         let lod = LodPass::new(gpu)?.prepare(
             gpu,
@@ -337,6 +334,15 @@ impl<'a> World<'a> {
             &scene.arguments,
         )?;
         Ok(Drawable { skin, lod, scene })
+    }
+}
+
+/// Metres from where on a mesh fades and from where on it is rigid, if it ever is.
+pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 2]> {
+    match skinning {
+        Skinning::All(_) => None,
+        Skinning::Fade(range) => Some([range.min, range.max].map(|units| units * stage.metres_a_unit)),
+        Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.lens, PICTURE, pixels)),
     }
 }
 
