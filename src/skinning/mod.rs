@@ -11,6 +11,7 @@ pub mod frame;
 pub mod lod;
 pub mod mesh;
 pub mod morph;
+pub mod morph_weights;
 pub mod palette;
 pub mod picture;
 pub mod select;

@@ -77,7 +77,7 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///
 /// With --image, on the GPU, DIR/crowd_<distance>.png too: the last frame of the gated crowd, its skin textured and lit,
 /// 1920 × 1080 pixels. Clusters of 64 vertices with a bone that moved are skinned, once, in compute, and drawn from
-/// there; morph targets stay as at rest; the gate watches every vertex. "skinning" is what vertices follow (--skinning),
+/// there; morph targets move in every frame, whatever the gate says; the gate watches every vertex. "skinning" is what vertices follow (--skinning),
 /// and "distances" also have
 ///   "nanoseconds_per_vertex": palettes, the choice of clusters and vertices, divided by all vertices of the crowd
 ///   "frame_nanoseconds": gate, places, sampling, concatenation, who is seen, skinning, and the drawing, in one

@@ -11,12 +11,14 @@ use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LodJob, LodPass, LodView, NO_FADE};
+use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
 use relievo::skinning::{Blend, Extent, Reduction};
 use relievo::surface::mips::Mips;
 use relievo::{Error, InputError};
 
 use super::device::Device;
+use super::gates::frame;
 use super::plan::{FIELD_OF_VIEW, LINES};
 use super::play::middle;
 use super::skinning::Skinning;
@@ -79,6 +81,7 @@ struct Times {
 struct Drawable {
     skin: SkinFrame,
     lod: LodJob,
+    weights: MorphWeightsJob,
     scene: SkinnedScene,
 }
 
@@ -111,6 +114,10 @@ impl<'a> Drawing<'a> {
         let mut turns = 0..;
         for number in 0..=frames {
             self.device.set(number)?;
+            let (_, elapsed) = frame(number, self.stage.plan.rate);
+            for mesh in self.looks.iter().flat_map(|look| &look.meshes) {
+                mesh.weights.set(self.gpu, elapsed)?;
+            }
             if number > 0 && number % frames.div_ceil(TIMED) == 0 {
                 let turn = turns.next().unwrap_or(0) % (2 * self.looks.len() + 1);
                 self.play_timed(turn)?;
@@ -179,7 +186,10 @@ impl<'a> Drawing<'a> {
         }
         for (index, look) in looks.iter_mut().enumerate() {
             match chosen {
-                None => look.times.skin.push(timed(&|encoder| look.skin(encoder))?),
+                None => {
+                    gpu.run("decisions", |encoder| look.decide(encoder))?;
+                    look.times.skin.push(timed(&|encoder| look.skin(encoder))?);
+                }
                 Some(chosen) if chosen == index => {}
                 Some(_) => gpu.run("skinning", |encoder| look.compute(encoder))?,
             }
@@ -223,9 +233,17 @@ impl Look {
         }
     }
 
-    /// Who is seen and how far they fade, and skinning.
+    /// Who is seen and how far they fade, and the weights of their morph targets.
+    fn decide(&self, encoder: &mut wgpu::CommandEncoder) {
+        for mesh in &self.meshes {
+            mesh.lod.record(encoder);
+            mesh.weights.record(encoder);
+        }
+    }
+
+    /// The same, and skinning.
     fn compute(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.meshes.iter().for_each(|mesh| mesh.lod.record(encoder));
+        self.decide(encoder);
         self.skin(encoder);
     }
 
@@ -300,8 +318,12 @@ impl<'a> World<'a> {
                 .with_moved(gpu, &device.gated.active.dirty)?,
         };
         let mesh = &model.meshes[index];
-        // Morph targets stay as they are at rest.
-        skin.crowd.weights.write(gpu, &mesh.weights.repeat(count))?;
+        let playing = match by {
+            By::All => &device.full.crowd.instances,
+            By::Gate => &device.gated.crowd.instances,
+        };
+        let keys = WeightSet::new(mesh, &stage.set, &[stage.plan.clip_index])?;
+        let weights = MorphWeightsPass::new(gpu)?.prepare(gpu, &keys, playing, &skin.crowd)?;
         let drawn = Buffer::new(gpu, "drawn", count)?;
         let instances = SkinnedInstances {
             mesh: &skin.mesh,
@@ -333,7 +355,7 @@ impl<'a> World<'a> {
             &drawn,
             &scene.arguments,
         )?;
-        Ok(Drawable { skin, lod, scene })
+        Ok(Drawable { skin, lod, weights, scene })
     }
 }
 
