@@ -6,6 +6,9 @@ import package::wgsl::dispatch::rows_of_workgroups;
 
 override FINISH: bool = false;
 
+// Words of an instance in `skinned`, before its weights.
+const SKINNED_WORDS = 3u;
+
 struct SelectParams {
     instances: u32,
     clusters: u32,
@@ -38,7 +41,7 @@ struct Dispatched {
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
 // Where each vertex's deltas begin; one more than there are vertices.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
-// Of each instance when it was looked at last: fade, most influences, for how many frames it has been seen (2 for more),
+// Of each instance in the frame before: fade, most influences, for how many frames it has been seen (2 for more),
 // and the weights.
 @group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
 // cluster * instances + instance, of those to be skinned.
@@ -47,13 +50,13 @@ struct Dispatched {
 
 fn finish(index: u32) {
     if index < params.instances {
-        let to = index * (3u + params.targets);
+        let to = index * (SKINNED_WORDS + params.targets);
         let now = reductions[index];
         skinned[to] = now.x;
         skinned[to + 1u] = now.y;
         skinned[to + 2u] = select(min(skinned[to + 2u] + 1u, 2u), 0u, now.y == 0u);
         for (var target_index = 0u; target_index < params.targets; target_index++) {
-            skinned[to + 3u + target_index] = weights[index * params.targets + target_index];
+            skinned[to + SKINNED_WORDS + target_index] = weights[index * params.targets + target_index];
         }
     }
     if index == 0u {
@@ -74,7 +77,7 @@ fn is_morphed_anew(cluster: u32, instance: u32, last: u32) -> bool {
     }
     var found = false;
     for (var target_index = 0u; target_index < params.targets && !found; target_index++) {
-        found = weights[instance * params.targets + target_index] != skinned[last + 3u + target_index];
+        found = weights[instance * params.targets + target_index] != skinned[last + SKINNED_WORDS + target_index];
     }
     return found;
 }
@@ -99,7 +102,7 @@ fn main(
     if now.y == 0u {
         return;
     }
-    let last = instance * (3u + params.targets);
+    let last = instance * (SKINNED_WORDS + params.targets);
     var found = now.x != skinned[last] || now.y != skinned[last + 1u];
     for (var word = 0u; word < params.words && !found; word++) {
         found = (masks[cluster * params.words + word] & moved[instance * params.words + word]) != 0u;

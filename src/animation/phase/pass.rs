@@ -4,6 +4,7 @@ use encase::ShaderType;
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
+use crate::animation::place::check_elapsed;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
@@ -84,11 +85,9 @@ impl PhaseJob {
     /// Chooses the time of the next submission, as for [`super::super::place::PlaceJob::set`].
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    /// [`InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
-        if !elapsed.is_finite() {
-            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
-        }
+        check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ..self.params })?)
     }
 
@@ -104,4 +103,10 @@ mod tests {
     use crate::gpu::layout::layout_test;
 
     layout_test!(phase_params_layout: PhaseParams = ANIMATION_PHASE "PhaseParams");
+
+    #[test]
+    fn the_mark_of_layers_is_the_kernel_s() {
+        let shader = &crate::gpu::shaders::ANIMATION_PHASE;
+        assert_eq!(crate::gpu::layout::constant(shader, "BLENDED"), Some(crate::animation::phase::BLENDED));
+    }
 }

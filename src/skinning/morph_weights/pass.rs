@@ -3,10 +3,10 @@
 use encase::ShaderType;
 
 use super::WeightSet;
-use crate::animation::place::Instance;
+use crate::Error;
+use crate::animation::place::{Instance, check_elapsed};
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::SkinnedCrowd;
-use crate::{Error, InputError};
 
 /// `MorphWeightsParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -35,7 +35,7 @@ impl MorphWeightsPass {
     /// For a mesh without targets nothing is done.
     ///
     /// # Errors
-    /// [`InputError`] for fewer instances than the crowd has, and a crowd of another mesh; [`GpuError`].
+    /// [`crate::InputError`] for fewer instances than the crowd has, and a crowd of another mesh; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -85,11 +85,9 @@ impl MorphWeightsJob {
     /// Chooses the time of the next submission: seconds since the instances' starts.
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
-        if !elapsed.is_finite() {
-            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
-        }
+        check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &MorphWeightsParams { elapsed, ..self.params })?)
     }
 

@@ -125,4 +125,10 @@ mod tests {
     use crate::gpu::layout::layout_test;
 
     layout_test!(select_params_layout: SelectParams = SKINNING_SELECT "SelectParams");
+
+    #[test]
+    fn weights_begin_where_the_kernel_has_them() {
+        let shader = &crate::gpu::shaders::SKINNING_SELECT;
+        assert_eq!(crate::gpu::layout::constant(shader, "SKINNED_WORDS"), Some(SKINNED_WORDS as u32));
+    }
 }
