@@ -39,6 +39,16 @@ struct Arguments {
 @group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
 @group(0) @binding(4) var<storage, read_write> arguments: Arguments;
 
+// At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
+// or of their squares' sum.
+fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
+    let squares = x * x + y * y + z * z;
+    // First with second, second with third, third with first.
+    let mixed = abs(x * x.yzx + y * y.yzx + z * z.yzx);
+    let sums = squares + mixed + mixed.zxy;
+    return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
+}
+
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -54,10 +64,7 @@ fn main(
     let z = placements[3u * instance + 2u];
     let middle = vec4<f32>(params.ball.xyz, 1.0);
     let center = vec3<f32>(dot(x, middle), dot(y, middle), dot(z, middle));
-    // The squared lengths of the columns.
-    let columns = x.xyz * x.xyz + y.xyz * y.xyz + z.xyz * z.xyz;
-    // No longer than the matrix stretches: a sum holds for sheared ones too.
-    let radius = params.ball.w * sqrt(columns.x + columns.y + columns.z);
+    let radius = params.ball.w * stretch(x.xyz, y.xyz, z.xyz);
     var is_seen = true;
     for (var plane = 0u; plane < 6u; plane++) {
         let side = params.planes[plane];
