@@ -33,6 +33,7 @@ pub struct Plan {
     pub model: Model,
     pub clip: Clip,
     /// Its place among the model's.
+    #[cfg(feature = "gpu")]
     pub clip_index: usize,
     pub instances: usize,
     pub layout: Layout,
@@ -93,12 +94,14 @@ impl Plan {
         let skinning = a.skinning.as_deref().unwrap_or(faded);
         let model = open(&a.model)?;
         let clip = find(&model, &a.model, &a.clip)?;
+        #[cfg(feature = "gpu")]
         let clip_index = model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default();
         let clip = clip.clone();
         let weights = priorities::weights(a.weights.as_deref(), &model.skeleton, &clip, true)?;
         Ok(Self {
             name: a.model.display().to_string(),
             clip,
+            #[cfg(feature = "gpu")]
             clip_index,
             model,
             instances,
