@@ -12,6 +12,8 @@ struct LodParams {
     // Steps of the fade.
     steps: f32,
     instances: u32,
+    // The most influences.
+    most: u32,
 }
 
 struct Reduction {
@@ -31,11 +33,21 @@ struct Arguments {
 @group(0) @binding(0) var<uniform> params: LodParams;
 // Three rows an instance: from the model's space into the world.
 @group(0) @binding(1) var<storage, read> placements: array<vec4<f32>>;
-// Of the instances that are seen; others keep theirs.
+// With no influences of those that are not seen.
 @group(0) @binding(2) var<storage, read_write> reductions: array<Reduction>;
 // The instances that are seen.
 @group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
 @group(0) @binding(4) var<storage, read_write> arguments: Arguments;
+
+// At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
+// or of their squares' sum.
+fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
+    let squares = x * x + y * y + z * z;
+    // First with second, second with third, third with first.
+    let mixed = abs(x * x.yzx + y * y.yzx + z * z.yzx);
+    let sums = squares + mixed + mixed.zxy;
+    return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
+}
 
 @compute @workgroup_size(64)
 fn main(
@@ -52,19 +64,18 @@ fn main(
     let z = placements[3u * instance + 2u];
     let middle = vec4<f32>(params.ball.xyz, 1.0);
     let center = vec3<f32>(dot(x, middle), dot(y, middle), dot(z, middle));
-    // The squared lengths of the columns.
-    let columns = x.xyz * x.xyz + y.xyz * y.xyz + z.xyz * z.xyz;
-    // No longer than the matrix stretches: a sum holds for sheared ones too.
-    let radius = params.ball.w * sqrt(columns.x + columns.y + columns.z);
+    let radius = params.ball.w * stretch(x.xyz, y.xyz, z.xyz);
     var is_seen = true;
     for (var plane = 0u; plane < 6u; plane++) {
         let side = params.planes[plane];
         is_seen = is_seen && dot(side.xyz, center) + side.w >= -radius;
     }
+    var reduction = Reduction(0.0, 0u);
     if is_seen {
         let away = length(center - params.eye.xyz);
         let way = clamp((away - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
-        reductions[instance] = Reduction(floor(way * params.steps) / params.steps, 8u);
+        reduction = Reduction(floor(way * params.steps) / params.steps, params.most);
         drawn[atomicAdd(&arguments.instances, 1u)] = instance;
     }
+    reductions[instance] = reduction;
 }

@@ -1,10 +1,13 @@
-// Morph targets: vertices with the weighted deltas of their targets added, before skinning. A thread adds those of one
-// vertex of one instance.
+// Morph targets: vertices with the weighted deltas of their targets added, before skinning. A workgroup morphs a cluster
+// of 64 vertices of one instance: every one that is seen, or with COMPACTED those of a list.
+
+override COMPACTED: bool = false;
 
 struct MorphParams {
     vertices: u32,
     targets: u32,
-    // Vertices of all instances.
+    instances: u32,
+    // Clusters times instances.
     pairs: u32,
 }
 
@@ -17,7 +20,13 @@ struct MorphParams {
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
 // Of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
-@group(0) @binding(5) var<storage, read_write> morphed: array<vec2<f32>>;
+// Of each instance: fade and most influences; 0 of those where it is not seen.
+@group(0) @binding(5) var<storage, read> reductions: array<vec2<u32>>;
+// cluster * instances + instance, of those to be skinned.
+@group(0) @binding(6) var<storage, read> pairs: array<u32>;
+// Workgroups of the dispatch, and how many pairs.
+@group(0) @binding(7) var<storage, read> dispatched: vec4<u32>;
+@group(0) @binding(8) var<storage, read_write> morphed: array<vec2<f32>>;
 
 @compute @workgroup_size(64)
 fn main(
@@ -25,12 +34,22 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let pair = (group.y * groups.x + group.x) * 64u + lane;
-    if pair >= params.pairs {
+    var pair = group.y * groups.x + group.x;
+    if COMPACTED {
+        if pair >= dispatched.w {
+            return;
+        }
+        pair = pairs[pair];
+    }
+    let cluster = pair / params.instances;
+    let instance = pair - cluster * params.instances;
+    let vertex = 64u * cluster + lane;
+    if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let instance = pair / params.vertices;
-    let vertex = pair - instance * params.vertices;
+    if reductions[instance].y == 0u {
+        return;
+    }
     let first = 5u * vertex;
     let a = vertices[first];
     let b = vertices[first + 1u];
@@ -47,7 +66,7 @@ fn main(
         normal += weight * deltas[3u * at + 1u].xyz;
         tangent += weight * deltas[3u * at + 2u].xyz;
     }
-    let to = 5u * pair;
+    let to = 5u * (instance * params.vertices + vertex);
     morphed[to] = position.xy;
     morphed[to + 1u] = vec2<f32>(position.z, normal.x);
     morphed[to + 2u] = normal.yz;

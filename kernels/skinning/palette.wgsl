@@ -1,5 +1,6 @@
 // Palettes: what takes vertices from where they were bound to the model's space, for each instance and bone of a skin.
-// With DUAL taken apart into a stretch and a rigid motion after it. A thread makes one bone's.
+// With DUAL taken apart into a stretch and a rigid motion after it. A thread makes one bone's; none of instances that
+// are not seen.
 
 override DUAL: bool = false;
 
@@ -18,8 +19,10 @@ struct PaletteParams {
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
 // Three rows a bone of the skeleton and instance.
 @group(0) @binding(3) var<storage, read> models: array<vec4<f32>>;
+// Of each instance: fade and most influences; 0 of those where it is not seen.
+@group(0) @binding(4) var<storage, read> reductions: array<vec2<u32>>;
 // Three rows, or with DUAL rotation, dual part, diagonal and what is above it.
-@group(0) @binding(4) var<storage, read_write> palette: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
 fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
     let linear = row.x * x + row.y * y + row.z * z;
@@ -92,6 +95,9 @@ fn main(
         return;
     }
     let instance = pair / params.bones;
+    if reductions[instance].y == 0u {
+        return;
+    }
     let bone = pair - instance * params.bones;
     let bind = 3u * bone;
     let x = inverse_binds[bind];

@@ -1,9 +1,13 @@
-// Which clusters of which instances are skinned: those with a bone that moved, and those of instances whose reduction
-// changed. A thread decides for one cluster. With FINISH, a thread takes note of one instance's reduction, and the
-// first one writes the arguments of the dispatch.
+// Which clusters of which instances are skinned, of those that are seen: those with a bone that moved, those of
+// instances whose reduction changed, and with morph targets those of instances whose weights changed. A thread decides
+// for one cluster. With FINISH, a thread takes note of one instance's reduction and weights, and the first one writes
+// the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
 
 override FINISH: bool = false;
+
+// Words of an instance in `skinned`, before its weights.
+const SKINNED_WORDS = 3u;
 
 struct SelectParams {
     instances: u32,
@@ -12,6 +16,18 @@ struct SelectParams {
     words: u32,
     // The most workgroups along x.
     most: u32,
+    vertices: u32,
+    // Morph targets.
+    targets: u32,
+}
+
+// Workgroups of the dispatch, how many pairs, and how many were counted so far.
+struct Dispatched {
+    x: u32,
+    y: u32,
+    z: u32,
+    pairs: u32,
+    count: atomic<u32>,
 }
 
 @group(0) @binding(0) var<uniform> params: SelectParams;
@@ -19,23 +35,51 @@ struct SelectParams {
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
 // The bones of each instance that moved, likewise.
 @group(0) @binding(2) var<storage, read> moved: array<u32>;
-// Of each instance: now, and when it was skinned last.
+// Of each instance: fade and most influences; 0 of those where it is not seen.
 @group(0) @binding(3) var<storage, read> reductions: array<vec2<u32>>;
-@group(0) @binding(4) var<storage, read_write> skinned: array<vec2<u32>>;
+// Of each instance's targets.
+@group(0) @binding(4) var<storage, read> weights: array<u32>;
+// Where each vertex's deltas begin; one more than there are vertices.
+@group(0) @binding(5) var<storage, read> offsets: array<u32>;
+// Of each instance in the frame before: fade, most influences, for how many frames it has been seen (2 for more),
+// and the weights.
+@group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
 // cluster * instances + instance, of those to be skinned.
-@group(0) @binding(5) var<storage, read_write> pairs: array<u32>;
-@group(0) @binding(6) var<storage, read_write> count: atomic<u32>;
-// Workgroups of the dispatch, and how many pairs.
-@group(0) @binding(7) var<storage, read_write> dispatched: vec4<u32>;
+@group(0) @binding(7) var<storage, read_write> pairs: array<u32>;
+@group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 
 fn finish(index: u32) {
     if index < params.instances {
-        skinned[index] = reductions[index];
+        let to = index * (SKINNED_WORDS + params.targets);
+        let now = reductions[index];
+        skinned[to] = now.x;
+        skinned[to + 1u] = now.y;
+        skinned[to + 2u] = select(min(skinned[to + 2u] + 1u, 2u), 0u, now.y == 0u);
+        for (var target_index = 0u; target_index < params.targets; target_index++) {
+            skinned[to + SKINNED_WORDS + target_index] = weights[index * params.targets + target_index];
+        }
     }
     if index == 0u {
-        let all = atomicExchange(&count, 0u);
-        dispatched = vec4<u32>(rows_of_workgroups(all, params.most), all);
+        let all = atomicExchange(&dispatched.count, 0u);
+        let groups = rows_of_workgroups(all, params.most);
+        dispatched.x = groups.x;
+        dispatched.y = groups.y;
+        dispatched.z = groups.z;
+        dispatched.pairs = all;
     }
+}
+
+// Whether targets move a vertex of the cluster, and one of the instance's weights changed.
+fn is_morphed_anew(cluster: u32, instance: u32, last: u32) -> bool {
+    let first = 64u * cluster;
+    if offsets[first] == offsets[min(first + 64u, params.vertices)] {
+        return false;
+    }
+    var found = false;
+    for (var target_index = 0u; target_index < params.targets && !found; target_index++) {
+        found = weights[instance * params.targets + target_index] != skinned[last + SKINNED_WORDS + target_index];
+    }
+    return found;
 }
 
 @compute @workgroup_size(64)
@@ -54,11 +98,19 @@ fn main(
         return;
     }
     let instance = index - cluster * params.instances;
-    var found = any(reductions[instance] != skinned[instance]);
+    let now = reductions[instance];
+    if now.y == 0u {
+        return;
+    }
+    let last = instance * (SKINNED_WORDS + params.targets);
+    var found = now.x != skinned[last] || now.y != skinned[last + 1u];
     for (var word = 0u; word < params.words && !found; word++) {
         found = (masks[cluster * params.words + word] & moved[instance * params.words + word]) != 0u;
     }
+    if params.targets > 0u && !found {
+        found = is_morphed_anew(cluster, instance, last);
+    }
     if found {
-        pairs[atomicAdd(&count, 1u)] = index;
+        pairs[atomicAdd(&dispatched.count, 1u)] = index;
     }
 }

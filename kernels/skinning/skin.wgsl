@@ -1,5 +1,5 @@
 // Skinning (A section 8.4): vertices where their bones take them, with as many influences as each instance's reduction
-// leaves. A workgroup skins a cluster of 64 vertices of one instance: every one, or with COMPACTED those of a list.
+// leaves; none of those that are not seen. A workgroup skins a cluster of 64 vertices of one instance: every one, or with COMPACTED those of a list.
 // Instances run faster than clusters, so that a cluster's vertices stay in the cache.
 
 override COMPACTED: bool = false;
@@ -160,8 +160,12 @@ fn main(
         return;
     }
     let instance = params.first_instance + place;
+    let reduction = reductions[instance];
+    if reduction.most == 0u {
+        return;
+    }
     let rows = blended(
-        influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, reductions[instance]);
+        influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, reduction);
     var first = 5u * vertex;
     if MORPHED {
         first += 5u * params.vertices * instance;

@@ -19,6 +19,25 @@ pub use pass::{PlaceJob, PlacePass};
 /// with ε = 2⁻²⁴ 7.4e-4; the fraction's division adds 2.5ε.
 pub const PLACE_BOUND: f32 = 1e-3;
 
+/// The most seconds that a start, or what has elapsed since, may be from 0, and the most clip seconds a second: their
+/// products and sums stay finite. Some 30 years.
+pub const MOST_SECONDS: f32 = 1e9;
+
+/// Checks what has elapsed.
+#[cfg(any(feature = "gpu", test))]
+pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
+    check_seconds("elapsed", elapsed)
+}
+
+/// Checks any seconds.
+pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
+    // NaN is not within.
+    if value.abs() <= MOST_SECONDS {
+        return Ok(());
+    }
+    Err(InputError::new(field, value, format!("must be finite, and within ±{MOST_SECONDS:e}")))
+}
+
 /// What one character plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -45,7 +64,7 @@ impl Instance {
         if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
     }
 
-    /// Checks that it plays one of `clips` clips, at finite times.
+    /// Checks that it plays one of `clips` clips, from a start and at a rate within ±[`MOST_SECONDS`].
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -54,9 +73,7 @@ impl Instance {
             return Err(InputError::new("instance.clip", self.clip, format!("must be below {clips}")));
         }
         for (field, value) in [("instance.start", self.start), ("instance.rate", self.rate)] {
-            if !value.is_finite() {
-                return Err(InputError::new(field, value, "must be finite"));
-            }
+            check_seconds(field, value)?;
         }
         Ok(())
     }
@@ -85,5 +102,7 @@ mod tests {
         let refused = |instance: Instance| instance.validate(2).expect_err("refused").field;
         assert_eq!(refused(Instance { start: f32::NAN, ..good }), "instance.start");
         assert_eq!(refused(Instance { rate: f32::INFINITY, ..good }), "instance.rate");
+        assert_eq!(refused(Instance { rate: -1.1e9, ..good }), "instance.rate");
+        assert_eq!((check_elapsed(-1e9).is_ok(), check_elapsed(f32::NAN).is_ok()), (true, false));
     }
 }

@@ -13,6 +13,14 @@ pub(crate) fn check(shader: &Shader, name: &str, size: u64, offsets: &[u64]) -> 
     Ok(())
 }
 
+/// A `u32` constant of the flat shader that the host has too.
+#[cfg(test)]
+pub(crate) fn constant(shader: &Shader, name: &str) -> Option<u32> {
+    let line =
+        shader.source.lines().find_map(|line| line.trim().strip_prefix(&format!("const {name} = ")))?;
+    line.strip_suffix("u;")?.parse().ok()
+}
+
 /// A test that a `ShaderType` is laid out as the shader's struct of that name.
 macro_rules! layout_test {
     ($test:ident: $type:ty = $shader:ident $name:literal) => {
@@ -28,6 +36,13 @@ macro_rules! layout_test {
     };
 }
 pub(crate) use layout_test;
+
+#[test]
+fn constants_are_found_by_their_whole_name() {
+    let shader = &super::shaders::ANIMATION_BUDGET;
+    assert_eq!((constant(shader, "RANK"), constant(shader, "RANKS")), (Some(0), Some(1024)));
+    assert_eq!(constant(shader, "RAN"), None);
+}
 
 #[test]
 fn another_layout_is_refused() {

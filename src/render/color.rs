@@ -1,8 +1,8 @@
 //! Colour textures with mip levels.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::srgb::linear;
 use crate::skinning::material::{Filter, Sampling, Wrapping};
+use crate::srgb::linear;
 use crate::surface::mips::Mips;
 
 /// A filtered texture.

@@ -9,11 +9,11 @@ use crate::animation::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
-use crate::skinning::Blend;
 use crate::skinning::ball::ball_in_clips;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::lod::{LodJob, LodPass, LodView};
 use crate::skinning::picture::Light;
+use crate::skinning::{Blend, Reduction};
 use crate::{Error, InputError};
 
 /// Steps of the fade.
@@ -112,7 +112,8 @@ impl CrowdScene {
         let (center, radius) = ball_in_clips(model);
         let [near, far] = fade;
         let (clip_from_world, eye) = (Mat4::IDENTITY, Vec3::ZERO);
-        let view = LodView { clip_from_world, eye, near, far, steps: STEPS, center, radius };
+        let most = Reduction::FULL.most;
+        let view = LodView { clip_from_world, eye, near, far, steps: STEPS, most, center, radius };
         let reductions = &frames[0].crowd.reductions;
         let lod = self.lod.prepare(gpu, &view, placements, reductions, &drawn, &scenes[0].arguments)?;
         let is_gated = moved.is_some();

@@ -102,11 +102,11 @@ pub struct SkinnedCrowd {
     /// Written by [`super::palette::PalettePass`]: `instance · bones of the skin + bone`; three vectors a bone, or for
     /// dual quaternions four.
     pub palette: Buffer<[f32; 4]>,
-    /// One an instance. Full at first.
+    /// One an instance. Full at first; [`Reduction::UNSEEN`] where nothing is skinned, as [`super::lod`] says.
     pub reductions: Buffer<Reduction>,
     /// Weights of morph targets, instance by instance. 0 at first.
     pub weights: Buffer<f32>,
-    /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + vertex`.
+    /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + place`.
     pub morphed: Buffer<Vertex>,
     /// How many.
     pub instances: usize,
@@ -142,9 +142,13 @@ impl SkinnedCrowd {
 pub struct ActiveClusters {
     /// `cluster · instances + instance`; others are skipped.
     pub pairs: Buffer<u32>,
-    /// Workgroups along x, y and z, and how many pairs: arguments of an indirect dispatch.
+    /// Workgroups along x, y and z: arguments of an indirect dispatch; how many pairs; and a counter, which is 0 between
+    /// dispatches.
     pub dispatched: Buffer<u32>,
 }
+
+/// Words of [`ActiveClusters::dispatched`].
+pub const DISPATCHED_WORDS: usize = 5;
 
 impl ActiveClusters {
     /// Room for all clusters of all instances; none is active.
@@ -154,7 +158,7 @@ impl ActiveClusters {
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
             pairs: Buffer::new(gpu, "clusters", mesh.clusters() * crowd.instances)?,
-            dispatched: Buffer::from_slice(gpu, "dispatched clusters", &[0, 1, 1, 0])?,
+            dispatched: Buffer::from_slice(gpu, "dispatched clusters", &[0, 1, 1, 0, 0])?,
         })
     }
 
@@ -166,6 +170,6 @@ impl ActiveClusters {
         self.pairs.write(gpu, pairs)?;
         let count = pairs.len() as u32;
         let [x, y, z] = rows_of_workgroups(gpu, count);
-        self.dispatched.write(gpu, &[x, y, z, count])
+        self.dispatched.write(gpu, &[x, y, z, count, 0])
     }
 }

@@ -33,6 +33,8 @@ pub struct Clusters {
     pub masks: Vec<u32>,
     /// [`Order::words`].
     pub mask_words: usize,
+    /// Whether morph targets move vertices, one a cluster.
+    pub morphs: Vec<bool>,
 }
 
 impl Clusters {
@@ -62,6 +64,7 @@ impl Clusters {
             uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
             indices: mesh.indices.iter().map(|index| place[*index as usize]).collect(),
             influences: influences(mesh, &order),
+            morphs: morphs(mesh, &place),
             masks: clusters.flat_map(|cluster| mask(mesh, skin, &slot_of, cluster, mask_words)).collect(),
             mask_words,
             order,
@@ -95,6 +98,13 @@ fn order(mesh: &Mesh) -> Vec<u32> {
         (bones.first().copied(), bones.len(), bones)
     });
     order
+}
+
+fn morphs(mesh: &Mesh, place: &[u32]) -> Vec<bool> {
+    let mut morphs = vec![false; mesh.vertices().div_ceil(CLUSTER)];
+    let moved = mesh.targets.iter().flat_map(|target| &target.vertices);
+    moved.for_each(|vertex| morphs[place[*vertex as usize] as usize / CLUSTER] = true);
+    morphs
 }
 
 fn influences(mesh: &Mesh, order: &[u32]) -> Vec<u32> {

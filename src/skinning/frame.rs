@@ -5,10 +5,10 @@ use super::clusters::Clusters;
 use super::morph::MorphPass;
 use super::palette::PalettePass;
 use super::select::{SelectBuffers, SelectPass};
-use super::skin::{Blend, SkinActiveJob, SkinPass, Vertex};
+use super::skin::{Blend, SkinPass, Vertex};
 use crate::animation::Model;
 use crate::animation::transform::Affine;
-use crate::gpu::{Buffer, Gpu, Job};
+use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
 use crate::{Error, InputError};
 
 /// Prepared skinning of all instances of one mesh.
@@ -26,11 +26,12 @@ pub struct SkinFrame {
     pub active: ActiveClusters,
     /// `instance · vertices + place`.
     pub skinned: Buffer<Vertex>,
-    /// Palette and morph targets.
-    before: [Job; 2],
+    palette: Job,
     selection: Job,
-    all: Job,
-    some: SkinActiveJob,
+    /// Morph targets, and vertices.
+    all: [Job; 2],
+    /// The same, of clusters that are selected.
+    some: Vec<IndirectJob>,
 }
 
 impl SkinFrame {
@@ -55,15 +56,15 @@ impl SkinFrame {
         let select = SelectBuffers::new(gpu, &mesh, &crowd)?;
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
-        let before = [
-            PalettePass::new(gpu)?.prepare(gpu, &mesh, models, &crowd)?,
-            MorphPass::new(gpu)?.prepare(gpu, &mesh, &crowd)?,
-        ];
+        let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, models, &crowd)?;
+        let morph = MorphPass::new(gpu)?;
         let selection = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
         let pass = SkinPass::new(gpu, blend)?;
-        let all = pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?;
-        let some = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
-        Ok(Self { mesh, clusters, crowd, select, active, skinned, before, selection, all, some })
+        let all =
+            [morph.prepare(gpu, &mesh, &crowd)?, pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?];
+        let skin = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
+        let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
+        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selection, all, some })
     }
 
     /// The same, with the bones that moved where somebody else writes them: a gate's
@@ -78,16 +79,18 @@ impl SkinFrame {
         Ok(self)
     }
 
-    /// Records the skinning of every vertex.
+    /// Records the skinning of every vertex of the instances that are seen.
     pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.before.iter().chain([&self.all]).for_each(|job| job.record(encoder));
+        [&self.palette].into_iter().chain(&self.all).for_each(|job| job.record(encoder));
     }
 
-    /// Records the skinning of clusters with a bone that moved, and of instances whose reduction changed. The first time
-    /// that is every cluster. Whoever changes weights of targets says that all bones have moved.
+    /// Records the skinning of instances that are seen: of clusters with a bone that moved or a vertex that targets
+    /// move otherwise than in the frame before, and of all clusters where the reduction changed, as that of what was
+    /// not seen does. The first time that is all that is seen. Frames are counted here
+    /// ([`SelectBuffers::skinned`]): record it once a frame.
     pub fn record_moved(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.before.iter().chain([&self.selection]).for_each(|job| job.record(encoder));
-        self.some.record(encoder);
+        [&self.palette, &self.selection].into_iter().for_each(|job| job.record(encoder));
+        self.some.iter().for_each(|job| job.record(encoder));
     }
 
     /// The vertices of an instance, in the mesh's own order. Waits for the device.

@@ -1,13 +1,13 @@
 //! What a crowd is drawn with: which instances are seen, and how far the influences of each fade with its distance.
 //!
 //! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
-//! noticeably. An instance that is not seen keeps the fade that it had.
+//! noticeably. An instance that is not seen is not skinned ([`Reduction::UNSEEN`]); seen again, it is skinned as a whole.
 
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::InputError;
 use crate::animation::transform::Affine;
-use crate::skinning::weights::Reduction;
+use crate::skinning::weights::{MOST_INFLUENCES, Reduction};
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -28,11 +28,16 @@ pub struct LodView {
     pub far: f32,
     /// Steps of the fade; 64 is a good number.
     pub steps: u32,
+    /// The most influences of those that are seen, 1 to 8.
+    pub most: u32,
     /// The middle of a ball around the model in all of its clips.
     pub center: Vec3,
     /// Its radius.
     pub radius: f32,
 }
+
+/// [`LodView::near`] and [`LodView::far`] of crowds that do not fade.
+pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
 
 impl LodView {
     /// Checks the ranges.
@@ -49,6 +54,9 @@ impl LodView {
         }
         if self.steps == 0 || self.steps > 1 << 16 {
             return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
+        }
+        if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
+            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
         }
         Reduction::at_distance(0.0, [self.near, self.far])
             .map(|_| ())
@@ -67,14 +75,20 @@ impl LodView {
     }
 }
 
-/// A ball around a model: around these places of its vertices, with a margin for what lies between.
+/// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
+/// its clips: [`Extent`](super::extent::Extent).
 pub fn ball(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
     let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    if !low.cmple(high).all() {
-        return (Vec3::ZERO, 0.0);
-    }
-    let center = low.midpoint(high);
-    (center, 1.05 * places.map(|place| place.distance(center)).fold(0.0, f32::max))
+    let center = middle_of(low, high);
+    (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
+}
+
+/// Of a ball.
+pub(crate) const MARGIN: f32 = 1.05;
+
+/// The middle of a box, if it has any.
+pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
+    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }
 
 /// Where an instance of uniform scale stands: turned about +Y, then moved.
@@ -94,6 +108,7 @@ mod tests {
             near: 10.0,
             far: 30.0,
             steps: 64,
+            most: 8,
             center: Vec3::ZERO,
             radius: 1.0,
         }
@@ -106,6 +121,8 @@ mod tests {
         assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
         assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
         assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
+        assert_eq!(refused(LodView { most: 0, ..view() }), "view.most");
+        assert_eq!(refused(LodView { most: 9, ..view() }), "view.most");
         assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
         assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
     }

@@ -6,18 +6,21 @@ pub mod buffers;
 pub mod clusters;
 pub mod collapse;
 pub mod export;
+pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod lod;
 pub mod material;
 pub mod mesh;
 pub mod morph;
+pub mod morph_weights;
 pub mod palette;
 pub mod picture;
 pub mod select;
 pub mod skin;
 pub mod weights;
 
+pub use extent::Extent;
 pub use material::Material;
 pub use mesh::{Mesh, reaches};
 pub use morph::{MorphTarget, WeightKeys};

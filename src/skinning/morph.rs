@@ -91,6 +91,11 @@ impl WeightKeys {
         (0..self.targets).map(|target| self.between(key, fraction, target)).collect()
     }
 
+    /// Times, values and the code of the interpolation.
+    pub(crate) fn parts(&self) -> (&[f32], &[f32], u32) {
+        (&self.times, &self.values, self.interpolation as u32)
+    }
+
     fn between(&self, key: usize, t: f32, target: usize) -> f32 {
         let value = |key: usize, part: usize| match self.interpolation {
             Interpolation::CubicSpline => self.values[(3 * key + part) * self.targets + target],

@@ -1,8 +1,12 @@
-//! Which clusters are skinned in a frame: those with a bone that moved, and those of instances whose reduction changed.
-//! Skipping a bone so saves its vertices. The list's order differs from run to run; what is skinned does not.
+//! Which clusters are skinned in a frame, of instances that are seen: those with a bone that moved, those of instances
+//! whose reduction changed, and where morph targets move vertices, those of instances whose weights changed. Skipping a
+//! bone so saves its vertices, and what is not seen costs nothing. The list's order differs from run to run; what is
+//! skinned does not.
+//!
+//! An instance that is not seen keeps the vertices that it had. Seen again, all of it is skinned, whatever moved.
 
 #[cfg(feature = "gpu")]
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub use pass::{SelectBuffers, SelectPass};
+pub use pass::{SKINNED_WORDS, SelectBuffers, SelectPass};

@@ -9,7 +9,7 @@
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub use pass::{SkinActiveJob, SkinPass, keep_last};
+pub use pass::{SkinPass, keep_last};
 
 /// A vertex as skinning reads and writes it: 40 bytes, laid out for vertex buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -83,13 +83,16 @@ impl Influences {
 pub struct Reduction {
     /// The λ of `fade`, 0 to 1.
     pub fade: f32,
-    /// The k of `truncate`, at least 1.
+    /// The k of `truncate`, at least 1; 0 of instances that are not seen, which are not skinned.
     pub most: u32,
 }
 
 impl Reduction {
     /// Every influence.
     pub const FULL: Self = Self { fade: 0.0, most: MOST_INFLUENCES as u32 };
+
+    /// Of instances that are not seen: nothing is skinned.
+    pub const UNSEEN: Self = Self { fade: 0.0, most: 0 };
 
     /// The strongest influences.
     ///
@@ -129,7 +132,7 @@ impl Reduction {
         Self::fade(((distance - near) / (far - near)).clamp(0.0, 1.0))
     }
 
-    /// Checks the ranges.
+    /// Checks the ranges of an instance that is seen.
     ///
     /// # Errors
     /// [`InputError`] that names the field.

@@ -54,6 +54,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/bounds", run: animation::bounds::cases },
     Stem { name: "skinning/lod", run: skinning::lod::cases },
     Stem { name: "skinning/palette", run: skinning::palette::cases },
+    Stem { name: "skinning/morph_weights", run: skinning::morph_weights::cases },
     Stem { name: "skinning/morph", run: skinning::morph::cases },
     Stem { name: "skinning/select", run: skinning::select::cases },
     Stem { name: "skinning/skin", run: skinning::skin::cases },

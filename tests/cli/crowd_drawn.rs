@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
+use serde_json::json;
+
 use crate::harness::{Run, relievo};
+use crate::scene::Scene;
 
 const SMALL: [&str; 8] = ["--model", "builtin", "--clip", "walk", "--instances", "4", "--frames", "10"];
 
@@ -73,7 +76,8 @@ fn the_gate_off_is_exact() {
 #[test]
 fn scenes_compare_four_ways() {
     let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
-    let ([near, far], out, _folder) = rows("scene.json", &gate);
+    let fade = ["--skinning", "fade"];
+    let ([near, far], out, _folder) = rows("scene.json", &[&gate[..], &fade].concat());
     let worst = |row: &Value, way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
     for row in [&near, &far] {
         assert_eq!(worst(row, "off"), 0.0);
@@ -98,6 +102,93 @@ fn scenes_compare_four_ways() {
     assert!(metres(&truncated_near) > metres(&near));
 }
 
+/// Half a pixel for the gate, half a pixel for the fade: one for both, wherever the crowd stands.
+#[test]
+fn both_levels_of_detail_keep_a_pixel() {
+    let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
+    let (rows, out, _folder) = rows("scene.json", &gate);
+    let text = std::fs::read(out.join("scene.json")).expect("written");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(report["skinning"], "bounded:0.5");
+    let [near, far] = [0, 1].map(|end| number(&report["fade"][0][end]));
+    assert!(near > 50.0 && near < 300.0 && far > 2000.0, "{near} to {far}");
+    assert!((0.001..0.1).contains(&number(&report["stray_metres"][0])));
+    for row in rows {
+        let worst = |way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
+        // As far as places of the picture round.
+        assert!(worst("animation") <= 0.501 && worst("skinning") <= 0.501 && worst("both") <= 1.002, "{row}");
+        assert!(worst("skinning") > 0.03 && worst("both") >= 0.03, "{row}");
+    }
+}
+
+/// A triangle that a morph target makes ten times as high in two seconds; the one bone that moves has no vertices.
+fn growing() -> Vec<u8> {
+    let mut scene = Scene::of_two_bones();
+    let positions = scene.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.2, 0.0]);
+    scene.json["accessors"][positions]["min"] = json!([0, 0, 0]);
+    scene.json["accessors"][positions]["max"] = json!([1, 0.2, 0]);
+    let target = scene.floats("VEC3", &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.8, 0.0]);
+    let weights = scene.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
+    let joints = scene.integers("VEC4", 1, &[0; 12]);
+    scene.json["meshes"] = json!([{"primitives": [{
+        "attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights},
+        "targets": [{"POSITION": target}],
+    }]}]);
+    scene.push("nodes", json!({"skin": 0, "mesh": 0}));
+    let times = scene.floats("SCALAR", &[0.0, 2.0]);
+    let values = scene.floats("VEC3", &[0.0, 1.0, 0.0, 0.0, 1.5, 0.0]);
+    let shares = scene.floats("SCALAR", &[0.0, 1.0]);
+    scene.push(
+        "animations",
+        json!({
+            "samplers": [{"input": times, "output": values}, {"input": times, "output": shares}],
+            "channels": [
+                {"sampler": 0, "target": {"node": 1, "path": "translation"}},
+                {"sampler": 1, "target": {"node": 2, "path": "weights"}},
+            ],
+        }),
+    );
+    scene.gltf()
+}
+
+/// Morph targets move whatever the gate says, each instance's at its own time.
+#[test]
+fn morph_targets_move_in_crowds() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("growing.gltf");
+    std::fs::write(&path, growing()).expect("writable");
+    let [model, out] = [path, folder.path().join("out")].map(|path| path.to_str().expect("UTF-8").to_owned());
+    // Quarters of the clip after each other: Ω is 0, no bone moves.
+    let drawn = |quarter: u32| {
+        let frames = (30 * quarter).to_string();
+        let run =
+            relievo(
+                &[
+                    &[
+                        "crowd", "--model", &model, "--clip", "0", "--gate", "uniform", "--image", "--out",
+                        &out,
+                    ][..],
+                    &["--instances", "1", "--distance", "2000", "--frames", &frames],
+                ]
+                .concat(),
+            );
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let text = std::fs::read(folder.path().join("out/report.json")).expect("written");
+        let report: Value = serde_json::from_slice(&text).expect("JSON");
+        let row = &report["distances"][0];
+        assert_eq!((number(&row["interpolated"]), number(&row["skinned_share"])), (0.0, 1.0));
+        assert_eq!(number(&row["vertex_error"]["max_metres"]), 0.0);
+        covered(&image::open(folder.path().join("out/crowd_2000.png")).expect("a PNG").into_rgba8()) as f64
+    };
+    // One instance begins anywhere, and somewhere the clip begins anew: of three steps two are of a quarter of the way.
+    let areas = [1, 2, 3, 4].map(drawn);
+    let steps: Vec<f64> = areas.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let grown: Vec<f64> = steps.iter().copied().filter(|step| *step > 0.0).collect();
+    assert!(grown.len() >= 2, "{areas:?}");
+    let [least, most] = [f64::min, f64::max].map(|of| grown.iter().copied().reduce(of).expect("two"));
+    assert!(most < 1.2 * least && least > 0.1 * areas.iter().copied().fold(0.0, f64::max), "{areas:?}");
+}
+
 #[test]
 fn bad_input_is_refused_and_nothing_written() {
     for (arguments, words) in [
@@ -107,6 +198,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--skinning", "fade"], &["skinning", "--image"]),
         (&["--image", "--skinning", "half"], &["skinning", "half", "truncate:K"]),
         (&["--image", "--skinning", "truncate:0"], &["skinning", "truncate:0"]),
+        (&["--image", "--skinning", "bounded:-1"], &["skinning", "bounded:-1", "1e6"]),
         (&["--image", "--scene"], &["--image", "--scene"]),
         (&["--scene", "--pareto"], &["--pareto", "--scene"]),
     ] {

@@ -6,6 +6,7 @@ mod harness;
 
 mod characters;
 mod cracks;
+mod culled;
 mod curved;
 mod faults;
 mod figure;

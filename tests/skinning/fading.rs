@@ -1,11 +1,12 @@
 //! Fewer influences with distance, seen on a walking creature.
 
 use glam::Vec3;
+use relievo::animation::Lens;
 use relievo::reference::skinning::morph::morph;
 use relievo::reference::skinning::palette::palette;
 use relievo::reference::skinning::skin::skin;
 use relievo::skinning::palette::Palette;
-use relievo::skinning::{Influence, Influences, Reduction, Vertex};
+use relievo::skinning::{Extent, Influence, Influences, Reduction, Vertex};
 
 use crate::shapes::{model, models};
 
@@ -60,4 +61,79 @@ fn a_fade_does_not_pop() {
     let pop = full.iter().zip(&one).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
     assert!(pop > 20.0 * largest, "{pop}");
     assert_eq!(before, one, "λ = 1 is rigid");
+}
+
+/// The extent of a creature in its clips holds at other moments, and what it strays at every λ.
+#[test]
+fn extents_hold_all_poses_and_fades() {
+    let model = model();
+    let mesh = &model.meshes[0];
+    let unmorphed = morph(mesh, &[]);
+    for (clip, name) in ["walk", "idle", "wave"].into_iter().enumerate() {
+        let duration = model.clips[clip].duration();
+        let poses = (60.0 * duration) as usize;
+        let extent = Extent::new(&model, 0, &[clip], poses).expect("valid");
+        let mut largest = [0.0_f32; 2];
+        for at in 0..40_u16 {
+            let time = duration * (f32::from(at) * 0.618).fract();
+            let palette = Palette::Linear(palette(&model.skins[0], &models(&model, name, time)));
+            let places_at = |fade: f32| {
+                let fade = Reduction::fade(fade).expect("in range");
+                places(&skin(&unmorphed, &mesh.influences, &palette, fade))
+            };
+            let full = places_at(0.0);
+            for place in &full {
+                largest[0] = largest[0].max(place.distance(extent.center) / extent.radius);
+            }
+            for fade in [1.0, 1.0 / 64.0, 0.3, 0.3 + f32::from(at) / 64.0] {
+                let moves = full.iter().zip(places_at(fade)).map(|(a, b)| a.distance(b));
+                let stray = moves.fold(0.0, f32::max);
+                // A place within 4 m carries some 40 roundings.
+                assert!(stray <= fade * extent.stray + 1e-5, "{name} at {time}: {stray} at λ = {fade}");
+                largest[1] = largest[1].max(stray / (fade * extent.stray));
+            }
+        }
+        assert!((0.9..=1.0).contains(&largest[0]), "{name}: {} of the radius", largest[0]);
+        assert!(largest[1] > 0.9, "{name}: {} of what may stray", largest[1]);
+    }
+}
+
+/// Vertices of creatures at the fade that a range says, anywhere in the picture.
+#[test]
+fn ranges_keep_the_pixels() {
+    let model = model();
+    let mesh = &model.meshes[0];
+    let unmorphed = morph(mesh, &[]);
+    let extent = Extent::new(&model, 0, &[0], 90).expect("valid");
+    let lens = Lens::new(1080, 1.047, 0.1);
+    let picture = [1920, 1080];
+    let mut largest = 0.0_f32;
+    for (pixels, at) in
+        [0.25, 0.5, 1.0, 2.0].into_iter().flat_map(|pixels| (0..12).map(move |at| (pixels, at)))
+    {
+        let range = extent.fade_range(&lens, picture, pixels);
+        let depth = [4.0, 9.0, 17.0, 40.0][at % 4];
+        // In the middle, at an edge, in a corner.
+        let across = [[0.0, 0.0], [960.0, 0.0], [960.0, 540.0]][at / 4];
+        let [x, y] = across.map(|edge| edge / lens.focal_pixels * depth);
+        let middle = Vec3::new(x, y, depth);
+        let time = model.clips[0].duration() * at as f32 / 12.0;
+        let palette = Palette::Linear(palette(&model.skins[0], &models(&model, "walk", time)));
+        let screen = |reduction| {
+            let all = places(&skin(&unmorphed, &mesh.influences, &palette, reduction));
+            let places = all.into_iter().map(|place| place - extent.center + middle);
+            places.map(|place| place.truncate() / place.z * lens.focal_pixels).collect::<Vec<_>>()
+        };
+        let fade = Reduction::at_distance(middle.length(), range).expect("in range");
+        let full = screen(Reduction::FULL);
+        for (full, faded) in full.into_iter().zip(screen(fade)) {
+            if full.x.abs() <= 960.0 && full.y.abs() <= 540.0 {
+                let off = full.distance(faded) / pixels;
+                // Places of thousands of pixels round.
+                assert!(off <= 1.0 + 0.002 / pixels, "{off} of {pixels} pixels, {across:?} at {depth}");
+                largest = largest.max(off);
+            }
+        }
+    }
+    assert!(largest > 0.4, "far too careful: {largest} of what is allowed");
 }

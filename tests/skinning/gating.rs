@@ -7,7 +7,7 @@ use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Instance, Lens, 
 use relievo::reference::animation::crowd::Crowd;
 use relievo::reference::skinning::morph::morph;
 use relievo::reference::skinning::palette::palette_for;
-use relievo::reference::skinning::select::select;
+use relievo::reference::skinning::select::{Now, Skinned, select};
 use relievo::reference::skinning::skin::skin;
 use relievo::skinning::clusters::Clusters;
 use relievo::skinning::mesh::reaches;
@@ -120,8 +120,9 @@ fn clusters_without_a_dirty_bone_stay() {
         let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 };
         let work = crowd.advance(Choice::Gate(Gate::Bounded), &frame, number as f32 / 60.0);
         let now = stage.vertices(&crowd.models);
-        let full = [Reduction::FULL];
-        let chosen = select(&clusters, &work.dirty, &full, &full);
+        let current = Now { moved: &work.dirty, reductions: &[Reduction::FULL], weights: &[] };
+        let last = Skinned { reduction: Reduction::FULL, ..Skinned::nothing(0) };
+        let chosen = select(&clusters, &current, &[last]);
         if let Some(before) = before.replace(now.clone()) {
             for (cluster, vertices) in clusters.order.chunks(64).enumerate() {
                 if !chosen.contains(&(cluster as u32)) {

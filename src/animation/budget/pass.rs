@@ -120,4 +120,10 @@ mod tests {
     use crate::gpu::layout::layout_test;
 
     layout_test!(budget_params_layout: BudgetParams = ANIMATION_BUDGET "BudgetParams");
+
+    #[test]
+    fn ties_begin_behind_the_tally() {
+        let shader = &crate::gpu::shaders::ANIMATION_BUDGET;
+        assert_eq!(crate::gpu::layout::constant(shader, "TIES"), Some(TALLY as u32));
+    }
 }

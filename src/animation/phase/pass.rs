@@ -4,6 +4,7 @@ use encase::ShaderType;
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
+use crate::animation::place::{check_elapsed, check_seconds};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
 use crate::{Error, InputError};
 
@@ -97,11 +98,8 @@ impl PhaseTime {
 
     /// As [`PhaseJob::set`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
-        for (field, seconds) in [("elapsed", elapsed), ("frame.ahead", ahead)] {
-            if !seconds.is_finite() {
-                return Err(InputError::new(field, seconds, "must be finite").into());
-            }
-        }
+        check_elapsed(elapsed)?;
+        check_seconds("frame.ahead", ahead)?;
         Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ahead, ..self.params })?)
     }
 }
@@ -118,7 +116,7 @@ impl PhaseJob {
     /// may be sampled ahead of it, as [`Frame::ahead`](crate::animation::gate::Frame::ahead).
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    /// [`InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         self.time.set(gpu, elapsed, ahead)
     }
@@ -140,4 +138,10 @@ mod tests {
     use crate::gpu::layout::layout_test;
 
     layout_test!(phase_params_layout: PhaseParams = ANIMATION_PHASE "PhaseParams");
+
+    #[test]
+    fn the_mark_of_layers_is_the_kernel_s() {
+        let shader = &crate::gpu::shaders::ANIMATION_PHASE;
+        assert_eq!(crate::gpu::layout::constant(shader, "BLENDED"), Some(crate::animation::phase::BLENDED));
+    }
 }

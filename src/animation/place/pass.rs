@@ -2,7 +2,8 @@
 
 use encase::ShaderType;
 
-use super::Instance;
+use super::{Instance, check_elapsed};
+use crate::Error;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
@@ -10,7 +11,6 @@ use crate::animation::gate::Gating;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass, shaders,
 };
-use crate::{Error, InputError};
 
 /// `PlaceParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -141,11 +141,9 @@ impl PlaceJob {
     /// few minutes: `f32` seconds grow coarse.
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
-        if !elapsed.is_finite() {
-            return Err(InputError::new("elapsed", elapsed, "must be finite").into());
-        }
+        check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &PlaceParams { elapsed, ..self.params })?)
     }
 
@@ -167,7 +165,7 @@ impl Crowd {
     /// Room for `instances` of a set's clips.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, or ones that play no clip of the set; [`GpuError`].
+    /// [`crate::InputError`] for no instances, or ones that play no clip of the set; [`GpuError`].
     pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
         Self::layered(gpu, set, instances, &[])
     }

@@ -26,6 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         near: 10.0,
         far: 100.0,
         steps: 64,
+        most: 8,
         center: Vec3::Y,
         radius: 1.0,
     };

@@ -2,6 +2,7 @@
 
 pub mod lod;
 pub mod morph;
+pub mod morph_weights;
 pub mod palette;
 pub mod select;
 pub mod skin;
@@ -15,7 +16,7 @@ use crate::skinning::clusters::Clusters;
 use crate::skinning::mesh::smooth_normals;
 use crate::skinning::morph::MorphDelta;
 use crate::skinning::skin::Blend;
-use crate::skinning::{Influence, Influences, Mesh, MorphTarget};
+use crate::skinning::{Influence, Influences, Mesh, MorphTarget, Reduction};
 use crate::verify::skinning::{Shape, random_model};
 
 /// Vertices of the mesh: 100 rings of 100.
@@ -26,6 +27,12 @@ const BONES: usize = 64;
 
 /// Instances of the cases.
 const CROWDS: [usize; 3] = [1, 100, 1000];
+
+/// Reductions of a crowd, of which one instance in `every` is seen.
+fn seen_of(instances: usize, every: usize) -> Vec<Reduction> {
+    let one = |at: usize| if at.is_multiple_of(every) { Reduction::FULL } else { Reduction::UNSEEN };
+    (0..instances).map(one).collect()
+}
 
 /// A tube along its bones; each vertex follows the `influences` bones nearest to it.
 fn tube(influences: usize, targets: usize) -> Result<Model, Error> {

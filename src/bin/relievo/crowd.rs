@@ -76,22 +76,25 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 /// and cost.png, interpolations.png, error.png: the same against distance.
 ///
 /// With --image, on the GPU, DIR/crowd_<distance>.png too: the last frame of the gated crowd, textured and lit (clay of
-/// two colours where a mesh has no material), 1920 × 1080 pixels. Clusters of 64 vertices with a bone that moved are skinned, once, in compute, and drawn from
-/// there; morph targets stay as at rest; the gate watches every vertex. "skinning" is what vertices follow (--skinning),
-/// and "distances" also have
+/// two colours where a mesh has no material), 1920 × 1080 pixels. Clusters of 64 vertices with a bone that moved are
+/// skinned, once, in compute, and drawn from there; who is out of view is not skinned; morph targets move in every
+/// frame, whatever the gate says; the gate watches every vertex. "skinning" is what vertices follow (--skinning), and
+/// "distances" also have
 ///   "nanoseconds_per_vertex": palettes, the choice of clusters and vertices, divided by all vertices of the crowd
 ///   "frame_nanoseconds": gate, places, sampling, concatenation, who is seen, skinning, and the drawing, in one
 ///     submission; "compute_nanoseconds", "draw_nanoseconds": what precedes the drawing, and the drawing, each alone
 ///   "full_…" of each: the same crowd without a gate, fully skinned
 ///   "skinned_share": clusters that were skinned, of all, in the frames that were timed
 ///   "drawn_timed_by": as "timed_by", of these; on a processor wall
-///   "vertex_error": as "error", of all skinned vertices from those of the full crowd, in the frames that were timed
+///   "vertex_error": as "error", of all skinned vertices from those of the full crowd, in the frames that were timed;
+///     "unseen" are those of instances out of view too, which are not skinned, nor among the "points"
 ///
 /// With --scene, instead: the whole frame at each distance in four ways, which differ in nothing else: "off" (all bones,
 /// all influences), "animation" (the gate), "skinning" (--skinning), "both". DIR/scene.json: what report.json says of
-/// the crowd, "vertices", and "distances": "distance", "tall_pixels" (size of the nearest instance), "mean_omega", for
-/// each way the fields above, and "cheaper" {"frame", "compute"}, off divided by both. scene.png: "frame_nanoseconds"
-/// against distance; crowd_<distance>.png: both.
+/// the crowd, "vertices", for each mesh "fade" (units from which on it fades, and from which on it is rigid, or null) and
+/// "stray_metres" (how far the whole fade takes a vertex), and "distances": "distance", "tall_pixels" (size of the
+/// nearest instance), "mean_omega", for each way the fields above, and "cheaper" {"frame", "compute"}, off divided by
+/// both. scene.png: "frame_nanoseconds" against distance; crowd_<distance>.png: both.
 ///
 /// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
 /// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
@@ -167,9 +170,10 @@ pub struct Crowd {
     /// Draws the crowd with and without level of detail in animation and skinning.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
-    /// Which bones vertices follow: all of theirs; the K strongest; or all, fading to one over --range. Default: full,
-    /// with --scene fade.
-    #[arg(long, value_name = "full|truncate:K|fade")]
+    /// Which bones vertices follow: all of theirs; the K strongest; all, fading to one over --range; or all, fading as far
+    /// as no vertex is more than PIXELS off, which with the gate's own --pixels add up. Default: full, with --scene
+    /// bounded:0.5.
+    #[arg(long, value_name = "full|truncate:K|fade|bounded:PIXELS")]
     skinning: Option<String>,
     /// The folder.
     #[arg(long, value_name = "DIR")]

@@ -4,7 +4,10 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::place::{Instance, Place};
 use crate::animation::sample::Wrap;
 
-/// Seconds since the clip's start, inside the clip, in the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more
+/// After so many turns, `f32` knows no place in a clip.
+const MOST_TURNS: f32 = 16_777_216.0;
+
+/// Seconds since the clip's start, inside the clip; its start, where a loop's time is so large that it is nowhere. In the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more
 /// exact where times are large.
 pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
@@ -12,6 +15,11 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     }
     if wrap == Wrap::Clamp {
         return time.max(0.0).min(duration);
+    }
+    // NaN is not below.
+    let is_somewhere = time.abs() < MOST_TURNS * duration;
+    if !is_somewhere {
+        return 0.0;
     }
     let mut inside = time - (time / duration).floor() * duration;
     if inside < 0.0 {

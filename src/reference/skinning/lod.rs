@@ -1,6 +1,6 @@
 //! What is drawn: twin of `kernels/skinning/lod.wgsl`.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
 use crate::animation::transform::Affine;
 use crate::skinning::lod::LodView;
@@ -15,20 +15,56 @@ pub struct Seen {
     pub way: f32,
 }
 
+/// At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
+/// or of their squares' sum. Exact, but for rounding, for a turn with any scale.
+fn stretch(rows: [Vec3; 3]) -> f32 {
+    let squares: Vec3 = rows.iter().map(|row| row * row).sum();
+    let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
+    (squares + mixed + mixed.zxy()).max_element().min(squares.element_sum()).sqrt()
+}
+
 /// How an instance is seen.
 pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let rows = placement.map(Vec4::from_array);
     let center = Vec3::from_array(rows.map(|row| row.dot(view.center.extend(1.0))));
-    let columns = rows.iter().map(|row| row.truncate() * row.truncate()).sum::<Vec3>();
-    let radius = view.radius * columns.element_sum().sqrt();
+    let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
     let way = (center.distance(view.eye) - view.near) / (view.far - view.near);
     Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), way: way.clamp(0.0, 1.0) }
 }
 
-/// What an instance is drawn with; nothing where it is not seen.
-pub fn lod(view: &LodView, placement: &Affine) -> Option<Reduction> {
+/// What an instance is drawn with; [`Reduction::UNSEEN`] where it is not seen.
+pub fn lod(view: &LodView, placement: &Affine) -> Reduction {
     let Seen { depth, way } = seen(view, placement);
     let steps = view.steps as f32;
-    (depth >= 0.0).then(|| Reduction { fade: (way * steps).floor() / steps, ..Reduction::FULL })
+    if depth < 0.0 {
+        return Reduction::UNSEEN;
+    }
+    Reduction { fade: (way * steps).floor() / steps, most: view.most }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Mat3, Quat};
+
+    #[test]
+    fn no_matrix_stretches_further() {
+        let unit = |at: usize| {
+            let at = at as f32;
+            Vec3::new(libm::sinf(1.3 * at), libm::cosf(2.1 * at), libm::sinf(0.7 * at + 1.0)).normalize()
+        };
+        let turn = |at: usize| Mat3::from_quat(Quat::from_axis_angle(unit(at), 0.37 * at as f32));
+        let of = |matrix: Mat3| stretch(matrix.transpose().to_cols_array_2d().map(Vec3::from));
+        for at in 0..100 {
+            let scale = Vec3::new(0.2 + 0.02 * at as f32, -1.0, 1.5);
+            // A scale before a turn is exact; between two of them it shears.
+            assert!((of(turn(at) * Mat3::from_diagonal(scale)) - scale.abs().max_element()).abs() < 1e-5);
+            let sheared = turn(at) * Mat3::from_diagonal(scale) * turn(3 * at + 1);
+            let found = of(sheared);
+            let longest = (0..500).map(|to| (sheared * unit(to)).length()).fold(0.0, f32::max);
+            assert!(longest <= found + 1e-5, "{longest} of {found}");
+            assert!(found < 1.8 * longest, "{longest} of {found}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 pub mod lod;
 pub mod morph;
+pub mod morph_weights;
 pub mod palette;
 pub mod picture;
 pub mod select;

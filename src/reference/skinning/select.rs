@@ -3,23 +3,71 @@
 use crate::skinning::clusters::Clusters;
 use crate::skinning::weights::Reduction;
 
-/// `cluster · instances + instance` of those with a bone that moved, and of those whose reduction is another than when
-/// they were `skinned` last; ascending. `moved` are [`Clusters::mask_words`] words an instance.
-pub fn select(
-    clusters: &Clusters,
-    moved: &[u32],
-    reductions: &[Reduction],
-    skinned: &[Reduction],
-) -> Vec<u32> {
+/// What decides in a frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Now<'a> {
+    /// The bones of each instance that moved, [`Clusters::mask_words`] words an instance.
+    pub moved: &'a [u32],
+    /// One an instance.
+    pub reductions: &'a [Reduction],
+    /// Of morph targets, instance by instance.
+    pub weights: &'a [f32],
+}
+
+/// What is known of an instance from the frame before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skinned {
+    /// Its reduction then.
+    pub reduction: Reduction,
+    /// For how many frames it has been seen, 2 for more: see
+    /// [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned).
+    pub seen: u32,
+    /// Its weights then.
+    pub weights: Vec<f32>,
+}
+
+impl Skinned {
+    /// Before the first frame.
+    pub fn nothing(targets: usize) -> Self {
+        Self { reduction: Reduction::UNSEEN, seen: 0, weights: vec![0.0; targets] }
+    }
+}
+
+fn bits(reduction: &Reduction) -> [u32; 2] {
+    [reduction.fade.to_bits(), reduction.most]
+}
+
+/// `cluster · instances + instance` of what is skinned, of the instances that are seen: clusters with a bone that
+/// moved, clusters that targets move, where a weight is another than in the frame before, and all of instances whose
+/// reduction is another; ascending.
+///
+/// # Panics
+/// For lists of other lengths than the instances that `last` has.
+pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> {
     let words = clusters.mask_words;
-    let instances = reductions.len();
     let is_selected = |pair: &u32| {
-        let (cluster, instance) = (*pair as usize / instances, *pair as usize % instances);
+        let (cluster, instance) = (*pair as usize / last.len(), *pair as usize % last.len());
+        let (reduction, last) = (&now.reductions[instance], &last[instance]);
+        if reduction.most == 0 {
+            return false;
+        }
         let mask = &clusters.masks[cluster * words..][..words];
-        let moved = &moved[instance * words..][..words];
-        let bits = |reduction: &Reduction| (reduction.fade.to_bits(), reduction.most);
-        bits(&reductions[instance]) != bits(&skinned[instance])
+        let moved = &now.moved[instance * words..][..words];
+        let targets = last.weights.len();
+        let weights = now.weights[instance * targets..][..targets].iter().zip(&last.weights);
+        bits(reduction) != bits(&last.reduction)
             || mask.iter().zip(moved).any(|(a, b)| a & b != 0)
+            || clusters.morphs[cluster] && weights.clone().any(|(a, b)| a.to_bits() != b.to_bits())
     };
-    (0..(clusters.len() * instances) as u32).filter(is_selected).collect()
+    (0..(clusters.len() * last.len()) as u32).filter(is_selected).collect()
+}
+
+/// Takes note of a frame, after [`select`].
+pub fn remember(now: &Now<'_>, last: &mut [Skinned]) {
+    for (instance, last) in last.iter_mut().enumerate() {
+        last.reduction = now.reductions[instance];
+        last.seen = if last.reduction.most == 0 { 0 } else { (last.seen + 1).min(2) };
+        let targets = last.weights.len();
+        last.weights.copy_from_slice(&now.weights[instance * targets..][..targets]);
+    }
 }

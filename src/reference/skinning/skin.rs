@@ -10,7 +10,7 @@ use crate::skinning::weights::{Influence, Influences, Reduction};
 /// Vertices where a palette takes them. `vertices` are a mesh's, morphed or not, and `influences` its own.
 ///
 /// # Panics
-/// With fewer influences than vertices, or a palette of fewer bones than they name.
+/// With fewer influences than vertices, a reduction to none, or a palette of fewer bones than they name.
 pub fn skin(
     vertices: &[Vertex],
     influences: &Influences,
@@ -19,6 +19,22 @@ pub fn skin(
 ) -> Vec<Vertex> {
     let matrix = |at: usize| blended(palette, &reduced(influences.of(at), reduction));
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
+}
+
+/// The same for one instance of a crowd, whose vertices stay as they are where it is not seen.
+///
+/// # Panics
+/// As [`skin`].
+pub fn skin_seen(
+    skinned: &mut [Vertex],
+    vertices: &[Vertex],
+    influences: &Influences,
+    palette: &Palette,
+    reduction: Reduction,
+) {
+    if reduction.most > 0 {
+        skinned.copy_from_slice(&skin(vertices, influences, palette, reduction));
+    }
 }
 
 /// The matrix of a vertex: `left` are its reduced influences.

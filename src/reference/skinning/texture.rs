@@ -4,8 +4,8 @@
 use image::RgbaImage;
 
 use crate::animation::Model;
-use crate::reference::terrain::blend::linear;
 use crate::skinning::material::{Alpha, Filter, Material, Sampling, Wrapping};
+use crate::srgb::linear;
 use crate::surface::mips::Mips;
 
 /// What a surface looks like.

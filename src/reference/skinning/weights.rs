@@ -5,7 +5,11 @@ use crate::skinning::weights::{Influence, Reduction};
 /// The influences that are left, the strongest first; their weights sum to 1. `influences` is what
 /// [`Influences::of`](crate::skinning::Influences::of) gives: the strongest weight is never read, but what the others
 /// leave of 1.
+///
+/// # Panics
+/// For a reduction to none: who is not seen has no vertices.
 pub fn reduced(influences: &[Influence], reduction: Reduction) -> Vec<Influence> {
+    assert!(reduction.most > 0, "not seen");
     let most = influences.len().min(reduction.most as usize);
     let lost = influences[most..].iter().fold(0.0, |sum, influence| sum + influence.weight);
     let scale = 1.0 / (1.0 - lost);

@@ -18,6 +18,7 @@ pub(crate) struct LodParams {
     pub far: f32,
     pub steps: f32,
     pub instances: u32,
+    pub most: u32,
 }
 
 impl LodParams {
@@ -29,6 +30,7 @@ impl LodParams {
             far: view.far,
             steps: view.steps as f32,
             instances: instances as u32,
+            most: view.most,
         }
     }
 }
@@ -48,7 +50,7 @@ impl LodPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_LOD, &[])? })
     }
 
-    /// Prepares the reductions of the instances that are seen, the list of these, and the second of the `arguments` of an
+    /// Prepares the reductions of all instances, the list of those that are seen, and the second of the `arguments` of an
     /// indirect draw, their number ([`crate::render::SkinnedScene::arguments`]).
     ///
     /// # Errors

@@ -3,64 +3,110 @@
 use encase::ShaderType;
 
 use crate::Error;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::gpu::{
+    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
+};
+use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 
 /// `MorphParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct MorphParams {
     pub vertices: u32,
     pub targets: u32,
+    pub instances: u32,
     pub pairs: u32,
 }
 
 /// Adds morph targets.
 #[derive(Debug, Clone)]
 pub struct MorphPass {
-    kernel: Kernel,
+    all: Kernel,
+    active: Kernel,
 }
 
 impl MorphPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_MORPH, &[])? })
+        let kernel = |compacted| Kernel::new(gpu, &shaders::SKINNING_MORPH, &[("COMPACTED", compacted)]);
+        Ok(Self { all: kernel(0.0)?, active: kernel(1.0)? })
     }
 
-    /// Prepares the morphed vertices of all instances. Of a mesh without targets there are none, and nothing is done.
+    /// Prepares the morphed vertices of all instances that are seen. Of a mesh without targets there are none, and
+    /// nothing is done.
     ///
     /// # Errors
     /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Job, Error> {
-        if mesh.targets == 0 {
-            return Ok(Job::new(gpu, "skinning/morph", Vec::new())?);
+        let mut steps = Vec::new();
+        if mesh.targets > 0 {
+            let nothing = ActiveClusters {
+                pairs: Buffer::new(gpu, "no clusters", 0)?,
+                dispatched: Buffer::from_slice(gpu, "no clusters", &[0; 4])?,
+            };
+            let group = bind(gpu, &self.all, mesh, crowd, &nothing)?;
+            let workgroups = rows_of_workgroups(gpu, pairs(mesh, crowd));
+            steps.push(Step { groups: vec![group], workgroups, kernel: self.all.clone() });
         }
-        let pairs = crowd.instances * mesh.vertices.len();
-        crowd.morphed.check_holds("crowd.morphed", pairs)?;
-        crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
-        let params = MorphParams {
-            vertices: mesh.vertices.len() as u32,
-            targets: mesh.targets as u32,
-            pairs: pairs as u32,
-        };
-        let uniform = Uniform::new(gpu, "morph", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            mesh.vertices.raw().as_entire_binding(),
-            mesh.delta_offsets.raw().as_entire_binding(),
-            mesh.deltas.raw().as_entire_binding(),
-            crowd.weights.raw().as_entire_binding(),
-            crowd.morphed.raw().as_entire_binding(),
-        ];
-        let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-            workgroups: self.kernel.spread(gpu, params.pairs),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "skinning/morph", vec![step])?)
+        Ok(Job::new(gpu, "skinning/morph", steps)?)
     }
+
+    /// Prepares the active clusters of all instances, of those that are seen; the other vertices stay. Nothing for a
+    /// mesh without targets.
+    ///
+    /// # Errors
+    /// As [`MorphPass::prepare`].
+    pub fn prepare_active(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        active: &ActiveClusters,
+    ) -> Result<Option<IndirectJob>, Error> {
+        if mesh.targets == 0 {
+            return Ok(None);
+        }
+        let group = bind(gpu, &self.active, mesh, crowd, active)?;
+        let arguments = active.dispatched.raw();
+        Ok(Some(IndirectJob::new("skinning/morph", &self.active, arguments, vec![(group, 0)])))
+    }
+}
+
+fn pairs(mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> u32 {
+    (crowd.instances * mesh.clusters()) as u32
+}
+
+fn bind(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    mesh: &MeshBuffers,
+    crowd: &SkinnedCrowd,
+    active: &ActiveClusters,
+) -> Result<Group, Error> {
+    crowd.morphed.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
+    crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
+    crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+    let params = MorphParams {
+        vertices: mesh.vertices.len() as u32,
+        targets: mesh.targets as u32,
+        instances: crowd.instances as u32,
+        pairs: pairs(mesh, crowd),
+    };
+    let uniform = Uniform::new(gpu, "morph", &params)?;
+    let resources = [
+        uniform.raw().as_entire_binding(),
+        mesh.vertices.raw().as_entire_binding(),
+        mesh.delta_offsets.raw().as_entire_binding(),
+        mesh.deltas.raw().as_entire_binding(),
+        crowd.weights.raw().as_entire_binding(),
+        crowd.reductions.raw().as_entire_binding(),
+        active.pairs.raw().as_entire_binding(),
+        active.dispatched.raw().as_entire_binding(),
+        crowd.morphed.raw().as_entire_binding(),
+    ];
+    Ok(kernel.bind(gpu, 0, &resources)?)
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ impl PalettePass {
         Ok(Self { linear: kernel(0.0)?, dual: kernel(1.0)? })
     }
 
-    /// Prepares the palettes of all instances from `models`, as [`crate::animation::concat`] writes them.
+    /// Prepares the palettes of all instances that are seen, from `models`, as [`crate::animation::concat`] writes them.
     ///
     /// # Errors
     /// [`crate::InputError`] for fewer models than the crowd needs; [`GpuError`].
@@ -45,6 +45,7 @@ impl PalettePass {
         crowd: &SkinnedCrowd,
     ) -> Result<Job, Error> {
         models.check_holds("models", crowd.instances * mesh.all_bones)?;
+        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
         let kernel = if crowd.blend == Blend::Linear { &self.linear } else { &self.dual };
         let params = PaletteParams {
             bones: mesh.bones.len() as u32,
@@ -57,6 +58,7 @@ impl PalettePass {
             mesh.bones.raw().as_entire_binding(),
             mesh.inverse_binds.raw().as_entire_binding(),
             models.raw().as_entire_binding(),
+            crowd.reductions.raw().as_entire_binding(),
             crowd.palette.raw().as_entire_binding(),
         ];
         let step = Step {

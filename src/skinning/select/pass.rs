@@ -4,8 +4,7 @@ use encase::ShaderType;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use crate::skinning::weights::Reduction;
+use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
 
 /// `SelectParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -14,6 +13,8 @@ pub(crate) struct SelectParams {
     pub clusters: u32,
     pub words: u32,
     pub most: u32,
+    pub vertices: u32,
+    pub targets: u32,
 }
 
 /// What a selection reads and remembers.
@@ -23,10 +24,18 @@ pub struct SelectBuffers {
     /// [`MeshBuffers::mask_words`] words an instance. Put [`Active::dirty`](crate::animation::compact::Active::dirty)
     /// here where a gate decides. A bone below one that moved has moved too.
     pub moved: Buffer<u32>,
-    /// The reductions with which instances were skinned last; none at first, so that all are skinned.
-    pub skinned: Buffer<Reduction>,
-    count: Buffer<u32>,
+    /// Of each instance in the frame before, in 3 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, and
+    /// most influences; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first, so
+    /// that what is seen then is skinned.
+    ///
+    /// The third word is 0 of what is not seen, 1 of what is seen for the first time or again, 2 of what was seen in the
+    /// frame before too. At 1, vertices that [`keep_last`](crate::skinning::skin::keep_last) copied are of another time,
+    /// or nothing: motion vectors then know of the placement alone.
+    pub skinned: Buffer<u32>,
 }
+
+/// Words of an instance in [`SelectBuffers::skinned`], before its weights.
+pub const SKINNED_WORDS: usize = 3;
 
 impl SelectBuffers {
     /// Room for a crowd. No bone has moved.
@@ -36,8 +45,7 @@ impl SelectBuffers {
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
             moved: Buffer::new(gpu, "moved bones", crowd.instances * mesh.mask_words)?,
-            skinned: Buffer::new(gpu, "skinned reductions", crowd.instances)?,
-            count: Buffer::new(gpu, "selected clusters", 1)?,
+            skinned: Buffer::new(gpu, "skinned last", crowd.instances * (SKINNED_WORDS + mesh.targets))?,
         })
     }
 }
@@ -73,13 +81,18 @@ impl SelectPass {
     ) -> Result<Job, Error> {
         let pairs = crowd.instances * mesh.clusters();
         buffers.moved.check_holds("moved", crowd.instances * mesh.mask_words)?;
-        buffers.skinned.check_holds("skinned", crowd.instances)?;
+        buffers.skinned.check_holds("skinned", crowd.instances * (SKINNED_WORDS + mesh.targets))?;
+        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
+        active.dispatched.check_holds("active.dispatched", DISPATCHED_WORDS)?;
         active.pairs.check_holds("active.pairs", pairs)?;
         let params = SelectParams {
             instances: crowd.instances as u32,
             clusters: mesh.clusters() as u32,
             words: mesh.mask_words as u32,
             most: gpu.device().limits().max_compute_workgroups_per_dimension,
+            vertices: mesh.vertices.len() as u32,
+            targets: mesh.targets as u32,
         };
         let uniform = Uniform::new(gpu, "select", &params)?;
         let resources = [
@@ -87,9 +100,10 @@ impl SelectPass {
             mesh.masks.raw().as_entire_binding(),
             buffers.moved.raw().as_entire_binding(),
             crowd.reductions.raw().as_entire_binding(),
+            crowd.weights.raw().as_entire_binding(),
+            mesh.delta_offsets.raw().as_entire_binding(),
             buffers.skinned.raw().as_entire_binding(),
             active.pairs.raw().as_entire_binding(),
-            buffers.count.raw().as_entire_binding(),
             active.dispatched.raw().as_entire_binding(),
         ];
         let step = |kernel: &Kernel, threads: usize| {
@@ -111,4 +125,10 @@ mod tests {
     use crate::gpu::layout::layout_test;
 
     layout_test!(select_params_layout: SelectParams = SKINNING_SELECT "SelectParams");
+
+    #[test]
+    fn weights_begin_where_the_kernel_has_them() {
+        let shader = &crate::gpu::shaders::SKINNING_SELECT;
+        assert_eq!(crate::gpu::layout::constant(shader, "SKINNED_WORDS"), Some(SKINNED_WORDS as u32));
+    }
 }

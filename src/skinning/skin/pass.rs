@@ -47,7 +47,7 @@ impl SkinPass {
         Ok(Self { kernels, blend })
     }
 
-    /// Prepares every vertex of some instances, which are `skinned` one after the other, in the mesh's clusters.
+    /// Prepares every vertex of those that are seen of some instances, which are `skinned` one after the other, in the mesh's clusters.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another mesh or kind of blending, instances that it lacks, and too small an
@@ -73,7 +73,7 @@ impl SkinPass {
         Ok(Job::new(gpu, "skinning/skin", vec![step])?)
     }
 
-    /// Prepares the active clusters of all instances; the other vertices stay.
+    /// Prepares the active clusters of all instances, of those that are seen; the other vertices stay.
     ///
     /// # Errors
     /// As [`SkinPass::prepare`].
@@ -140,6 +140,9 @@ impl SkinPass {
 }
 
 /// Records a copy of vertices as they are, before the next skinning changes them: last frame's, for motion vectors.
+///
+/// Instances that were not seen in the frame before have no vertices of that frame: theirs are of the time when they
+/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are.
 ///
 /// # Errors
 /// [`InputError`] for buffers of different lengths.

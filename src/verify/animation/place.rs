@@ -48,6 +48,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         }
     }
     at_edges(cases, &pass)?;
+    nowhere(cases, &pass)?;
     of_a_list(cases, &pass)
 }
 
@@ -126,6 +127,37 @@ fn compare_places(actual: &[Place], expected: &[Place], is_used: impl Fn(usize) 
         .collect();
     let actual: Vec<f32> = actual.iter().map(phase).collect();
     compare::absolute(&actual, &expected, PLACE_BOUND)
+}
+
+/// Times that loops cannot tell, up to infinity, are the clip's start; a clamped one is its end. The bounds of instances
+/// are far below: the device's buffer says otherwise.
+fn nowhere(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+    let (gpu, edges) = (cases.gpu, edges()?);
+    let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
+    let play = |wrap: Wrap| far.map(|(start, rate)| Instance::new(0, wrap, start, rate));
+    let instances: Vec<_> = [play(Wrap::Loop), play(Wrap::Clamp)].concat();
+    let still = vec![Instance::new(0, Wrap::Loop, 0.0, 0.0); instances.len()];
+    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &still)?);
+    crowd.instances.write(gpu, &instances)?;
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, 1e9)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let (at_start, at_end) =
+        (Instance::new(0, Wrap::Clamp, 0.0, 0.0), Instance::new(0, Wrap::Clamp, 1.0, 0.0));
+    let of = |instance: &Instance| match (instance.wrap(), instance.start < 0.0 || instance.rate < 0.0) {
+        (Wrap::Clamp, false) => at_end,
+        // 1e9 s at rate 1 outweigh the start.
+        (Wrap::Clamp, true) if instance.rate > 0.0 => at_end,
+        _ => at_start,
+    };
+    let known = places(&edges.set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
+    let twins = places(&edges.set, &instances, 1e9);
+    let phases = |places: &[Place]| places.iter().map(|place| place.key as f32 + place.fraction).collect();
+    let [actual, twins, known]: [Vec<f32>; 3] =
+        [&crowd.places.read_blocking(gpu)?, &twins, &known].map(|places| phases(places));
+    let (actual, known) = ([actual, twins].concat(), known.repeat(2));
+    cases.add("nowhere in the clip", compare::absolute(&actual, &known, PLACE_BOUND));
+    Ok(())
 }
 
 /// Places that are known without a twin.

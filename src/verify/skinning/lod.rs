@@ -10,7 +10,7 @@ use crate::skinning::lod::{LodPass, LodView, standing};
 use crate::skinning::weights::Reduction;
 use crate::verify::animation::Draw;
 use crate::verify::compare::Comparison;
-use crate::verify::poison::{POISON, Poisoned};
+use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
 /// How near to a decision rounding may decide otherwise: places are within 200 of the origin, and their sums carry some
@@ -67,12 +67,13 @@ fn view(towards: Vec3) -> LodView {
         near: 10.0,
         far: 70.0,
         steps: 16,
+        most: 5,
         center: Vec3::new(0.0, 0.9, 0.1),
         radius: 1.2,
     }
 }
 
-/// For each instance whether it is listed and its fade, −1 and −1 where it is not.
+/// For each instance whether it is listed, its fade, and its most influences.
 fn compared(
     view: &LodView,
     placements: &[Affine],
@@ -91,11 +92,9 @@ fn compared(
             continue;
         }
         let times = listed.iter().filter(|drawn| **drawn == instance as u32).count();
-        let found = reductions[instance];
-        let is_poison = found.most == POISON;
-        actual.extend([times as f32, if is_poison { -1.0 } else { found.fade + found.most as f32 }]);
-        let wanted = lod(view, placement);
-        expected.extend([f32::from(wanted.is_some()), wanted.map_or(-1.0, |wanted| wanted.fade + 8.0)]);
+        let (found, wanted) = (reductions[instance], lod(view, placement));
+        actual.extend([times as f32, found.fade, found.most as f32]);
+        expected.extend([f32::from(wanted.most > 0), wanted.fade, wanted.most as f32]);
     }
     if touching * 20 > placements.len() + 20 || number[0] != 7 {
         return Comparison::failed(

@@ -2,6 +2,7 @@
 
 pub mod lod;
 pub mod morph;
+pub mod morph_weights;
 pub mod palette;
 pub mod select;
 pub mod skin;
@@ -14,6 +15,7 @@ use crate::reference::animation::concat::{affine, product};
 use crate::skinning::morph::MorphDelta;
 use crate::skinning::{Influence, Influences, Mesh, MorphTarget, Reduction, Vertex};
 use crate::verify::animation::{Draw, random_skeleton};
+use crate::verify::poison::POISON;
 
 /// A random mesh, and the skeleton and skin that it follows.
 #[derive(Debug, Clone, Copy)]
@@ -134,20 +136,26 @@ pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine>
     matrices
 }
 
-/// Full, truncated and fading ones in turn.
+/// Full, truncated, fading and unseen ones in turn.
 pub fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
     let mut draw = Draw::new(case ^ 0xfade);
-    let reduction = |instance: usize| match (instance as u32 + case) % 4 {
+    let reduction = |instance: usize| match (instance as u32 + case) % 5 {
         0 => Reduction::FULL,
         1 => Reduction { most: 1 + draw.word() % 8, ..Reduction::FULL },
         2 => Reduction { fade: draw.signed().abs(), ..Reduction::FULL },
-        _ => Reduction { fade: (draw.word() % 2) as f32, ..Reduction::FULL },
+        3 => Reduction { fade: (draw.word() % 2) as f32, ..Reduction::FULL },
+        _ => Reduction::UNSEEN,
     };
     (0..instances).map(reduction).collect()
 }
 
 fn column_major(matrix: &Affine) -> [f32; 16] {
     crate::animation::transform::column_major(matrix)
+}
+
+/// What a kernel has not written, of any type.
+fn poisoned<T: bytemuck::Pod>() -> T {
+    bytemuck::pod_read_unaligned(&POISON.to_ne_bytes().repeat(size_of::<T>() / 4))
 }
 
 /// All ten words of each vertex.

@@ -1,13 +1,13 @@
 //! Parity of `kernels/skinning/skin.wgsl`.
 
-use super::{SHAPES, Shape, flat, random_matrices, random_model, random_reductions};
+use super::{SHAPES, Shape, flat, poisoned, random_matrices, random_model, random_reductions};
 use crate::Error;
 use crate::animation::Model;
 use crate::animation::transform::Affine;
 use crate::gpu::{Buffer, Gpu};
 use crate::reference::skinning::morph::morph;
 use crate::reference::skinning::palette::palette_for;
-use crate::reference::skinning::skin::{blended, skin};
+use crate::reference::skinning::skin::{blended, skin_seen};
 use crate::reference::skinning::weights::reduced;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::Clusters;
@@ -15,14 +15,14 @@ use crate::skinning::palette::Palette;
 use crate::skinning::skin::{Blend, SKIN_BOUND, SkinPass, TRUNCATED, Vertex};
 use crate::skinning::weights::Reduction;
 use crate::verify::compare::Comparison;
-use crate::verify::poison::{POISON, Poisoned};
+use crate::verify::poison::Poisoned;
 use crate::verify::{Cases, compare};
 
-/// Instances of a case: full, truncated and fading ones.
+/// Instances of a case: full, truncated, fading and unseen ones.
 const INSTANCES: usize = 9;
 
 /// One influence to eight, linear and by dual quaternions, morphed or not; all instances, some, and lists of clusters,
-/// where the others stay untouched. Errors are shares of each value's own bound.
+/// where the others stay untouched, as those of unseen instances do. Errors are shares of each value's own bound.
 ///
 /// # Errors
 /// What the device reports.
@@ -57,6 +57,12 @@ struct Expected {
     position: f32,
     normal: f32,
     tangent: f32,
+}
+
+impl Expected {
+    fn untouched() -> Self {
+        Self { vertex: poisoned(), position: 1.0, normal: 1.0, tangent: 1.0 }
+    }
 }
 
 struct Scene {
@@ -110,9 +116,7 @@ impl Scene {
             for (place, vertex) in self.clusters.order.iter().enumerate() {
                 let pair = (place / 64 * INSTANCES + instance) as u32;
                 if !chosen.contains(&pair) {
-                    let poison: Vertex = bytemuck::cast([POISON; 10]);
-                    expected[*vertex as usize] =
-                        Expected { vertex: poison, position: 1.0, normal: 1.0, tangent: 1.0 };
+                    expected[*vertex as usize] = Expected::untouched();
                 }
             }
         }
@@ -139,7 +143,11 @@ impl Scene {
 /// The twin's vertices, each with its own bounds: see [`SKIN_BOUND`].
 fn expect(model: &Model, vertices: &[Vertex], palette: &Palette, reduction: Reduction) -> Vec<Expected> {
     let influences = &model.meshes[0].influences;
-    let skinned = skin(vertices, influences, palette, reduction);
+    let mut skinned = vec![poisoned(); vertices.len()];
+    skin_seen(&mut skinned, vertices, influences, palette, reduction);
+    if reduction == Reduction::UNSEEN {
+        return skinned.into_iter().map(|vertex| Expected { vertex, ..Expected::untouched() }).collect();
+    }
     let largest = match palette {
         Palette::Linear(bones) => size(bones.as_flattened().as_flattened()),
         // Translations are twice the dual part; three products of three factors take the place of one matrix.

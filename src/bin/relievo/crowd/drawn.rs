@@ -9,15 +9,16 @@ use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, ColorTexture};
-use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodJob, LodPass, LodView};
+use relievo::skinning::lod::{LodJob, LodPass, LodView, NO_FADE};
+use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
-use relievo::skinning::{Blend, Reduction};
+use relievo::skinning::{Blend, Extent, Reduction};
 use relievo::surface::mips::Mips;
 use relievo::{Error, InputError};
 
 use super::device::Device;
+use super::gates::frame;
 use super::plan::{FIELD_OF_VIEW, LINES};
 use super::play::middle;
 use super::skinning::Skinning;
@@ -35,6 +36,9 @@ const SKY: [f64; 3] = [0.02, 0.025, 0.03];
 
 /// Width of the picture over its height.
 const ASPECT: [u32; 2] = [16, 9];
+
+/// In pixels.
+const PICTURE: [u32; 2] = [LINES * ASPECT[0] / ASPECT[1], LINES];
 
 /// Who animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,6 +81,7 @@ struct Times {
 struct Drawable {
     skin: SkinFrame,
     lod: LodJob,
+    weights: MorphWeightsJob,
     scene: SkinnedScene,
 }
 
@@ -94,7 +99,7 @@ impl<'a> Drawing<'a> {
         let look = |(by, skinning): &(By, Skinning)| world.look(&device, *by, *skinning);
         Ok(Self {
             looks: ways.iter().map(look).collect::<Result<_, Error>>()?,
-            target: Target::new(gpu, [LINES * ASPECT[0] / ASPECT[1], LINES])?,
+            target: Target::new(gpu, PICTURE)?,
             timer: Timer::for_drawing(gpu)?,
             gpu,
             stage,
@@ -109,6 +114,10 @@ impl<'a> Drawing<'a> {
         let mut turns = 0..;
         for number in 0..=frames {
             self.device.set(number)?;
+            let (_, elapsed) = frame(number, self.stage.plan.rate);
+            for mesh in self.looks.iter().flat_map(|look| &look.meshes) {
+                mesh.weights.set(self.gpu, elapsed)?;
+            }
             if number > 0 && number % frames.div_ceil(TIMED) == 0 {
                 let turn = turns.next().unwrap_or(0) % (2 * self.looks.len() + 1);
                 self.play_timed(turn)?;
@@ -116,7 +125,10 @@ impl<'a> Drawing<'a> {
             } else {
                 self.gpu.run("frame", |encoder| {
                     self.device.gated.frame.record(encoder);
-                    self.looks.iter().filter(|look| look.by == By::Gate).for_each(|look| look.skin(encoder));
+                    self.looks
+                        .iter()
+                        .filter(|look| look.by == By::Gate)
+                        .for_each(|look| look.compute(encoder));
                 })?;
             }
             step();
@@ -174,9 +186,12 @@ impl<'a> Drawing<'a> {
         }
         for (index, look) in looks.iter_mut().enumerate() {
             match chosen {
-                None => look.times.skin.push(timed(&|encoder| look.skin(encoder))?),
+                None => {
+                    gpu.run("decisions", |encoder| look.decide(encoder))?;
+                    look.times.skin.push(timed(&|encoder| look.skin(encoder))?);
+                }
                 Some(chosen) if chosen == index => {}
-                Some(_) => gpu.run("skinning", |encoder| look.skin(encoder))?,
+                Some(_) => gpu.run("skinning", |encoder| look.compute(encoder))?,
             }
         }
         Ok(())
@@ -185,14 +200,19 @@ impl<'a> Drawing<'a> {
     /// Reads all looks back, and compares them with the first.
     fn compare(&mut self) -> Result<(), Error> {
         for mesh in 0..self.stage.plan.model.meshes.len() {
-            let fresh = self.looks[0].meshes[mesh].skin.skinned.read_blocking(self.gpu)?;
+            let first = &self.looks[0].meshes[mesh].skin;
+            let fresh = first.skinned.read_blocking(self.gpu)?;
+            // The same in all looks.
+            let reductions = first.crowd.reductions.read_blocking(self.gpu)?;
+            let is_seen: Vec<bool> = reductions.iter().map(|reduction| reduction.most > 0).collect();
+            let seen = is_seen.iter().filter(|is_seen| **is_seen).count();
             for look in &mut self.looks {
                 let skin = &look.meshes[mesh].skin;
                 let own = skin.skinned.read_blocking(self.gpu)?;
-                look.spread.add(self.stage, self.scene, &own, &fresh);
+                look.spread.add(self.stage, self.scene, &is_seen, &own, &fresh);
                 let all = skin.crowd.instances * skin.clusters.len();
                 let some = match look.by {
-                    By::All => all,
+                    By::All => seen * skin.clusters.len(),
                     By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3] as usize,
                 };
                 look.clusters = [look.clusters[0] + some as u64, look.clusters[1] + all as u64];
@@ -213,9 +233,17 @@ impl Look {
         }
     }
 
-    /// Who is seen and how far they fade, and skinning.
+    /// Who is seen and how far they fade, and the weights of their morph targets.
+    fn decide(&self, encoder: &mut wgpu::CommandEncoder) {
+        for mesh in &self.meshes {
+            mesh.lod.record(encoder);
+            mesh.weights.record(encoder);
+        }
+    }
+
+    /// The same, and skinning.
     fn compute(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.meshes.iter().for_each(|mesh| mesh.lod.record(encoder));
+        self.decide(encoder);
         self.skin(encoder);
     }
 
@@ -245,7 +273,6 @@ struct World<'a> {
     stage: &'a Stage<'a>,
     placements: Buffer<Affine>,
     clip_from_world: Mat4,
-    ball: (Vec3, f32),
     renderer: SkinnedRenderer,
     /// One a mesh.
     albedos: Vec<Albedo>,
@@ -266,7 +293,6 @@ impl<'a> World<'a> {
             placements: Buffer::from_slice(gpu, "placements", &placements(scene))?,
             // The camera is at the origin and looks along -Z.
             clip_from_world: lens,
-            ball: ball_in_clips(&stage.plan.model),
             renderer: SkinnedRenderer::new(gpu, COLOR_FORMAT)?,
             albedos: Albedo::of_meshes(gpu, &stage.plan.model, &checks, ColorTexture::new)?,
             gpu,
@@ -285,17 +311,21 @@ impl<'a> World<'a> {
         })
     }
 
-    fn drawable(&self, device: &Device, by: By, skinning: Skinning, mesh: usize) -> Result<Drawable, Error> {
+    fn drawable(&self, device: &Device, by: By, skinning: Skinning, index: usize) -> Result<Drawable, Error> {
         let Self { gpu, stage, placements, .. } = self;
         let (model, count) = (&stage.plan.model, stage.instances.len());
         let skin = match by {
-            By::All => SkinFrame::new(gpu, model, mesh, &device.full.crowd.models, count, Blend::Linear)?,
-            By::Gate => SkinFrame::new(gpu, model, mesh, &device.gated.crowd.models, count, Blend::Linear)?
+            By::All => SkinFrame::new(gpu, model, index, &device.full.crowd.models, count, Blend::Linear)?,
+            By::Gate => SkinFrame::new(gpu, model, index, &device.gated.crowd.models, count, Blend::Linear)?
                 .with_moved(gpu, &device.gated.frame.active.dirty)?,
         };
-        let (mesh, albedo) = (&model.meshes[mesh], &self.albedos[mesh]);
-        // Morph targets stay as they are at rest.
-        skin.crowd.weights.write(gpu, &mesh.weights.repeat(count))?;
+        let (mesh, albedo) = (&model.meshes[index], &self.albedos[index]);
+        let playing = match by {
+            By::All => &device.full.crowd.instances,
+            By::Gate => &device.gated.crowd.instances,
+        };
+        let keys = WeightSet::new(mesh, &stage.set, &[stage.plan.clip_index])?;
+        let weights = MorphWeightsPass::new(gpu)?.prepare(gpu, &keys, playing, &skin.crowd)?;
         let drawn = Buffer::new(gpu, "drawn", count)?;
         let instances = SkinnedInstances {
             mesh: &skin.mesh,
@@ -307,26 +337,36 @@ impl<'a> World<'a> {
         };
         let mut scene = self.renderer.scene(gpu, &instances)?;
         scene.set_camera(gpu, self.clip_from_world)?;
-        // Where nothing fades, nobody reads what the kernel writes here.
-        let (reductions, range) = match skinning {
-            Skinning::Fade(range) => (skin.crowd.reductions.clone(), range),
-            Skinning::All(reduction) => {
-                skin.crowd.reductions.write(gpu, &vec![reduction; count])?;
-                (Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?, stage.plan.range)
-            }
-        };
+        let [near, far] = fade(stage, skinning, index).unwrap_or(NO_FADE);
+        let Extent { center, radius, .. } = stage.extents[index];
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
-            near: range.min * stage.metres_a_unit,
-            far: range.max * stage.metres_a_unit,
+            near,
+            far,
             steps: STEPS,
-            center: self.ball.0,
-            radius: self.ball.1,
+            most: if let Skinning::All(reduction) = skinning { reduction.most } else { Reduction::FULL.most },
+            center,
+            radius,
         };
-        let lod =
-            LodPass::new(gpu)?.prepare(gpu, &view, placements, &reductions, &drawn, &scene.arguments)?;
-        Ok(Drawable { skin, lod, scene })
+        let lod = LodPass::new(gpu)?.prepare(
+            gpu,
+            &view,
+            placements,
+            &skin.crowd.reductions,
+            &drawn,
+            &scene.arguments,
+        )?;
+        Ok(Drawable { skin, lod, weights, scene })
+    }
+}
+
+/// Metres from where on a mesh fades and from where on it is rigid, if it ever is.
+pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 2]> {
+    match skinning {
+        Skinning::All(_) => None,
+        Skinning::Fade(range) => Some([range.min, range.max].map(|units| units * stage.metres_a_unit)),
+        Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.lens, PICTURE, pixels)),
     }
 }
 

@@ -32,6 +32,9 @@ pub struct Plan {
     pub name: String,
     pub model: Model,
     pub clip: Clip,
+    /// Its place among the model's.
+    #[cfg(feature = "gpu")]
+    pub clip_index: usize,
     pub instances: usize,
     pub layout: Layout,
     pub seed: u32,
@@ -87,14 +90,19 @@ impl Plan {
         if drawn.is_none() && a.skinning.is_some() {
             return Err(InputError::new("skinning", "given", "must come with --image or --scene").into());
         }
-        let faded = if a.scene { "fade" } else { "full" };
+        let faded = if a.scene { "bounded:0.5" } else { "full" };
         let skinning = a.skinning.as_deref().unwrap_or(faded);
         let model = open(&a.model)?;
-        let clip = find(&model, &a.model, &a.clip)?.clone();
+        let clip = find(&model, &a.model, &a.clip)?;
+        #[cfg(feature = "gpu")]
+        let clip_index = model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default();
+        let clip = clip.clone();
         let weights = priorities::weights(a.weights.as_deref(), &model.skeleton, &clip, true)?;
         Ok(Self {
             name: a.model.display().to_string(),
             clip,
+            #[cfg(feature = "gpu")]
+            clip_index,
             model,
             instances,
             layout: a.layout,

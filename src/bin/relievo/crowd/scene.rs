@@ -8,7 +8,7 @@ use relievo::gpu::Gpu;
 use relievo::terrain::export::write_bytes;
 use serde::Serialize;
 
-use super::drawn::{By, Drawing};
+use super::drawn::{By, Drawing, fade};
 use super::play::gate_of;
 use super::report::{GateReport, clock, file_name, picture};
 use super::skinning::FULL;
@@ -33,6 +33,9 @@ struct Report<'a> {
     clip: &'a str,
     gate: GateReport,
     skinning: String,
+    /// In units, mesh by mesh.
+    fade: Vec<Option<[f32; 2]>>,
+    stray_metres: Vec<f32>,
     instances: usize,
     layout: Layout,
     seed: u32,
@@ -113,6 +116,12 @@ fn report<'a>(stage: &Stage<'a>, gpu: &'a Gpu, distances: Vec<Row>) -> Result<Re
         clip: plan.clip.name(),
         gate: GateReport::new(plan),
         skinning: plan.skinning.to_string(),
+        fade: (0..stage.extents.len())
+            .map(|mesh| {
+                fade(stage, plan.skinning, mesh).map(|ends| ends.map(|end| end / stage.metres_a_unit))
+            })
+            .collect(),
+        stray_metres: stage.extents.iter().map(|extent| extent.stray).collect(),
         instances: plan.instances,
         layout: plan.layout,
         seed: plan.seed,

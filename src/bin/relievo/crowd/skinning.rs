@@ -41,6 +41,8 @@ pub enum Skinning {
     All(Reduction),
     /// All of them at the first of these distances, in units, one from the second on.
     Fade(Range),
+    /// As many as it takes for no vertex to be more than so many pixels off.
+    Bounded(f32),
 }
 
 /// Every influence of every instance.
@@ -50,7 +52,8 @@ pub const FULL: Skinning = Skinning::All(Reduction::FULL);
 impl Skinning {
     /// From the command line, with the distances of the fade.
     pub fn new(text: &str, range: Range) -> Result<Self, InputError> {
-        let refused = || InputError::new("skinning", text, "must be full, truncate:K or fade");
+        let refused =
+            || InputError::new("skinning", text, "must be full, truncate:K, fade or bounded:PIXELS");
         match text.split_once(':') {
             None if text == "full" => Ok(Self::All(Reduction::FULL)),
             None if text == "fade" => Ok(Self::Fade(range)),
@@ -59,6 +62,11 @@ impl Skinning {
                     InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
                 })
             }
+            Some(("bounded", pixels)) => match pixels.parse() {
+                Ok(pixels) if (0.0..=1e6).contains(&pixels) => Ok(Self::Bounded(pixels)),
+                Ok(_) => Err(InputError::new("skinning", text, "must be 0 to 1e6 pixels")),
+                Err(_) => Err(refused()),
+            },
             _ => Err(refused()),
         }
     }
@@ -70,6 +78,7 @@ impl fmt::Display for Skinning {
             Self::All(Reduction::FULL) => f.write_str("full"),
             Self::All(reduction) => write!(f, "truncate:{}", reduction.most),
             Self::Fade(_) => f.write_str("fade"),
+            Self::Bounded(pixels) => write!(f, "bounded:{pixels}"),
         }
     }
 }
@@ -81,10 +90,21 @@ mod tests {
     #[test]
     fn names_are_read_as_they_are_written() {
         let range = Range { min: 1.0, max: 2.0 };
-        for name in ["full", "fade", "truncate:2"] {
+        for name in ["full", "fade", "truncate:2", "bounded:0.25"] {
             assert_eq!(Skinning::new(name, range).expect("valid").to_string(), name);
         }
-        for name in ["", "truncate", "truncate:0", "truncate:x", "fade:1", "half"] {
+        for name in [
+            "",
+            "truncate",
+            "truncate:0",
+            "truncate:x",
+            "fade:1",
+            "half",
+            "bounded",
+            "bounded:-1",
+            "bounded:NaN",
+            "bounded:x",
+        ] {
             assert_eq!(Skinning::new(name, range).expect_err("refused").field, "skinning", "{name}");
         }
     }

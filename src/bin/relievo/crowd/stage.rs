@@ -22,6 +22,9 @@ pub struct Stage<'a> {
     pub instances: Vec<Instance>,
     pub metres_a_unit: f32,
     pub lens: Lens,
+    /// What each mesh does in the clip, where the crowd is drawn.
+    #[cfg(feature = "gpu")]
+    pub extents: Vec<skinning::Extent>,
     /// The middle of the model's height at rest, metres.
     middle: f32,
 }
@@ -58,6 +61,8 @@ impl<'a> Stage<'a> {
             instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
             metres_a_unit,
             lens: plan.lens(metres_a_unit),
+            #[cfg(feature = "gpu")]
+            extents: extents_of(plan, meshes.len())?,
             middle: ((low[1] + high[1]) / 2.0) as f32,
             plan,
         })
@@ -142,6 +147,17 @@ pub fn mean_omega(lods: &[Lod]) -> f64 {
 /// Bones of an instance that its clip moves.
 pub fn moving_bones(table: &GateTable) -> usize {
     table.record(0).1.iter().map(|word| word.count_ones() as usize).sum()
+}
+
+/// Poses of the clip a second that extents look at, and the most.
+#[cfg(feature = "gpu")]
+const POSES: [f32; 2] = [60.0, 1000.0];
+
+#[cfg(feature = "gpu")]
+fn extents_of(plan: &Plan, meshes: usize) -> Result<Vec<skinning::Extent>, InputError> {
+    let [rate, most] = POSES;
+    let poses = (rate * plan.clip.duration()).clamp(1.0, most).ceil() as usize + 1;
+    (0..meshes).map(|mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses)).collect()
 }
 
 /// The corners of a box around bones and as far as they are long.

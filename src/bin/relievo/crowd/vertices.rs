@@ -33,8 +33,15 @@ impl Default for Spread {
 }
 
 impl Spread {
-    /// Adds a frame of a mesh; both lists are instance by instance.
-    pub fn add(&mut self, stage: &Stage<'_>, scene: &Scene, stale: &[Vertex], fresh: &[Vertex]) {
+    /// Adds a frame of a mesh; lists are instance by instance. Those that are out of view are not skinned.
+    pub fn add(
+        &mut self,
+        stage: &Stage<'_>,
+        scene: &Scene,
+        is_seen: &[bool],
+        stale: &[Vertex],
+        fresh: &[Vertex],
+    ) {
         let count = stage.instances.len();
         let vertices = (fresh.len() / count).max(1);
         // As many instances as make a share of the work a processor.
@@ -46,6 +53,10 @@ impl Spread {
                 let mut found = Self::default();
                 let instances = stale.chunks(vertices).zip(fresh.chunks(vertices));
                 for (instance, (stale, fresh)) in (share * each..).zip(instances) {
+                    if !is_seen[instance] {
+                        found.unseen += fresh.len() as u64;
+                        continue;
+                    }
                     let (origin, turn) = (scene.origins[instance], scene.turns[instance]);
                     let view = View { origin, turn, lens: stage.lens };
                     stale.iter().zip(fresh).for_each(|(stale, fresh)| found.add_one(&view, stale, fresh));

@@ -1,0 +1,89 @@
+// Weights of morph targets where instances stand in their clips (glTF 2.0, section 3.11): before skinning/select. A thread
+// finds one target's weight of one instance; instances that are not seen keep theirs.
+import package::wgsl::animation::clock::inside_clip;
+import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::timeline::{place, times};
+
+struct MorphWeightsParams {
+    targets: u32,
+    // Targets of all instances.
+    pairs: u32,
+    // Seconds since the instances' starts.
+    elapsed: f32,
+}
+
+// A clip's keys.
+struct WeightEntry {
+    duration: f32,
+    first_time: u32,
+    keys: u32,
+    first_value: u32,
+    // 0 step, 1 linear, 2 cubic spline: in-tangents, values and out-tangents.
+    interpolation: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: MorphWeightsParams;
+@group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
+// One a clip.
+@group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
+// Of each instance: fade and most influences; 0 of those where it is not seen.
+@group(0) @binding(3) var<storage, read> reductions: array<vec2<u32>>;
+// Binding 4: the times.
+// A value a target, key by key.
+@group(0) @binding(5) var<storage, read> values: array<f32>;
+@group(0) @binding(6) var<storage, read_write> weights: array<f32>;
+
+const LINEAR = 1u;
+const SPLINE = 2u;
+
+fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
+    // In-tangents, values and out-tangents of a key, then those of the next.
+    let at = first + 3u * key * params.targets;
+    let start = values[at + params.targets];
+    let leaving = values[at + 2u * params.targets];
+    let arriving = values[at + 3u * params.targets];
+    let end = values[at + 4u * params.targets];
+    let square = t * t;
+    let cube = square * t;
+    let of_end = 3.0 * square - 2.0 * cube;
+    return (1.0 - of_end) * start + (cube - 2.0 * square + t) * (seconds * leaving) + of_end * end
+        + (cube - square) * (seconds * arriving);
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pair = (group.y * groups.x + group.x) * 64u + lane;
+    if pair >= params.pairs {
+        return;
+    }
+    let index = pair / params.targets;
+    if reductions[index].y == 0u {
+        return;
+    }
+    let instance = instances[index];
+    let entry = entries[instance.clip];
+    let time = inside_clip(instance.wrap, entry.duration, instance.start + instance.rate * params.elapsed);
+    let found = place(entry.first_time, entry.keys, time);
+    let t = bitcast<f32>(found.y);
+    let first = entry.first_value + pair - index * params.targets;
+    // A fraction is 0 at the last key.
+    let is_between = t > 0.0;
+    var weight = 0.0;
+    if entry.interpolation == SPLINE {
+        weight = values[first + (3u * found.x + 1u) * params.targets];
+        if is_between {
+            let at = entry.first_time + found.x;
+            weight = spline(first, found.x, t, times[at + 1u] - times[at]);
+        }
+    } else {
+        weight = values[first + found.x * params.targets];
+        if is_between && entry.interpolation == LINEAR {
+            weight += (values[first + (found.x + 1u) * params.targets] - weight) * t;
+        }
+    }
+    weights[pair] = weight;
+}

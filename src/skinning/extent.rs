@@ -1,0 +1,221 @@
+//! What the vertices of a mesh do in clips: how far they reach, and how far fading takes them from where all of their
+//! influences have them. From these follows how a crowd may fade so that an error in pixels is never exceeded.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::lod::{MARGIN, middle_of};
+use super::weights::Influence;
+use crate::InputError;
+use crate::animation::sample::RotationPath;
+use crate::animation::transform::Affine;
+use crate::animation::{Lens, Model};
+use crate::reference::animation::concat::concat;
+use crate::reference::animation::sample::sample;
+use crate::reference::skinning::morph::morph;
+use crate::reference::skinning::palette::palette;
+use crate::reference::skinning::skin::transformed;
+use crate::skinning::{Mesh, Vertex};
+
+/// By how much [`Extent::stray`] is larger than what was found. A vertex whose way from one pose to the next were
+/// straight would be off most at one of the two: the margin is for what bends in between.
+const STRAY_MARGIN: f32 = 1.01;
+
+/// A mesh in its clips, in the model's units. Blended linearly, with the weights of morph targets that the clips have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// The middle of a ball around all vertices in all poses.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+    /// No vertex is further than λ times this from where full quality has it, at any λ of
+    /// [`Reduction::fade`](super::Reduction::fade): the largest distance that was found, divided by its λ.
+    pub stray: f32,
+}
+
+impl Extent {
+    /// Looks at `poses` of each of these clips, evenly spaced from start to end. Poses between them may go 1 % further:
+    /// 60 a second of a clip are many enough. Poses of other clips, and layers above these, are not known.
+    ///
+    /// # Errors
+    /// [`InputError`] for a mesh or clips that the model lacks, none of these, no poses, and a mesh that does not fit
+    /// its skin.
+    pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
+        let Some(mesh) = model.meshes.get(mesh) else {
+            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())));
+        };
+        for (field, len) in [("clips.len", clips.len()), ("poses", poses)] {
+            if len == 0 {
+                return Err(InputError::new(field, 0, "must be at least 1, to see what vertices do"));
+            }
+        }
+        if let Some(at) = clips.iter().position(|clip| *clip >= model.clips.len()) {
+            let bound = format!("must be below {}", model.clips.len());
+            return Err(InputError::new(format!("clips[{at}]"), clips[at], bound));
+        }
+        mesh.validate(&model.skins)?;
+        model.skins[mesh.skin].validate(&model.skeleton)?;
+        let moments: Vec<(usize, f32)> = clips
+            .iter()
+            .flat_map(|clip| (0..poses).map(move |at| (*clip, at as f32 / (poses - 1).max(1) as f32)))
+            .collect();
+        let pose = |(clip, share): &(usize, f32)| Pose::new(model, mesh, *clip, *share);
+        let looks = moments.par_iter().map(|moment| pose(moment).look(mesh));
+        let none = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
+        let all = looks.reduce(|| none, Look::with);
+        let center = middle_of(all.low, all.high);
+        let distances = moments.par_iter().map(|moment| pose(moment).farthest(mesh, center));
+        let radius = MARGIN * distances.reduce(|| 0.0, f32::max);
+        Ok(Self { center, radius, stray: STRAY_MARGIN * all.stray })
+    }
+
+    /// Where a crowd may begin to fade, and where it may be rigid
+    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no vertex
+    /// inside a `picture` of so many pixels is more than `pixels` off, wherever in it. Placements neither stretch nor
+    /// shrink. 0 pixels allow no fade.
+    ///
+    /// A vertex of an instance whose middle is d away lies no nearer than d − r, r the radius, and if it is seen, no
+    /// further off the axis than the picture's corner, whose cosine is c: at a depth of (d − r)·c at least. There it may
+    /// be off by ε·c·(d − r)·c/(focal + ε·c) for ε pixels ([`Lens::allowed`]). That grows with d − r as λ does from r on,
+    /// and reaches [`Extent::stray`] where λ is 1.
+    ///
+    /// What else is off adds to it: bones that a gate holds back by ε′ pixels, and a fade by ε, together show ε + ε′.
+    pub fn fade_range(&self, lens: &Lens, picture: [u32; 2], pixels: f32) -> [f32; 2] {
+        let [focal, pixels, radius, stray] =
+            [lens.focal_pixels, pixels, self.radius, self.stray].map(f64::from);
+        let [width, height] = picture.map(|edge| f64::from(edge) / 2.0 / focal);
+        let cosine = (1.0 + width * width + height * height).sqrt().recip();
+        let far = radius + stray * (focal + pixels * cosine) / (pixels * cosine * cosine);
+        // Nothing strays, or nothing may.
+        let far = far.max(radius).min(f64::from(f32::MAX)) as f32;
+        [self.radius, far.max(self.radius.next_up())]
+    }
+}
+
+/// A mesh at a moment.
+struct Pose {
+    palette: Vec<Affine>,
+    vertices: Vec<Vertex>,
+}
+
+/// What is seen there.
+#[derive(Clone, Copy)]
+struct Look {
+    low: Vec3,
+    high: Vec3,
+    stray: f32,
+}
+
+impl Look {
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            stray: self.stray.max(other.stray),
+        }
+    }
+}
+
+impl Pose {
+    /// `share` of the clip's duration after its start.
+    fn new(model: &Model, mesh: &Mesh, clip: usize, share: f32) -> Self {
+        let time = share * model.clips[clip].duration();
+        let models = concat(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp));
+        Self {
+            palette: palette(&model.skins[mesh.skin], &models),
+            vertices: morph(mesh, &mesh.weights_at(clip, time)),
+        }
+    }
+
+    /// Where each of a vertex's bones alone would have it.
+    fn places(&self, vertex: &Vertex, influences: &[Influence]) -> Vec<Vec3> {
+        let place = |influence: &Influence| {
+            Vec3::from(transformed(vertex, &self.palette[influence.bone as usize]).position)
+        };
+        influences.iter().map(place).collect()
+    }
+
+    fn look(&self, mesh: &Mesh) -> Look {
+        let mut all = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
+        for (at, vertex) in self.vertices.iter().enumerate() {
+            let influences = mesh.influences.of(at);
+            let places = self.places(vertex, influences);
+            let place = mean(influences, &places);
+            all = all.with(Look { low: place, high: place, stray: stray(influences, &places) });
+        }
+        all
+    }
+
+    fn farthest(&self, mesh: &Mesh, center: Vec3) -> f32 {
+        let distance = |(at, vertex): (usize, &Vertex)| {
+            let influences = mesh.influences.of(at);
+            mean(influences, &self.places(vertex, influences)).distance(center)
+        };
+        self.vertices.iter().enumerate().map(distance).fold(0.0, f32::max)
+    }
+}
+
+fn mean(influences: &[Influence], places: &[Vec3]) -> Vec3 {
+    influences.iter().zip(places).map(|(influence, place)| influence.weight * *place).sum()
+}
+
+/// The largest of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, over i > 1 and all λ. In 1/λ the sum is straight between the values at
+/// which one of the minima changes sides, where λ is wᵢ/w₂, and so longest at one of them.
+fn stray(influences: &[Influence], places: &[Vec3]) -> f32 {
+    let Some(second) = influences.get(1) else { return 0.0 };
+    let off = |fade: f32| {
+        let others = influences.iter().zip(places).skip(1);
+        let sum: Vec3 = others
+            .map(|(other, place)| (other.weight / fade).min(second.weight) * (*place - places[0]))
+            .sum();
+        sum.length()
+    };
+    influences[1..].iter().map(|other| off(other.weight / second.weight)).fold(0.0, f32::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strays_are_the_largest_of_all_fades() {
+        let places = [Vec3::ZERO, Vec3::X, Vec3::Y, -2.0 * Vec3::X];
+        let weights = [0.4_f32, 0.3, 0.2, 0.1];
+        let influences: Vec<_> =
+            (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight }).collect();
+        // At small λ every minimum is 0.3 λ: (0.3 − 0.6, 0.3). At λ = 1: (0.3 − 0.2, 0.2).
+        assert!((stray(&influences, &places) - 0.3 * 2.0_f32.sqrt()).abs() < 1e-6);
+        assert!((stray(&influences[..2], &places[..2]) - 0.3).abs() < 1e-6);
+        assert_eq!(stray(&influences[..1], &places[..1]), 0.0);
+    }
+
+    #[test]
+    fn requests_are_checked() {
+        let model = crate::animation::creature().expect("valid");
+        let field = |mesh, clips: &[usize], poses| {
+            Extent::new(&model, mesh, clips, poses).expect_err("refused").field
+        };
+        assert_eq!(field(1, &[0], 1), "mesh");
+        assert_eq!(field(0, &[], 1), "clips.len");
+        assert_eq!(field(0, &[0, 3], 1), "clips[1]");
+        assert_eq!(field(0, &[0], 0), "poses");
+    }
+
+    #[test]
+    fn ranges_begin_where_the_model_does() {
+        let lens = Lens::new(1080, 1.0, 0.1);
+        let extent = Extent { center: Vec3::ZERO, radius: 1.5, stray: 0.02 };
+        let range = |extent: &Extent, pixels| extent.fade_range(&lens, [1920, 1080], pixels);
+        let [near, far] = range(&extent, 0.5);
+        assert_eq!(near, 1.5);
+        // Twice the pixels, half the way.
+        let nearer = range(&extent, 1.0)[1];
+        assert!(((nearer - near) / (far - near) - 0.5).abs() < 1e-3, "{nearer} {far}");
+        assert_eq!(range(&extent, 0.0), [1.5, f32::MAX]);
+        let rigid = Extent { stray: 0.0, ..extent };
+        for pixels in [0.0, 1.0] {
+            let [near, far] = range(&rigid, pixels);
+            assert!(near < far && far.is_finite(), "{near} {far}");
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! `kernels/skinning/morph_weights.wgsl`.
+
+use encase::ShaderType;
+
+use super::WeightSet;
+use crate::Error;
+use crate::animation::place::{Instance, check_elapsed};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::skinning::buffers::SkinnedCrowd;
+
+/// `MorphWeightsParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct MorphWeightsParams {
+    pub targets: u32,
+    pub pairs: u32,
+    pub elapsed: f32,
+}
+
+/// Finds the weights of morph targets.
+#[derive(Debug, Clone)]
+pub struct MorphWeightsPass {
+    kernel: Kernel,
+}
+
+impl MorphWeightsPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_MORPH_WEIGHTS, &[])? })
+    }
+
+    /// Prepares the weights of a crowd that plays `instances` of the set's clips. Of layers above them nothing is known.
+    /// For a mesh without targets nothing is done.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for fewer instances than the crowd has, and a crowd of another mesh; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        set: &WeightSet,
+        instances: &Buffer<Instance>,
+        crowd: &SkinnedCrowd,
+    ) -> Result<MorphWeightsJob, Error> {
+        let pairs = crowd.instances * set.targets;
+        instances.check_holds("instances", crowd.instances)?;
+        crowd.weights.check_holds("crowd.weights", pairs)?;
+        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        let params = MorphWeightsParams { targets: set.targets as u32, pairs: pairs as u32, elapsed: 0.0 };
+        let uniform = Uniform::new(gpu, "morph weights", &params)?;
+        let mut steps = Vec::new();
+        if pairs > 0 {
+            let entries = Buffer::from_slice(gpu, "weight keys", &set.entries)?;
+            let times = Buffer::from_slice(gpu, "weight times", &set.times)?;
+            let values = Buffer::from_slice(gpu, "weight values", &set.values)?;
+            let resources = [
+                uniform.raw().as_entire_binding(),
+                instances.raw().as_entire_binding(),
+                entries.raw().as_entire_binding(),
+                crowd.reductions.raw().as_entire_binding(),
+                times.raw().as_entire_binding(),
+                values.raw().as_entire_binding(),
+                crowd.weights.raw().as_entire_binding(),
+            ];
+            steps.push(Step {
+                groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+                workgroups: self.kernel.spread(gpu, params.pairs),
+                kernel: self.kernel.clone(),
+            });
+        }
+        Ok(MorphWeightsJob { job: Job::new(gpu, "skinning/morph_weights", steps)?, params, uniform })
+    }
+}
+
+/// Prepared weights: set the time, then record.
+#[derive(Debug, Clone)]
+pub struct MorphWeightsJob {
+    job: Job,
+    params: MorphWeightsParams,
+    uniform: Uniform<MorphWeightsParams>,
+}
+
+impl MorphWeightsJob {
+    /// Chooses the time of the next submission: seconds since the instances' starts.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
+    pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
+        check_elapsed(elapsed)?;
+        Ok(self.uniform.write(gpu, &MorphWeightsParams { elapsed, ..self.params })?)
+    }
+
+    /// Records the weights.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.job.record(encoder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(morph_weights_params_layout: MorphWeightsParams = SKINNING_MORPH_WEIGHTS "MorphWeightsParams");
+}

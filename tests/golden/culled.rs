@@ -1,0 +1,174 @@
+//! A crowd that walks in and out of view: what is not seen is not skinned, and what is seen looks as if all were.
+
+use glam::{Mat4, Vec3, camera};
+use relievo::animation::sample::RotationPath;
+use relievo::animation::transform::Affine;
+use relievo::animation::{Model, creature};
+use relievo::gpu::{Buffer, Gpu};
+use relievo::reference::animation::concat::concat;
+use relievo::reference::animation::sample::sample;
+use relievo::render::target::COLOR_FORMAT;
+use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
+use relievo::skinning::frame::SkinFrame;
+use relievo::skinning::lod::{LodJob, LodPass, LodView, ball, standing};
+use relievo::skinning::picture::Light;
+use relievo::skinning::select::SKINNED_WORDS;
+use relievo::skinning::{Blend, Reduction};
+use relievo::surface::mips::Mips;
+
+use crate::harness::gpu;
+
+/// Creatures that walk abreast from left to right through a narrow view.
+const CREATURES: usize = 9;
+
+const FRAMES: usize = 24;
+
+const SIZE: [u32; 2] = [160, 96];
+
+/// A crowd as one of the two sees it.
+struct Crowd {
+    skin: SkinFrame,
+    lod: LodJob,
+    scene: SkinnedScene,
+}
+
+struct Stage {
+    gpu: Gpu,
+    model: Model,
+    models: Buffer<Affine>,
+    placements: Buffer<Affine>,
+    view: LodView,
+}
+
+impl Stage {
+    fn new() -> Self {
+        let (gpu, model) = (gpu(), creature().expect("valid"));
+        let bones = CREATURES * model.skeleton.len();
+        let eye = Vec3::new(0.0, 1.0, 9.0);
+        let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.8, 0.0), Vec3::Y);
+        let lens = camera::rh::proj::directx::perspective(0.3, 160.0 / 96.0, 0.2, 100.0);
+        let (center, radius) = ball(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
+        let clip_from_world: Mat4 = lens * look;
+        Self {
+            models: Buffer::new(&gpu, "models", bones).expect("allocated"),
+            placements: Buffer::new(&gpu, "placements", CREATURES).expect("allocated"),
+            view: LodView {
+                clip_from_world,
+                eye,
+                near: 5.0,
+                far: 12.0,
+                steps: 16,
+                most: 4,
+                center,
+                radius: 1.1 * radius,
+            },
+            gpu,
+            model,
+        }
+    }
+
+    fn crowd(&self) -> Crowd {
+        let Self { gpu, model, models, placements, view } = self;
+        let skin = SkinFrame::new(gpu, model, 0, models, CREATURES, Blend::Linear).expect("prepared");
+        let everybody: Vec<u32> = (0..CREATURES as u32).collect();
+        let drawn = Buffer::from_slice(gpu, "drawn", &everybody).expect("uploaded");
+        let plain = Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([200, 150, 90, 255])));
+        let instances = SkinnedInstances {
+            mesh: &skin.mesh,
+            skinned: &skin.skinned,
+            placements,
+            drawn: &drawn,
+            albedo: &ColorTexture::new(gpu, &plain, true).expect("uploaded").into(),
+            light: Light::default(),
+        };
+        let renderer = SkinnedRenderer::new(gpu, COLOR_FORMAT).expect("compiled");
+        let mut scene = renderer.scene(gpu, &instances).expect("bound");
+        scene.set_camera(gpu, view.clip_from_world).expect("set");
+        let lod = LodPass::new(gpu)
+            .expect("compiled")
+            .prepare(gpu, view, placements, &skin.crowd.reductions, &drawn, &scene.arguments)
+            .expect("prepared");
+        Crowd { skin, lod, scene }
+    }
+
+    /// Creatures of odd numbers stand still in their pose.
+    fn pose(&self, frame: usize) {
+        let walk = self.model.clip("walk").expect("there");
+        let pose = |at: usize| {
+            let time = 0.13 * at as f32 + if at.is_multiple_of(2) { frame as f32 / 30.0 } else { 0.0 };
+            concat(&self.model.skeleton, &sample(walk, time % walk.duration(), RotationPath::Slerp))
+        };
+        let models: Vec<Affine> = (0..CREATURES).flat_map(pose).collect();
+        self.models.write(&self.gpu, &models).expect("written");
+        let place = |at: usize| {
+            // Out and in again: the whole way there and back.
+            let way = (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin();
+            standing(Vec3::new(8.0 * way + 0.9 * (at as f32 - 4.0), 0.0, 0.3 * at as f32 - 1.5), 1.57, 1.0)
+        };
+        let placements: Vec<Affine> = (0..CREATURES).map(place).collect();
+        self.placements.write(&self.gpu, &placements).expect("written");
+    }
+
+    /// All bones of even creatures have moved.
+    fn moved(&self, words: usize) -> Vec<u32> {
+        (0..CREATURES * words).map(|at| if (at / words).is_multiple_of(2) { u32::MAX } else { 0 }).collect()
+    }
+
+    fn picture(&self, target: &Target, crowd: &Crowd) -> image::RgbaImage {
+        target.draw(&self.gpu, [0.0; 3], |pass| crowd.scene.draw(pass)).expect("drawn");
+        target.read(&self.gpu).expect("read")
+    }
+}
+
+#[test]
+fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
+    let stage = Stage::new();
+    let (gpu, [culled, whole]) = (&stage.gpu, [stage.crowd(), stage.crowd()]);
+    let target = Target::new(gpu, SIZE).expect("allocated");
+    let words = culled.skin.mesh.mask_words;
+    culled.skin.select.moved.write(gpu, &stage.moved(words)).expect("written");
+    let clusters = culled.skin.clusters.len();
+    let mut seen_before = [0_u32; CREATURES];
+    let (mut skinned, mut empty, mut back) = (0, 0, 0);
+    for frame in 0..FRAMES {
+        stage.pose(frame);
+        gpu.run("frame", |encoder| {
+            culled.lod.record(encoder);
+            culled.skin.record_moved(encoder);
+        })
+        .expect("run");
+        // The other one skins and draws everybody, as far faded where that is known.
+        let reductions = culled.skin.crowd.reductions.read_blocking(gpu).expect("read");
+        let full = |reduction: &Reduction| if reduction.most == 0 { Reduction::FULL } else { *reduction };
+        let all: Vec<_> = reductions.iter().map(full).collect();
+        whole.skin.crowd.reductions.write(gpu, &all).expect("written");
+        gpu.run("whole", |encoder| whole.skin.record_all(encoder)).expect("run");
+        let [some, all] = [&culled, &whole].map(|crowd| stage.picture(&target, crowd));
+        assert!(some == all, "frame {frame} differs");
+        let known = culled.skin.select.skinned.read_blocking(gpu).expect("read");
+        let mut expected = 0;
+        for (at, reduction) in reductions.iter().enumerate() {
+            let seen = known[SKINNED_WORDS * at + 2];
+            let wanted = if reduction.most == 0 { 0 } else { (seen_before[at] + 1).min(2) };
+            assert_eq!(seen, wanted, "creature {at} of frame {frame}");
+            // What stands still is skinned when it comes back, or fades.
+            if reduction.most > 0 && at.is_multiple_of(2) || seen == 1 {
+                expected += clusters;
+            }
+            back += usize::from(seen == 1 && frame > 0);
+            seen_before[at] = seen;
+        }
+        let now = culled.skin.active.dispatched.read_blocking(gpu).expect("read")[3] as usize;
+        assert!((expected..=expected + 5 * clusters).contains(&now), "{now} of {expected}, frame {frame}");
+        let drawn = culled.scene.arguments.read_blocking(gpu).expect("read")[1];
+        assert_eq!(drawn as usize, reductions.iter().filter(|reduction| reduction.most > 0).count());
+        if drawn == 0 {
+            assert_eq!(now, 0, "frame {frame}");
+            empty += 1;
+        }
+        skinned += now;
+    }
+    let all = FRAMES * CREATURES * clusters;
+    assert!(back > CREATURES && empty >= 2, "{back} came back, {empty} frames without any");
+    assert!(2 * skinned < all, "{skinned} of {all} clusters");
+}
