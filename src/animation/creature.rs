@@ -43,6 +43,7 @@ pub fn creature() -> Result<Model, InputError> {
         skins: vec![skin],
         clips: clips.into_iter().collect::<Result<_, _>>()?,
         meshes: vec![mesh],
+        skinned: 1,
         materials: vec![],
         images: vec![],
     })

@@ -34,6 +34,7 @@ use std::path::Path;
 use super::model::Model;
 use crate::{Error, InputError};
 use document::Document;
+use materials::Materials;
 
 impl Model {
     /// Reads a `.gltf` or `.glb` file, and the buffers beside it.
@@ -42,9 +43,21 @@ impl Model {
     /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] with the path inside the file for
     /// everything that glTF forbids or that the crate does not read.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
+        Self::read(path, Materials::default())
+    }
+
+    /// As [`Model::from_file`], without materials and images: for those who draw nothing, whatever textures lack.
+    ///
+    /// # Errors
+    /// As [`Model::from_file`], but for materials and images.
+    pub fn from_file_bare(path: &Path) -> Result<Self, Error> {
+        Self::read(path, Materials::unread())
+    }
+
+    fn read(path: &Path, materials: Materials) -> Result<Self, Error> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::from_gltf(&bytes, Some(folder))
+        Self::import(&bytes, Some(folder), materials)
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
@@ -53,16 +66,21 @@ impl Model {
     /// # Errors
     /// [`InputError`] with the path inside the file.
     pub fn from_gltf(bytes: &[u8], folder: Option<&Path>) -> Result<Self, InputError> {
+        Self::import(bytes, folder, Materials::default())
+    }
+
+    fn import(bytes: &[u8], folder: Option<&Path>, mut materials: Materials) -> Result<Self, InputError> {
         let document = Document::new(bytes, folder)?;
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
         // What Draco compressed has no vertices here.
-        let mut materials = materials::Materials::default();
         let meshes = match document.is_draco {
             true => Vec::new(),
             false => meshes::meshes(&document, &nodes, &mut materials)?,
         };
-        let materials::Materials { materials, images, .. } = materials;
-        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, materials, images })
+        let Materials { materials, images, .. } = materials;
+        let with_skin = document.root.skins.len();
+        let skinned = meshes.iter().take_while(|mesh| mesh.skin < with_skin).count();
+        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, skinned, materials, images })
     }
 }

@@ -16,6 +16,8 @@ pub struct Model {
     pub clips: Vec<Clip>,
     /// What is seen of it.
     pub meshes: Vec<Mesh>,
+    /// How many of these, from the first on, have a skin of their own; the others hang on a node.
+    pub skinned: usize,
     /// What its meshes look like.
     pub materials: Vec<Material>,
     /// What textures show: sRGB, alpha as it is, the first row on top.

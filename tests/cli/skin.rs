@@ -52,7 +52,7 @@ impl Bench {
         self.0.path().join(name).to_str().expect("UTF-8").to_owned()
     }
 
-    /// The lines of mesh.obj.
+    /// The lines of mesh.obj; where nothing has a skin, of attached.obj.
     fn skin(&self, model: &str, more: &[&str]) -> Vec<String> {
         let out = self.path("out");
         let run = relievo(&[&["skin", "--model", model, "--out", &out], more].concat());
@@ -64,7 +64,8 @@ impl Bench {
         let covered = picture.pixels().filter(|pixel| *pixel != corner).count() as f64;
         let share = covered / f64::from(picture.width() * picture.height());
         assert!((0.02..0.9).contains(&share), "{share}");
-        let text = std::fs::read_to_string(Path::new(&out).join("mesh.obj")).expect("written");
+        let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name));
+        let text = read("mesh.obj").or_else(|_| read("attached.obj")).expect("written");
         text.lines().map(str::to_owned).collect()
     }
 

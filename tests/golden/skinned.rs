@@ -74,7 +74,7 @@ fn limb() -> Model {
         weight_keys: vec![],
     };
     let (clips, materials, images) = (vec![], vec![], vec![]);
-    Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], materials, images }
+    Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images }
 }
 
 fn rows(matrix: Mat4) -> Affine {

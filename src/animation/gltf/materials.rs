@@ -19,11 +19,18 @@ use crate::skinning::material::{Alpha, Filter, MOST_TEXELS, Material, Sampling, 
 pub struct Materials {
     pub materials: Vec<Material>,
     pub images: Vec<RgbaImage>,
+    /// Whether none is read.
+    pub is_unread: bool,
     of_materials: HashMap<usize, usize>,
     of_images: HashMap<usize, usize>,
 }
 
 impl Materials {
+    /// For an import that leaves out what meshes look like.
+    pub fn unread() -> Self {
+        Self { is_unread: true, ..Self::default() }
+    }
+
     /// Reads a material, unless it has been read: its place in the list.
     pub fn read(&mut self, document: &Document<'_>, index: Index<GltfMaterial>) -> Result<usize, InputError> {
         let at = index.value();

@@ -37,9 +37,11 @@ pub fn meshes(
         let name = node_name(&document.root, node);
         for (at, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
             let path = format!("meshes[{mesh}].primitives[{at}]");
-            let reader = Reader { document, primitive, path, rigid };
+            let is_bare = materials.is_unread;
+            let reader = Reader { document, primitive, path, rigid, is_bare };
             let read = reader.mesh(&nodes.skins[skin], weights.len())?;
-            let material = primitive.material.map(|material| materials.read(document, material));
+            let material =
+                primitive.material.filter(|_| !is_bare).map(|material| materials.read(document, material));
             meshes.push(Mesh {
                 name: format!("{name}_{at}"),
                 skin,
@@ -113,6 +115,8 @@ struct Reader<'a, 'd> {
     path: String,
     /// Of a node without a skin.
     rigid: Option<&'a Rigid>,
+    /// Whether materials are left out.
+    is_bare: bool,
 }
 
 impl Reader<'_, '_> {
@@ -172,7 +176,7 @@ impl Reader<'_, '_> {
 
     /// The texture's coordinates, which there must be; or where there is no texture, the first, if any.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
-        let Some(texture) = self.material().and_then(Coordinates::of) else {
+        let Some(texture) = self.material().filter(|_| !self.is_bare).and_then(Coordinates::of) else {
             return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
         };
         let name = format!("TEXCOORD_{}", texture.set);

@@ -96,7 +96,7 @@ struct BoneReport<'a> {
 impl Pose {
     #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let model = open(&self.model)?;
+        let model = open_bare(&self.model)?;
         let clip = find(&model, &self.model, &self.clip)?;
         let time = self.wrap.wrap().inside(clip.duration(), self.time)?;
         let (locals, models) = match self.backend {
@@ -166,6 +166,11 @@ fn report<'a>(
     };
     let bones = skeleton.joints().iter().zip(skeleton.joint_parents()).map(bone).collect();
     Report { clip: clip.name(), time, bones }
+}
+
+/// As [`open`], without materials and images.
+pub fn open_bare(path: &Path) -> Result<Model, Error> {
+    if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file_bare(path) }
 }
 
 /// A file's model, or the built-in one.

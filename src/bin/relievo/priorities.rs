@@ -10,7 +10,7 @@ use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::output::{json, say, write_file};
-use crate::pose::{WrapName, find, open};
+use crate::pose::{WrapName, find, open_bare};
 
 /// Prints how much each key of each bone contributes to a clip, most important first: what animation LOD skips last.
 ///
@@ -73,7 +73,7 @@ impl<T> From<[T; 6]> for Terms<T> {
 
 impl Priorities {
     pub fn run(&self) -> Result<ExitCode, Error> {
-        let model = open(&self.model)?;
+        let model = open_bare(&self.model)?;
         let clip = find(&model, &self.model, &self.clip)?;
         let loops = matches!(self.wrap, WrapName::Loop);
         let weights = weights(self.weights.as_deref(), &model.skeleton, clip, loops)?;

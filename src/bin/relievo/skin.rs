@@ -23,10 +23,9 @@ use crate::pose::{Backend, WrapName, find, on_cpu, open};
 
 /// Writes the meshes of a model at a moment of a clip: where every vertex is, and a picture.
 ///
-/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes; then those of nodes
-/// without one, which follow the node that they hang on. Positions and
-/// normals are in the scene's space, with every digit; vertices are in the file's order. Points and lines have no
-/// faces. skin.png: all of it, lit, in the base colours and textures of its materials; clay where a mesh has none.
+/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. attached.obj, where
+/// there are any: those of nodes without one, which follow the node that they hang on. Positions and normals are in the
+/// scene's space, with every digit; vertices are in the file's order. Points and lines have no faces. skin.png: all of it, lit, in the base colours and textures of its materials; clay where a mesh has none.
 #[derive(Args)]
 pub struct Skin {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
@@ -51,7 +50,7 @@ pub struct Skin {
     /// What computes and draws; both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
-    /// The folder for mesh.obj and skin.png.
+    /// The folder for mesh.obj, attached.obj and skin.png.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }
@@ -87,8 +86,13 @@ impl Skin {
         };
         let meshes: Vec<_> =
             model.meshes.iter().zip(&skinned).map(|(mesh, vertices)| (mesh, &vertices[..])).collect();
-        let path = staged.path("mesh.obj");
-        std::fs::write(&path, obj(&meshes)).map_err(|error| Error::output(&path, error))?;
+        let (skinned, attached) = meshes.split_at(model.skinned);
+        for (name, meshes) in [("mesh.obj", skinned), ("attached.obj", attached)] {
+            if !meshes.is_empty() {
+                let path = staged.path(name);
+                std::fs::write(&path, obj(meshes)).map_err(|error| Error::output(&path, error))?;
+            }
+        }
         let path = staged.path("skin.png");
         let image = picture.reduced(FINER).encoded();
         image.save(&path).map_err(|error| Error::output(&path, error))?;

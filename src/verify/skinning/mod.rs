@@ -70,7 +70,7 @@ pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
     };
     mesh.validate(std::slice::from_ref(&skin))?;
     let (clips, materials, images) = (vec![], vec![], vec![]);
-    Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], materials, images })
+    Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images })
 }
 
 fn unit(draw: &mut Draw) -> [f32; 3] {

@@ -8,7 +8,7 @@ use relievo::{Error, animation::lod::Lens};
 use super::gates::{Mode, TICKS};
 use super::skinning::{Drawn, Skinning};
 use super::{Crowd, Layout};
-use crate::pose::{find, open};
+use crate::pose::{find, open, open_bare};
 use crate::priorities;
 use crate::terrain::Backend;
 
@@ -92,7 +92,7 @@ impl Plan {
         }
         let faded = if a.scene { "bounded:0.5" } else { "full" };
         let skinning = a.skinning.as_deref().unwrap_or(faded);
-        let model = open(&a.model)?;
+        let model = if drawn.is_some() { open(&a.model)? } else { open_bare(&a.model)? };
         let clip = find(&model, &a.model, &a.clip)?;
         #[cfg(feature = "gpu")]
         let clip_index = model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default();
