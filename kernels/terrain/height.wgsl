@@ -180,12 +180,12 @@ fn write_rows(
 ) {
     let at = fine_at(place, cell);
     store_four(place, at, here.inner);
-    let beside = squares_beside(place, columns, cell, here, upper, lower.inner);
+    let beside = held(squares_beside(place, columns, cell, here, upper, lower.inner));
     store_four(place, at + vec2<i32>(1), lower.inner);
-    let under = squares_below(place, columns, cell, here, below, lower);
+    let under = held(squares_below(place, columns, cell, here, below, lower));
     let squares = injected_squares(place, at, odd_features, Squares(beside, under));
-    store_four(place, at + vec2<i32>(1, 0), held(squares.beside));
-    store_four(place, at + vec2<i32>(0, 1), held(squares.under));
+    store_four(place, at + vec2<i32>(1, 0), squares.beside);
+    store_four(place, at + vec2<i32>(0, 1), squares.under);
 }
 
 // The heights themselves: none is less. lavapipe stores lane by lane, and would add up what is only stored once
