@@ -204,4 +204,10 @@ impl Crowd {
     pub fn comparison(&self) -> Result<image::RgbaImage, Error> {
         pareto::largest_errors(&Plan::new(self)?)
     }
+
+    /// The picture of `--image` at the first distance alone, for the demonstration.
+    #[cfg(feature = "gpu")]
+    pub fn picture(&self, context: &Context) -> Result<image::RgbaImage, Error> {
+        report::first_picture(&Plan::new(self)?, context)
+    }
 }

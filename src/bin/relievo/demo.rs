@@ -2,12 +2,13 @@
 
 mod crowd;
 mod relief;
+mod skin;
 mod terrain;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::{Args, FromArgMatches};
 use indicatif::ProgressBar;
 use relievo::Error;
 use relievo::terrain::export::write_bytes;
@@ -15,6 +16,7 @@ use relievo::terrain::export::write_bytes;
 use crate::Context;
 use crate::output::{Staged, say};
 use crate::progress::bar;
+use crate::terrain::save;
 
 /// Makes every picture that relievo can make so far, and an `index.html` that shows them with the commands that
 /// made them and their timings.
@@ -47,12 +49,13 @@ impl Demo {
             context,
             staged: Staged::new(&self.out)?,
             inputs: inputs.path(),
-            progress: bar((terrain::COUNT + relief::COUNT + crowd::COUNT) as u64, "drawing"),
+            progress: bar((terrain::COUNT + relief::COUNT + skin::COUNT + crowd::COUNT) as u64, "drawing"),
             figures: String::new(),
             count: 0,
         };
         terrain::draw(&mut page, &self.size)?;
         relief::draw(&mut page, &self.size)?;
+        skin::draw(&mut page)?;
         crowd::draw(&mut page)?;
         page.progress.finish_and_clear();
         let adapter = context.gpu()?.adapter().to_string();
@@ -60,6 +63,46 @@ impl Demo {
         page.staged.publish()?;
         say(format_args!("{} pictures, and {}", page.count, self.out.join("index.html").display()))?;
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// A picture of a command.
+struct Entry {
+    name: &'static str,
+    title: &'static str,
+    arguments: &'static [&'static str],
+}
+
+impl Entry {
+    /// The command that draws it; `more` is not shown.
+    fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&str]) -> Result<T, Error> {
+        let words = [&[name, "--out", "."], more, self.arguments].concat();
+        let refused = |error: clap::Error| Error::file(self.name, error);
+        let matches = T::augment_args(clap::Command::new(name)).try_get_matches_from(words);
+        T::from_arg_matches(&matches.map_err(refused)?).map_err(refused)
+    }
+}
+
+impl Page<'_> {
+    /// Shows the picture of a command, with a note.
+    fn show(
+        &mut self,
+        command: &str,
+        entry: &Entry,
+        picture: &image::RgbaImage,
+        note: &str,
+    ) -> Result<(), Error> {
+        let Entry { name, title, arguments } = entry;
+        save(&self.staged.path(format!("{name}.png")), picture)?;
+        let arguments = arguments.join(" ");
+        self.figures += &format!(
+            "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
+             <figcaption>{title}.<br><code>relievo {command} {arguments} --out {name}</code><br>{note}</figcaption>\n\
+             </figure>\n"
+        );
+        self.count += 1;
+        self.progress.inc(1);
+        Ok(())
     }
 }
 

@@ -66,8 +66,32 @@ const SKY: [f32; 3] = [0.02, 0.025, 0.03];
 const CLAY: [f32; 3] = [0.6, 0.3, 0.16];
 
 impl Skin {
-    #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+        let Made { model, vertices, picture } = self.made(context)?;
+        let mut staged = Staged::new(&self.out)?;
+        let meshes: Vec<_> =
+            model.meshes.iter().zip(&vertices).map(|(mesh, vertices)| (mesh, &vertices[..])).collect();
+        let (skinned, attached) = meshes.split_at(model.skinned);
+        for (name, meshes) in [("mesh.obj", skinned), ("attached.obj", attached)] {
+            if !meshes.is_empty() {
+                let path = staged.path(name);
+                std::fs::write(&path, obj(meshes)).map_err(|error| Error::output(&path, error))?;
+            }
+        }
+        let path = staged.path("skin.png");
+        picture.save(&path).map_err(|error| Error::output(&path, error))?;
+        staged.publish()?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// The picture alone, for the demonstration.
+    #[cfg(feature = "gpu")]
+    pub fn picture(&self, context: &Context) -> Result<image::RgbaImage, Error> {
+        Ok(self.made(context)?.picture)
+    }
+
+    #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
+    fn made(&self, context: &Context) -> Result<Made, Error> {
         let reduction = reduction(&self.influences)?;
         let model = open(&self.model)?;
         if model.meshes.is_empty() {
@@ -78,27 +102,22 @@ impl Skin {
             });
         }
         let moment = Moment::new(self, &model, reduction)?;
-        let mut staged = Staged::new(&self.out)?;
-        let (skinned, picture) = match self.backend {
+        let (vertices, picture) = match self.backend {
             #[cfg(feature = "gpu")]
             Backend::Gpu => device::skinned(&context.gpu()?, &moment)?,
             Backend::Cpu => on_host(&moment)?,
         };
-        let meshes: Vec<_> =
-            model.meshes.iter().zip(&skinned).map(|(mesh, vertices)| (mesh, &vertices[..])).collect();
-        let (skinned, attached) = meshes.split_at(model.skinned);
-        for (name, meshes) in [("mesh.obj", skinned), ("attached.obj", attached)] {
-            if !meshes.is_empty() {
-                let path = staged.path(name);
-                std::fs::write(&path, obj(meshes)).map_err(|error| Error::output(&path, error))?;
-            }
-        }
-        let path = staged.path("skin.png");
-        let image = picture.reduced(FINER).encoded();
-        image.save(&path).map_err(|error| Error::output(&path, error))?;
-        staged.publish()?;
-        Ok(ExitCode::SUCCESS)
+        let picture = picture.reduced(FINER).encoded();
+        Ok(Made { model, vertices, picture })
     }
+}
+
+/// What is written.
+struct Made {
+    model: Model,
+    /// Of each mesh.
+    vertices: Vec<Vec<Vertex>>,
+    picture: image::RgbaImage,
 }
 
 /// `full`, `truncate:K` or `fade:LAMBDA`.

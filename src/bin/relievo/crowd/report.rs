@@ -182,6 +182,15 @@ pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     say(table(&report).trim_end())
 }
 
+/// The picture of the first distance alone, for the demonstration.
+#[cfg(feature = "gpu")]
+pub fn first_picture(plan: &Plan, context: &Context) -> Result<image::RgbaImage, Error> {
+    let pictures = measured(plan, context)?.pictures;
+    let (_, picture) =
+        pictures.into_iter().next().ok_or(relievo::InputError::new("image", "no", "must be given"))?;
+    Ok(picture)
+}
+
 fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> {
     let stage = Stage::new(plan)?;
     let on = On::new(plan, context)?;

@@ -1,19 +1,10 @@
 //! Pictures of surface mapping.
 
-use clap::{Args, FromArgMatches};
 use relievo::Error;
 use relievo::surface::Measured;
 
-use super::Page;
+use super::{Entry, Page};
 use crate::relief::Relief;
-use crate::terrain::save;
-
-/// One picture and the rest of its command.
-struct Entry {
-    name: &'static str,
-    title: &'static str,
-    arguments: &'static [&'static str],
-}
 
 const ENTRIES: &[Entry] = &[
     Entry {
@@ -126,38 +117,17 @@ pub const COUNT: usize = ENTRIES.len() + 1;
 pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
     for entry in ENTRIES {
         page.progress.set_message(entry.name);
-        let (picture, measured, seconds) = command(entry, size)?.picture(page.context)?;
-        save(&page.staged.path(format!("{}.png", entry.name)), &picture)?;
+        let command: Relief = entry.command("relief", &["--size", size])?;
+        let (picture, measured, seconds) = command.picture(page.context)?;
         let Measured { mean_error_texels, mean_samples, .. } = measured;
         let note = format!(
             "mean error {mean_error_texels:.4} texels, {mean_samples:.1} texel loads a pixel; {seconds:.3} s with maps and \
              measuring"
         );
-        page.figures += &figure(entry, &note);
-        page.count += 1;
-        page.progress.inc(1);
+        page.show("relief", entry, &picture, &note)?;
     }
     page.progress.set_message(COMPARISON.name);
-    let plot = command(&COMPARISON, "240x150")?.comparison(page.context)?;
-    save(&page.staged.path(format!("{}.png", COMPARISON.name)), &plot)?;
-    page.figures += &figure(&COMPARISON, "errors against the exact intersection; labels are linear steps");
-    page.count += 1;
-    page.progress.inc(1);
-    Ok(())
-}
-
-fn command(entry: &Entry, size: &str) -> Result<Relief, Error> {
-    let words = ["relief", "--size", size, "--out", "."].into_iter().chain(entry.arguments.iter().copied());
-    let refused = |error: clap::Error| Error::file(entry.name, error);
-    let matches = Relief::augment_args(clap::Command::new("relief")).try_get_matches_from(words);
-    Relief::from_arg_matches(&matches.map_err(refused)?).map_err(refused)
-}
-
-fn figure(entry: &Entry, note: &str) -> String {
-    let Entry { name, title, arguments } = entry;
-    let arguments = arguments.join(" ");
-    format!(
-        "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-         <figcaption>{title}.<br><code>relievo relief {arguments} --out {name}</code><br>{note}</figcaption>\n</figure>\n"
-    )
+    let command: Relief = COMPARISON.command("relief", &["--size", "240x150"])?;
+    let plot = command.comparison(page.context)?;
+    page.show("relief", &COMPARISON, &plot, "errors against the exact intersection; labels are linear steps")
 }
