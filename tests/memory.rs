@@ -1,9 +1,13 @@
 //! Device memory: at most two `i32` for a sample of the enlarged windows, whatever a recipe asks for.
 #![cfg(feature = "gpu")]
 
+#[path = "harness/mod.rs"]
+mod harness;
+
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use relievo::gpu::{Gpu, Options};
+use harness::gpu_of_bindings;
+use relievo::gpu::Gpu;
 use relievo::reference::terrain::field::field;
 use relievo::terrain::config::{Border, Config};
 use relievo::terrain::despike::Despike;
@@ -19,19 +23,6 @@ const SMALL: u64 = 64 << 10;
 const SIZE: u32 = 65;
 const PATCHES: [[i32; 2]; 12] =
     [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [0, 2], [1, 2], [2, 2], [-7, 4], [-6, 4], [40, -3]];
-
-/// A device whose storage bindings hold no more than `bytes`.
-fn gpu(bytes: u64) -> Gpu {
-    let headless = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
-    let name = headless.adapter().name.clone();
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
-    let limits = wgpu::Limits { max_storage_buffer_binding_size: bytes, ..Default::default() };
-    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
-    Gpu::from_wgpu(device, queue)
-}
 
 fn recipes() -> Vec<Recipe> {
     let mut recipes = Vec::new();
@@ -92,15 +83,17 @@ fn most_allocated<T>(gpu: &Gpu, work: impl FnOnce() -> T) -> (T, Option<u64>, u6
 #[test]
 fn generation_holds_two_words_a_sample() {
     let points = PATCHES.len() as u64 * u64::from(SIZE).pow(2);
-    // Several parts as soon as the windows are larger than the patches; `blend` needs all of those in one buffer.
-    for binding in [128 << 20, 4 * points + 64] {
-        let gpu = gpu(binding);
+    // All lists in one buffer, which a small binding would not hold.
+    let roomy = gpu_of_bindings(128 << 20);
+    // Everything in one part, the windows in several as soon as they are larger than the patches, and the patches too.
+    for binding in [128 << 20, 4 * points + 64, points] {
+        let gpu = gpu_of_bindings(binding);
         for recipe in recipes() {
             for margin in [0, 1] {
                 let reach = recipe.reach(margin);
                 let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
                 let samples = PATCHES.len() as u64 * u64::from(SIZE + 2 * reach).pow(2);
-                let lists = list_bytes(&gpu, &recipe, reach);
+                let lists = list_bytes(&roomy, &recipe, reach);
                 let (parts, seen, own) = most_allocated(&gpu, || {
                     generator.generate(&gpu, &PATCHES, margin, &mut |_| ()).expect("generated")
                 });

@@ -1,20 +1,24 @@
 // B's transition area (section 3.3.1): samples within `width` of a border move towards the patch that
 // already exists on its other side. Left and right first, then above and below on the result.
 
+// Whether the neighbours lie in `others`, a buffer of patches apart from `heights`.
+override OTHERS: bool = false;
+
 struct BorderParams {
     size: u32,
     width: u32,
     points: u32,
-    // The first of this wave's entries in `order`.
+    // The first of this dispatch's entries in `order` and `neighbours`.
     start: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: BorderParams;
 @group(0) @binding(1) var<storage, read_write> heights: array<i32>;
-// Left, right, above and below of each patch; 0xffffffff where none exists yet.
+// Left, right, above and below of each entry's patch; 0xffffffff where there is none to move towards.
 @group(0) @binding(2) var<storage, read> neighbours: array<vec4<u32>>;
-// Patches, wave by wave: those of a wave do not depend on each other.
+// Patches, dispatch by dispatch: those of one do not depend on each other.
 @group(0) @binding(3) var<storage, read> order: array<u32>;
+@group(0) @binding(4) var<storage, read> others: array<i32>;
 
 const NONE = 0xffffffffu;
 
@@ -23,8 +27,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= params.size {
         return;
     }
-    let patch_index = order[params.start + id.z];
-    let around = neighbours[patch_index];
+    let entry = params.start + id.z;
+    let patch_index = order[entry];
+    let around = neighbours[entry];
     let x = id.x;
     let y = id.y;
     let last = params.size - 1u;
@@ -42,7 +47,7 @@ fn towards(ours: i32, neighbour: u32, distance: u32, index: u32) -> i32 {
     if neighbour == NONE || distance >= params.width {
         return ours;
     }
-    let theirs = heights[neighbour * params.points + index];
+    let theirs = sample_of(neighbour * params.points + index);
     let width = i32(params.width);
     let difference = ours - theirs;
     // Division rounds towards zero; the quotient here rounds down.
@@ -54,4 +59,11 @@ fn towards(ours: i32, neighbour: u32, distance: u32, index: u32) -> i32 {
     }
     let d = i32(distance);
     return theirs + quotient * d + (remainder * d + width / 2) / width;
+}
+
+fn sample_of(index: u32) -> i32 {
+    if OTHERS {
+        return others[index];
+    }
+    return heights[index];
 }

@@ -1,4 +1,5 @@
-// Windows around the patches of a batch, gathered from the patches themselves and their neighbours.
+// Windows around the patches of a batch, gathered from the patches themselves and their neighbours. A dispatch for
+// each buffer of patches writes the samples that come from there.
 
 struct PadParams {
     size: u32,
@@ -7,11 +8,13 @@ struct PadParams {
 
 @group(0) @binding(0) var<uniform> params: PadParams;
 @group(0) @binding(1) var<storage, read> patches: array<i32>;
-// Nine indices a patch: those around and at it, row by row; 0xffffffff where there is none.
+// Nine indices a patch: those around and at it, row by row; 0xffffffff where there is none, 0xfffffffe for one that
+// lies in another buffer.
 @group(0) @binding(2) var<storage, read> around: array<u32>;
 @group(0) @binding(3) var<storage, read_write> windows: array<i32>;
 
 const NONE = 0xffffffffu;
+const ELSEWHERE = 0xfffffffeu;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -20,10 +23,19 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = vec2<i32>(id.xy) - vec2<i32>(i32(params.reach));
-    windows[(id.z * width + id.y) * width + id.x] = sample_around(id.z, at);
+    let source = source_of(id.z, at);
+    let patch_index = around_at(id.z, source);
+    if patch_index == ELSEWHERE {
+        return;
+    }
+    let last = i32(params.size) - 1;
+    let local = vec2<u32>(clamp(at - last * (source - vec2<i32>(1)), vec2<i32>(0), vec2<i32>(last)));
+    windows[(id.z * width + id.y) * width + id.x] =
+        patches[patch_index * params.size * params.size + local.y * params.size + local.x];
 }
 
-fn sample_around(window: u32, at: vec2<i32>) -> i32 {
+// The tile whose patch has the sample.
+fn source_of(window: u32, at: vec2<i32>) -> vec2<i32> {
     let last = i32(params.size) - 1;
     let tile = vec2<i32>(1) + select(vec2<i32>(0), vec2<i32>(1), at > vec2<i32>(last))
         - select(vec2<i32>(0), vec2<i32>(1), at < vec2<i32>(0));
@@ -38,9 +50,7 @@ fn sample_around(window: u32, at: vec2<i32>) -> i32 {
     if around_at(window, source) == NONE {
         source = vec2<i32>(1, 1);
     }
-    let local = vec2<u32>(clamp(at - last * (source - vec2<i32>(1)), vec2<i32>(0), vec2<i32>(last)));
-    let patch_index = around_at(window, source);
-    return patches[patch_index * params.size * params.size + local.y * params.size + local.x];
+    return source;
 }
 
 fn around_at(window: u32, tile: vec2<i32>) -> u32 {

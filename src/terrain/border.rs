@@ -9,6 +9,8 @@ use crate::InputError;
 
 #[cfg(feature = "gpu")]
 mod pass;
+#[cfg(feature = "gpu")]
+mod visits;
 
 #[cfg(feature = "gpu")]
 pub use pass::BorderPass;

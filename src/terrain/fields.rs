@@ -14,6 +14,32 @@ pub struct Fields {
     pub count: u32,
 }
 
+/// Where one of the fields of several parts lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// The part.
+    pub part: usize,
+    /// The field's index in the part.
+    pub index: u32,
+}
+
+/// Where the fields of `parts` lie, one part after the other, all `width` samples wide.
+///
+/// # Errors
+/// [`InputError`] that names a part of another width, or one whose buffer is too short.
+pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputError> {
+    let mut places = Vec::new();
+    for (part, fields) in parts.iter().enumerate() {
+        if fields.width != width {
+            let bound = format!("must be {width}, as parts[0] has it");
+            return Err(InputError::new(format!("parts[{part}].width"), fields.width, bound));
+        }
+        fields.heights.check_holds(&format!("parts[{part}].heights"), fields.points(0))?;
+        places.extend((0..fields.count).map(|index| Place { part, index }));
+    }
+    Ok(places)
+}
+
 impl Fields {
     /// Zeroed fields.
     ///

@@ -72,7 +72,7 @@ impl Generator {
             return Ok(Vec::new());
         }
         if let Border::Blend(_) = self.recipe.config.border {
-            // Neighbours must lie in one buffer.
+            // Patches of one part read those of another.
             let fields = self.by_themselves(gpu, patches, reach)?;
             progress(patches.len());
             return Ok(fields);
@@ -121,19 +121,19 @@ impl Generator {
 
     fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
-        let size = config.patch_size;
         let alone = self.alone(gpu, patches)?;
-        let mut sizes = part_sizes(patches.len(), Fields::most(gpu, size + 2 * reach));
-        if reach == 0 && sizes.len() <= 1 {
-            return Ok(vec![alone]);
+        if reach == 0 {
+            return Ok(alone);
         }
+        let width = config.patch_size + 2 * reach;
+        let mut sizes = part_sizes(patches.len(), Fields::most(gpu, width));
         let all = surrounds(config, patches);
         let injected = self.recipe.injected(patches, reach);
         // The last part is what is left.
         sizes.pop();
         let windows = |around: &[Surround]| -> Result<Fields, Error> {
-            let windows = Fields::new(gpu, "terrain windows", size + 2 * reach, around.len() as u32)?;
-            let job = self.pad.prepare(gpu, [size, reach], around, &alone.heights, &windows.heights)?;
+            let windows = Fields::new(gpu, "terrain windows", width, around.len() as u32)?;
+            let job = self.pad.prepare(gpu, reach, around, &alone, &windows.heights)?;
             gpu.run("terrain/pad", |encoder| job.record(encoder))?;
             Ok(windows)
         };
@@ -151,18 +151,27 @@ impl Generator {
     }
 
     /// Patches without their surroundings, with the transitions of `blend`.
-    fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Fields, Error> {
+    fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
+        let config = &self.recipe.config;
+        let mut parts = Vec::new();
+        for part in patches.chunks(Fields::most(gpu, config.patch_size)) {
+            parts.push(self.wrapped(gpu, part)?);
+        }
+        if let Border::Blend(width) = config.border {
+            let job = self.border.prepare(gpu, width, &neighbours(patches), &parts)?;
+            job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
+        }
+        Ok(parts)
+    }
+
+    fn wrapped(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Fields, Error> {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
-        let (size, count) = (config.patch_size, patches.len() as u32);
-        let fields = Fields::new(gpu, "terrain/wrap (all patches that blend)", size, count)?;
+        let count = patches.len() as u32;
+        let fields = Fields::new(gpu, "terrain/wrap", config.patch_size, count)?;
         let scratch = Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))?;
         let job = self.wrap.prepare(gpu, config, count, features.len(), &fields.heights, &scratch)?;
         job.set(gpu, patches, features)?;
         gpu.run("terrain/wrap", |encoder| job.record(encoder))?;
-        if let Border::Blend(width) = config.border {
-            let job = self.border.prepare(gpu, size, width, &neighbours(patches), &fields.heights)?;
-            job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
-        }
         Ok(fields)
     }
 

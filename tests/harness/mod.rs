@@ -22,6 +22,18 @@ fn assert_adapter(adapter: &AdapterSummary) {
     }
 }
 
+/// A device whose storage bindings hold no more than `bytes`.
+pub fn gpu_of_bindings(bytes: u64) -> Gpu {
+    let name = gpu().adapter().name.clone();
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
+    let limits = wgpu::Limits { max_storage_buffer_binding_size: bytes, ..Default::default() };
+    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
+    Gpu::from_wgpu(device, queue)
+}
+
 /// How an image may differ from its golden, and why.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {

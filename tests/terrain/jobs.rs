@@ -142,14 +142,18 @@ fn border() {
     let gpu = gpu();
     let pass = BorderPass::new(&gpu).expect("compiled");
     let around = [[None; 4], [Some(0), None, None, None]];
-    let prepare =
-        |size, width, heights| pass.prepare(&gpu, size, width, &around, &buffer(&gpu, heights)).map(|_| ());
-    assert!(prepare(5, 4, 50).is_ok());
-    refuses(prepare(5, 4, 49), &["heights = [49 elements]", "at least 50"]);
+    let prepare = |width, parts: &[Fields]| pass.prepare(&gpu, width, &around, parts).map(|_| ());
+    let one = |width| fields(&gpu, width, 1);
+    assert!(prepare(4, &[fields(&gpu, 5, 2)]).is_ok());
+    assert!(prepare(4, &[one(5), one(5)]).is_ok());
+    refuses(prepare(4, &[one(5)]), &["neighbours = [2 patches]", "at most 1"]);
+    refuses(prepare(4, &[short(&gpu)]), &["parts[0].heights = [49 elements]", "at least 50"]);
+    refuses(prepare(4, &[one(5), one(9)]), &["parts[1].width = 9", "must be 5"]);
     for width in [0, 5, u32::MAX] {
-        refuses(prepare(5, width, 50), &[&format!("width = {width}: "), "below size = 5"]);
+        refuses(prepare(width, &[fields(&gpu, 5, 2)]), &[&format!("width = {width}: "), "below size = 5"]);
     }
-    refuses(prepare(0, 1, 50), &["width = 1"]);
+    refuses(prepare(1, &[one(0)]), &["width = 1"]);
+    refuses(prepare(1, &[]), &["width = 1"]);
 }
 
 #[test]
@@ -157,16 +161,21 @@ fn pad() {
     let gpu = gpu();
     let pass = PadPass::new(&gpu).expect("compiled");
     let own = |index| std::array::from_fn(|tile| (tile == 4).then_some(index));
-    let prepare = |shape, surrounds: &[[Option<usize>; 9]], patches, windows| {
-        pass.prepare(&gpu, shape, surrounds, &buffer(&gpu, patches), &buffer(&gpu, windows)).map(|_| ())
+    let prepare = |reach, surrounds: &[[Option<usize>; 9]], parts: &[Fields], windows| {
+        pass.prepare(&gpu, reach, surrounds, parts, &buffer(&gpu, windows)).map(|_| ())
     };
-    let surrounds = [own(0), own(1)];
-    assert!(prepare([5, 1], &surrounds, 50, 98).is_ok());
-    refuses(prepare([5, 1], &surrounds, 49, 98), &["surrounds[1] = 1: must be below 1"]);
-    refuses(prepare([5, 1], &surrounds, 50, 97), &["windows = [97 elements]", "at least 98"]);
-    refuses(prepare([5, 1], &[[None; 9]], 50, 98), &["surrounds[0][4] = none"]);
-    refuses(prepare([5, 5], &surrounds, 50, 450), &["reach = 5"]);
-    refuses(prepare([0, 0], &surrounds, 50, 98), &["reach = 0"]);
+    let one = |width| fields(&gpu, width, 1);
+    let (surrounds, two) = ([own(0), own(1)], [fields(&gpu, 5, 2)]);
+    assert!(prepare(1, &surrounds, &two, 98).is_ok());
+    assert!(prepare(1, &surrounds, &[one(5), one(5)], 98).is_ok());
+    refuses(prepare(1, &surrounds, &[one(5)], 98), &["surrounds[1] = 1: must be below 1"]);
+    refuses(prepare(1, &surrounds, &[short(&gpu)], 98), &["parts[0].heights = [49 elements]", "at least 50"]);
+    refuses(prepare(1, &surrounds, &[one(5), one(9)], 98), &["parts[1].width = 9", "must be 5"]);
+    refuses(prepare(1, &surrounds, &two, 97), &["windows = [97 elements]", "at least 98"]);
+    refuses(prepare(1, &[[None; 9]], &two, 98), &["surrounds[0][4] = none"]);
+    refuses(prepare(5, &surrounds, &two, 450), &["reach = 5"]);
+    refuses(prepare(0, &surrounds, &[one(0)], 98), &["reach = 0"]);
+    refuses(prepare(0, &surrounds, &[], 98), &["reach = 0"]);
 }
 
 #[test]

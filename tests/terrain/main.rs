@@ -1,8 +1,14 @@
 //! Terrain on the CPU: known answers, and the properties that make it seamless.
 
+#[cfg(feature = "gpu")]
+#[path = "../harness/mod.rs"]
+mod harness;
+
 mod borders;
 #[cfg(feature = "gpu")]
 mod jobs;
 mod known_heights;
 mod properties;
 mod refusals;
+#[cfg(feature = "gpu")]
+mod splitting;

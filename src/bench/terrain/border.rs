@@ -6,6 +6,7 @@ use crate::bench::{Backend, Bench, Contender};
 use crate::gpu::Buffer;
 use crate::reference::terrain::border::border;
 use crate::terrain::border::{BorderPass, neighbours};
+use crate::terrain::fields::Fields;
 
 /// An 8×8 grid.
 ///
@@ -18,8 +19,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let around = neighbours(&patches);
     let points = (size * size) as usize;
     let mut host = some_heights(points * patches.len());
-    let heights = Buffer::from_slice(gpu, "heights", &host)?;
-    let job = BorderPass::new(gpu)?.prepare(gpu, size, width, &around, &heights)?;
+    let fields = Fields { heights: Buffer::from_slice(gpu, "heights", &host)?, width: size, count: 64 };
+    let job = BorderPass::new(gpu)?.prepare(gpu, width, &around, &[fields])?;
     let copied = copy_of(gpu, host.len())?;
     let (total, bytes) = (host.len(), 8 * host.len() as u64);
     let contenders = vec![

@@ -6,6 +6,7 @@ use crate::bench::{Backend, Bench, Contender};
 use crate::gpu::Buffer;
 use crate::reference::terrain::pad::pad;
 use crate::terrain::config::{Border, Config};
+use crate::terrain::fields::Fields;
 use crate::terrain::pad::{PadPass, surrounds};
 
 /// An 8×8 grid.
@@ -21,9 +22,9 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let points = (size * size) as usize;
     let heights = some_heights(points * patches.len());
     let total = patches.len() * ((size + 2 * reach) as usize).pow(2);
-    let (input, output) =
-        (Buffer::from_slice(gpu, "patches", &heights)?, Buffer::new(gpu, "windows", total)?);
-    let job = PadPass::new(gpu)?.prepare(gpu, [size, reach], &around, &input, &output)?;
+    let input = Fields { heights: Buffer::from_slice(gpu, "patches", &heights)?, width: size, count: 64 };
+    let output = Buffer::new(gpu, "windows", total)?;
+    let job = PadPass::new(gpu)?.prepare(gpu, reach, &around, &[input], &output)?;
     let copied = copy_of(gpu, total)?;
     let field = |index: usize| &heights[index * points..(index + 1) * points];
     let contenders = vec![

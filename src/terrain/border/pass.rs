@@ -1,9 +1,11 @@
-//! `kernels/terrain/border.wgsl`, wave by wave.
+//! `kernels/terrain/border.wgsl`, wave by wave, over the buffers that a batch lies in.
 
 use encase::ShaderType;
 
-use super::{Neighbours, waves};
+use super::Neighbours;
+use super::visits::{Visit, visits};
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::terrain::fields::{Fields, places};
 use crate::{Error, InputError};
 
 /// `BorderParams` of the kernel.
@@ -18,61 +20,90 @@ pub(crate) struct BorderParams {
 /// Moves border samples of patches towards patches that exist already.
 #[derive(Debug, Clone)]
 pub struct BorderPass {
-    kernel: Kernel,
+    within: Kernel,
+    across: Kernel,
 }
 
 impl BorderPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_BORDER, &[])? })
+        let kernel = |others: f64| Kernel::new(gpu, &shaders::TERRAIN_BORDER, &[("OTHERS", others)]);
+        Ok(Self { within: kernel(0.0)?, across: kernel(1.0)? })
     }
 
-    /// Prepares the transition of `width` samples for patches of `size`² heights that lie in `heights` one
-    /// after the other; `neighbours` are indices of earlier ones.
+    /// Prepares the transition of `width` samples for patches that lie in `parts` one after the other; `neighbours`
+    /// are indices of earlier ones, counted through all parts.
     ///
     /// # Errors
-    /// [`InputError`] as [`waves`], and for a width outside 1..`size` or heights that are too short;
-    /// [`GpuError`].
+    /// [`InputError`] as [`super::waves`], for a width outside 1..size of a patch, more neighbours than patches, and
+    /// parts of different widths or with heights that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        size: u32,
         width: u32,
         neighbours: &[Neighbours],
-        heights: &Buffer<i32>,
+        parts: &[Fields],
     ) -> Result<Job, Error> {
+        let size = parts.first().map_or(0, |part| part.width);
         if width == 0 || width >= size {
             let bound = format!("must be at least 1 and below size = {size}");
             return Err(InputError::new("width", width, bound).into());
         }
-        heights.check_holds("heights", neighbours.len() * (size as usize).pow(2))?;
-        let waves = waves(neighbours)?;
-        let around: Vec<[u32; 4]> = (neighbours.iter())
-            .map(|around| around.map(|neighbour| neighbour.map_or(u32::MAX, |index| index as u32)))
-            .collect();
-        let around = Buffer::from_slice(gpu, "neighbours", &around)?;
-        let order = Buffer::from_slice(gpu, "blend order", &waves.concat())?;
+        let places = places(parts, size)?;
+        if neighbours.len() > places.len() {
+            let value = format!("[{} patches]", neighbours.len());
+            let bound = format!("must be at most {}, the patches in the parts", places.len());
+            return Err(InputError::new("neighbours", value, bound).into());
+        }
+        let visits = visits(neighbours, &places)?;
+        let entries: Vec<_> =
+            (0..parts.len()).map(|part| Entries::new(gpu, part, &visits)).collect::<Result<_, _>>()?;
+        let mut starts = vec![0; parts.len()];
         let mut steps = Vec::new();
-        let mut start = 0;
-        for wave in &waves {
-            let count = wave.len() as u32;
-            let params = BorderParams { size, width, points: size * size, start };
+        for Visit { part, source, entries: visited } in &visits {
+            let count = visited.len() as u32;
+            let params = BorderParams { size, width, points: size * size, start: starts[*part] };
+            starts[*part] += count;
             let uniform = Uniform::new(gpu, "border", &params)?;
+            let Entries { neighbours, order } = &entries[*part];
+            // A buffer that is written cannot be bound once more; what stands in for it is never read.
+            let (kernel, others) = if source == part {
+                (&self.within, order.raw())
+            } else {
+                (&self.across, parts[*source].heights.raw())
+            };
             let resources = [
                 uniform.raw().as_entire_binding(),
-                heights.raw().as_entire_binding(),
-                around.raw().as_entire_binding(),
+                parts[*part].heights.raw().as_entire_binding(),
+                neighbours.raw().as_entire_binding(),
                 order.raw().as_entire_binding(),
+                others.as_entire_binding(),
             ];
-            let groups = vec![self.kernel.bind(gpu, 0, &resources)?];
-            let workgroups = [self.kernel.groups_for(size), size, count];
-            steps.push(Step { kernel: self.kernel.clone(), groups, workgroups });
-            start += count;
+            let groups = vec![kernel.bind(gpu, 0, &resources)?];
+            let workgroups = [kernel.groups_for(size), size, count];
+            steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         Ok(Job::new(gpu, "terrain/border", steps)?)
+    }
+}
+
+/// The entries of all visits to one part, one after the other.
+struct Entries {
+    neighbours: Buffer<[u32; 4]>,
+    order: Buffer<u32>,
+}
+
+impl Entries {
+    fn new(gpu: &Gpu, part: usize, visits: &[Visit]) -> Result<Self, GpuError> {
+        let entries = visits.iter().filter(|visit| visit.part == part).flat_map(|visit| &visit.entries);
+        let (order, neighbours): (Vec<u32>, Vec<[u32; 4]>) = entries.copied().unzip();
+        Ok(Self {
+            neighbours: Buffer::from_slice(gpu, "neighbours", &neighbours)?,
+            order: Buffer::from_slice(gpu, "blend order", &order)?,
+        })
     }
 }
 

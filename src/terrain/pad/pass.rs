@@ -4,6 +4,7 @@ use encase::ShaderType;
 
 use super::{Surround, validate};
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
 
 /// `PadParams` of the kernel.
@@ -12,6 +13,11 @@ pub(crate) struct PadParams {
     pub size: u32,
     pub reach: u32,
 }
+
+/// What the kernel takes for a tile without a patch.
+const NONE: u32 = u32::MAX;
+/// What the kernel takes for a patch in another buffer.
+const ELSEWHERE: u32 = u32::MAX - 1;
 
 /// Gathers windows from patches and their neighbours.
 #[derive(Debug, Clone)]
@@ -28,41 +34,61 @@ impl PadPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_PAD, &[])? })
     }
 
-    /// Prepares windows that reach `reach` samples beyond patches of `size`² heights, one for each of
-    /// `surrounds`, from `patches` to `windows`.
+    /// Prepares windows that reach `reach` samples beyond patches, one for each of `surrounds`, from `parts`, where
+    /// the patches lie one after the other, to `windows`. Surroundings are counted through all parts.
     ///
     /// # Errors
-    /// [`InputError`] when the reach is `size` or more, a surrounding lacks its own patch or names one beyond
-    /// `patches`, or `windows` is too short; [`GpuError`].
+    /// [`InputError`] when the reach is the size of a patch or more, a surrounding lacks its own patch or names one
+    /// beyond `parts`, parts have different widths or heights that are too short, or `windows` is too short;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        [size, reach]: [u32; 2],
+        reach: u32,
         surrounds: &[Surround],
-        patches: &Buffer<i32>,
+        parts: &[Fields],
         windows: &Buffer<i32>,
     ) -> Result<Job, Error> {
+        let size = parts.first().map_or(0, |part| part.width);
         validate(size, reach)?;
         let width = size + 2 * reach;
-        check_surrounds(surrounds, patches.len() / (size as usize).pow(2).max(1))?;
+        let places = places(parts, size)?;
+        check_surrounds(surrounds, places.len())?;
         windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
-        let around: Vec<u32> =
-            (surrounds.iter().flatten()).map(|tile| tile.map_or(u32::MAX, |index| index as u32)).collect();
-        let around = Buffer::from_slice(gpu, "surroundings", &around)?;
+        let tiles: Vec<_> = surrounds.iter().flatten().map(|tile| tile.map(|patch| places[patch])).collect();
         let uniform = Uniform::new(gpu, "pad", &PadParams { size, reach })?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            patches.raw().as_entire_binding(),
-            around.raw().as_entire_binding(),
-            windows.raw().as_entire_binding(),
-        ];
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
-            workgroups: [self.kernel.groups_for(width), width, surrounds.len() as u32],
-        };
-        Ok(Job::new(gpu, "terrain/pad", vec![step])?)
+        let mut steps = Vec::new();
+        for (part, patches) in parts.iter().enumerate() {
+            let Some(around) = tiles_in(part, &tiles) else { continue };
+            let around = Buffer::from_slice(gpu, "surroundings", &around)?;
+            let resources = [
+                uniform.raw().as_entire_binding(),
+                patches.heights.raw().as_entire_binding(),
+                around.raw().as_entire_binding(),
+                windows.raw().as_entire_binding(),
+            ];
+            steps.push(Step {
+                kernel: self.kernel.clone(),
+                groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+                workgroups: [self.kernel.groups_for(width), width, surrounds.len() as u32],
+            });
+        }
+        Ok(Job::new(gpu, "terrain/pad", steps)?)
     }
+}
+
+/// The kernel's indices for the dispatch that reads `part`; nothing when no tile lies there.
+fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
+    let here = |tile: &Option<Place>| tile.is_some_and(|place| place.part == part);
+    tiles.iter().any(here).then(|| {
+        (tiles.iter())
+            .map(|tile| match tile {
+                Some(place) if place.part == part => place.index,
+                Some(_) => ELSEWHERE,
+                None => NONE,
+            })
+            .collect()
+    })
 }
 
 /// Checks that every patch is there itself, and that all of them are among `count`.
@@ -76,7 +102,7 @@ fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputErro
             ));
         }
         if let Some(beyond) = around.iter().flatten().find(|patch| **patch >= count) {
-            let bound = format!("must be below {count}, the patches in the buffer");
+            let bound = format!("must be below {count}, the patches in the parts");
             return Err(InputError::new(format!("surrounds[{index}]"), beyond, bound));
         }
     }

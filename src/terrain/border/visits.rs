@@ -1,0 +1,95 @@
+//! Which dispatches move the patches of a batch that lies in several buffers.
+
+use std::collections::BTreeMap;
+
+use super::{Neighbours, waves};
+use crate::InputError;
+use crate::terrain::fields::Place;
+
+/// Patches of one part that a dispatch moves towards neighbours of one part.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Visit {
+    /// Where the patches lie.
+    pub part: usize,
+    /// Where their neighbours lie.
+    pub source: usize,
+    /// The patches' indices in their part, with their neighbours' in theirs.
+    pub entries: Vec<(u32, [u32; 4])>,
+}
+
+/// The dispatches in order, given where each patch lies. A patch whose neighbours lie in its own part moves at once;
+/// another moves side by side, in the order in which the kernel takes sides.
+///
+/// # Errors
+/// [`InputError`] as [`waves`].
+pub(super) fn visits(neighbours: &[Neighbours], places: &[Place]) -> Result<Vec<Visit>, InputError> {
+    let mut visits = Vec::new();
+    for wave in waves(neighbours)? {
+        let mut dispatches = BTreeMap::<_, Vec<_>>::new();
+        for patch in wave {
+            let Place { part, index } = places[patch as usize];
+            let around = neighbours[patch as usize].map(|neighbour| neighbour.map(|at| places[at]));
+            let mut visit = |turn: usize, source: usize, around: [Option<Place>; 4]| {
+                let around = around.map(|place| place.map_or(u32::MAX, |place| place.index));
+                dispatches.entry((part, turn, source)).or_default().push((index, around));
+            };
+            if around.iter().flatten().all(|place| place.part == part) {
+                visit(0, part, around);
+                continue;
+            }
+            for (side, neighbour) in around.into_iter().enumerate() {
+                let Some(place) = neighbour else { continue };
+                let mut only = [None; 4];
+                only[side] = neighbour;
+                visit(side, place.part, only);
+            }
+        }
+        let made = dispatches.into_iter();
+        visits.extend(made.map(|((part, _, source), entries)| Visit { part, source, entries }));
+    }
+    Ok(visits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: u32 = u32::MAX;
+
+    fn places(counts: &[u32]) -> Vec<Place> {
+        let part = |(part, count): (usize, &u32)| (0..*count).map(move |index| Place { part, index });
+        counts.iter().enumerate().flat_map(part).collect()
+    }
+
+    /// A patch with all four neighbours, which lie here and there.
+    fn surrounded() -> Vec<Neighbours> {
+        vec![[None; 4], [None; 4], [None; 4], [None; 4], [Some(2), Some(0), Some(3), Some(1)]]
+    }
+
+    #[test]
+    fn one_part_is_visited_wave_by_wave() {
+        let visits = visits(&surrounded(), &places(&[5])).expect("in order");
+        let first = (0..4).map(|index| (index, [NONE; 4])).collect();
+        let expected = [
+            Visit { part: 0, source: 0, entries: first },
+            Visit { part: 0, source: 0, entries: vec![(4, [2, 0, 3, 1])] },
+        ];
+        assert_eq!(visits, expected);
+    }
+
+    #[test]
+    fn sides_keep_their_order_across_parts() {
+        let visits = visits(&surrounded(), &places(&[2, 3])).expect("in order");
+        let last: Vec<_> = (visits.iter())
+            .filter(|visit| visit.entries[0].1 != [NONE; 4])
+            .map(|visit| (visit.part, visit.source, visit.entries.as_slice()))
+            .collect();
+        let expected: [(_, _, &[_]); 4] = [
+            (1, 1, &[(2, [0, NONE, NONE, NONE])]),
+            (1, 0, &[(2, [NONE, 0, NONE, NONE])]),
+            (1, 1, &[(2, [NONE, NONE, 1, NONE])]),
+            (1, 0, &[(2, [NONE, NONE, NONE, 1])]),
+        ];
+        assert_eq!(last, expected);
+    }
+}

@@ -1,0 +1,74 @@
+//! A batch of `blend` that one binding does not hold is split, and its heights are the same bits.
+
+use relievo::reference::terrain::field::field;
+use relievo::terrain::config::{Border, Config};
+use relievo::terrain::despike::Despike;
+use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::generator::Generator;
+use relievo::terrain::recipe::Recipe;
+use relievo::terrain::thermal::Thermal;
+
+use crate::harness::gpu_of_bindings;
+
+const SIZE: u32 = 33;
+/// Bytes of a patch.
+const PATCH: u64 = 4 * (SIZE as u64).pow(2);
+
+/// A 4×3 grid row by row, backwards, in no order, with holes, and with a patch that is asked for twice.
+fn orders() -> Vec<(&'static str, Vec<[i32; 2]>)> {
+    let raster: Vec<[i32; 2]> = (0..12).map(|i| [i % 4 - 2, i / 4 - 1]).collect();
+    let shuffled: Vec<_> = (0..12).map(|i| raster[(i * 7 + 5) % 12]).collect();
+    let holes = [5, 0, 11, 2, 9, 6, 10, 1].map(|i| raster[i]).to_vec();
+    let mut twice = shuffled.clone();
+    twice.insert(6, shuffled[0]);
+    vec![
+        ("backwards", raster.iter().rev().copied().collect()),
+        ("raster", raster),
+        ("shuffled", shuffled),
+        ("holes", holes),
+        ("twice", twice),
+    ]
+}
+
+/// Despiking and erosion between nothing at all and both.
+fn recipes(blend: u32) -> Vec<Recipe> {
+    let config = Config { border: Border::Blend(blend), ..Config::new(SIZE, 20.0, "split").expect("valid") };
+    let precomputed_heights = vec![3.0, 10.0, 50.0, 32.0, 20.0, -50.0];
+    let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights };
+    let features = Features::new(&config, &[file], FeatureMode::Keep).expect("valid");
+    let mut recipes = Vec::new();
+    for despike in [None, Some(Despike { threshold: 0.5 })] {
+        for thermal in [None, Some(Thermal { iterations: 3, talus: 30.0 })] {
+            recipes.push(Recipe { config: config.clone(), features: features.clone(), despike, thermal });
+        }
+    }
+    recipes
+}
+
+#[test]
+fn split_batches_of_blend_are_the_same_bits() {
+    // One patch to a buffer, some, and not quite all.
+    for most in [1, 3, 7] {
+        // The largest windows reach five samples beyond a patch: one has to fit, but no two patches.
+        let gpu = gpu_of_bindings((most * PATCH).max(4 * u64::from(SIZE + 10).pow(2)));
+        for recipe in [1, 8, 30].into_iter().flat_map(recipes) {
+            let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
+            for ((order, patches), margin) in
+                orders().into_iter().flat_map(|order| [(order.clone(), 0), (order, 1)])
+            {
+                let case = format!("{order}, {most} a part, margin {margin}, {recipe:?}");
+                let parts = generator.generate(&gpu, &patches, margin, &mut |_| ()).expect("generated");
+                assert!(parts.len() > 1, "{case}");
+                let expected = field(&recipe, &patches, margin).expect("computed");
+                let mut actual = Vec::new();
+                for part in &parts {
+                    let heights = part.heights.read_blocking(&gpu).expect("read");
+                    let windows =
+                        heights.chunks_exact((part.width as usize).pow(2)).take(part.count as usize);
+                    actual.extend(windows.map(<[i32]>::to_vec));
+                }
+                assert!(actual == expected, "{case}: heights differ");
+            }
+        }
+    }
+}
