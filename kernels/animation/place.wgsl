@@ -50,8 +50,8 @@ fn main(
         }
         entry = dirty_instances[listed] + (at - listed * layers) * params.instances;
     }
-    let is_ahead = COMPACTED && entry >= params.entries;
-    if !COMPACTED && entry >= params.entries {
+    let is_ahead = entry >= params.entries;
+    if is_ahead && !COMPACTED {
         return;
     }
     let playing = select(entry, entry - params.entries, is_ahead);

@@ -98,6 +98,13 @@ impl Order {
         order
     }
 
+    /// Each bone's slot.
+    pub(crate) fn slots_of_bones(&self) -> Vec<usize> {
+        let mut slot_of = vec![0; self.slots.len()];
+        self.slots.iter().enumerate().for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
+        slot_of
+    }
+
     /// Words of 32 bits that hold one for each bone.
     pub fn words(&self) -> usize {
         self.slots.len().div_ceil(32)

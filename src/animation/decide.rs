@@ -3,7 +3,7 @@
 //! more than other processors gain and the device lets a shader bind that many buffers. Both ways leave the same in every
 //! buffer.
 
-use super::gate::Gate;
+use super::gate::{Frame, Gate};
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -18,4 +18,11 @@ pub enum Choice {
     Gate(Gate),
     /// At most so many bones of the crowd.
     Budget(u32),
+}
+
+impl Choice {
+    /// By how many seconds bones may be sampled ahead in a frame: nothing but [`Gate::Bounded`] does so.
+    pub fn ahead(self, frame: &Frame) -> f32 {
+        if self == Self::Gate(Gate::Bounded) { frame.ahead } else { 0.0 }
+    }
 }

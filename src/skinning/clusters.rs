@@ -51,8 +51,7 @@ impl Clusters {
         }
         skin.validate(skeleton)?;
         let bones = Order::new(skeleton);
-        let mut slot_of = vec![0; skeleton.len()];
-        (0..).zip(&bones.slots).for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
+        let slot_of = bones.slots_of_bones();
         let order = order(mesh);
         let mut place = vec![0; mesh.vertices()];
         (0..).zip(&order).for_each(|(at, vertex)| place[*vertex as usize] = at);

@@ -45,6 +45,7 @@ fn available(gpu: &Gpu) -> u32 {
 /// Decides what is sampled, and lists it.
 #[derive(Debug, Clone)]
 pub struct DecidePass {
+    choice: Choice,
     kernels: Kernels,
 }
 
@@ -83,7 +84,7 @@ impl DecidePass {
             (Choice::Gate(gate), Dispatches::Each) => steps(Decider::Gate(GatePass::new(gpu, gate)?))?,
             (Choice::Budget(most), _) => steps(Decider::Budget(BudgetPass::new(gpu)?, most))?,
         };
-        Ok(Self { kernels })
+        Ok(Self { choice, kernels })
     }
 
     /// Prepares the decision for a crowd.
@@ -106,7 +107,7 @@ impl DecidePass {
                 lists: steps.compact.prepare(gpu, crowd, active, Stages::of(gpu, active))?,
             },
         };
-        Ok(DecideJob { work })
+        Ok(DecideJob { choice: self.choice, work })
     }
 }
 
@@ -162,6 +163,7 @@ impl Decider {
 /// A prepared decision: set time and frame, then record.
 #[derive(Debug, Clone)]
 pub struct DecideJob {
+    choice: Choice,
     work: Work,
 }
 
@@ -183,13 +185,14 @@ impl DecideJob {
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
+        let ahead = self.choice.ahead(frame);
         match &self.work {
             Work::One { phase, gate, .. } => {
-                phase.set(gpu, elapsed, frame.ahead)?;
+                phase.set(gpu, elapsed, ahead)?;
                 gate.set(gpu, frame)?;
             }
             Work::Each { phase, decision, .. } => {
-                phase.set(gpu, elapsed, frame.ahead)?;
+                phase.set(gpu, elapsed, ahead)?;
                 if let Decision::Gate(job) = decision {
                     job.set(gpu, frame)?;
                 }

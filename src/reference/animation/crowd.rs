@@ -57,9 +57,11 @@ impl<'a> Crowd<'a> {
     /// Brings the crowd to a time, and says what was done for it.
     pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let set = self.decider.set;
-        let [now, ahead] =
-            [elapsed, elapsed + frame.ahead].map(|elapsed| places(set, &self.instances, elapsed));
-        let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed, frame.ahead);
+        let lead = choice.ahead(frame);
+        let now = places(set, &self.instances, elapsed);
+        // Nothing is sampled there without a lead.
+        let ahead = if lead == 0.0 { Vec::new() } else { places(set, &self.instances, elapsed + lead) };
+        let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed, lead);
         let bits = self.decider.bits(choice, frame, &self.lods, &phases);
         let work = compact(self.order, &bits);
         let (bones, timelines) = (set.bones(), set.timelines_a_clip());

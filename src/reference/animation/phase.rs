@@ -27,7 +27,9 @@ pub fn phases(
             inside_clip(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed)
         };
         let (now, later) = (inside(elapsed), inside(elapsed + ahead));
-        let [place, later_place] = [now, later].map(|time| place(set.common_times(clip), time));
+        let at = |time: f32| place(set.common_times(clip), time);
+        let place = at(now);
+        let later_place = if ahead == 0.0 { place } else { at(later) };
         let above = clips_above(layers, index);
         let blended = if above != 0 { BLENDED } else { 0 };
         let known = [(instance.clip + 1) | blended, above, now.to_bits(), later.to_bits()];

@@ -102,7 +102,7 @@ impl Play<'_> {
             job.set(gpu, &frame, elapsed)?;
             outputs.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = decider.phases(&instances, &layers, &lods, elapsed, ahead);
+            let expected = decider.phases(&instances, &layers, &lods, elapsed, choice.ahead(&frame));
             let name = |what| format!("{}, frame {number}: {what}", self.name);
             let same = |actual: &[Phase]| exact(&phase::settled(actual, &expected), &expected);
             cases.add(name("phases"), outputs.phases.check(gpu, same)?);
