@@ -14,6 +14,19 @@ pub const MOST_VERTICES: usize = 1 << 24;
 /// The largest size of a coordinate.
 pub const COORDINATE_LIMIT: f32 = tangent::COORDINATE_LIMIT;
 
+/// The most levels of detail of a mesh: itself, and [`Mesh::levels`].
+pub const MOST_LEVELS: usize = 16;
+
+/// A coarser form of a mesh, of some of its vertices.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshLevel {
+    /// Three a triangle, of the mesh's vertices; at least one triangle.
+    pub indices: Vec<u32>,
+    /// Units of the model, not negative: no vertex is further from this level's surface, and no point of it from the
+    /// mesh's, in the poses that were looked at.
+    pub error: f32,
+}
+
 /// Triangles that follow the bones of one skin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
@@ -44,6 +57,9 @@ pub struct Mesh {
     pub weights: Vec<f32>,
     /// The clips that move the targets, and how.
     pub weight_keys: Vec<(usize, WeightKeys)>,
+    /// Coarser and coarser, fewer than [`MOST_LEVELS`]: level 1 and on, the mesh itself is level 0. Each is of vertices
+    /// of the one before, and errors do not descend.
+    pub levels: Vec<MeshLevel>,
 }
 
 impl Mesh {
@@ -93,7 +109,41 @@ impl Mesh {
             return Err(InputError::new("mesh.influences", wrong.bone, bound));
         }
         triangles("mesh.indices", &self.indices, vertices)?;
+        self.validate_levels()?;
         self.validate_targets()
+    }
+
+    fn validate_levels(&self) -> Result<(), InputError> {
+        if self.levels.len() >= MOST_LEVELS {
+            let bound = format!("must be at most {}", MOST_LEVELS - 1);
+            return Err(InputError::new("mesh.levels.len", self.levels.len(), bound));
+        }
+        let mut least = 0.0;
+        let mut finer = self.used(&self.indices);
+        for (at, level) in self.levels.iter().enumerate() {
+            let path = format!("mesh.levels[{at}]");
+            if !(least..f32::INFINITY).contains(&level.error) {
+                let bound = format!("must be finite, and at least {least}, which the level before has");
+                return Err(InputError::new(format!("{path}.error"), level.error, bound));
+            }
+            if level.indices.is_empty() {
+                return Err(InputError::new(format!("{path}.indices.len"), 0, "must be at least 3"));
+            }
+            triangles(&format!("{path}.indices"), &level.indices, self.vertices())?;
+            if let Some(at) = level.indices.iter().position(|vertex| !finer[*vertex as usize]) {
+                let bound = "must be a vertex of the level before";
+                return Err(InputError::new(format!("{path}.indices[{at}]"), level.indices[at], bound));
+            }
+            (least, finer) = (level.error, self.used(&level.indices));
+        }
+        Ok(())
+    }
+
+    /// Which vertices triangles have.
+    fn used(&self, indices: &[u32]) -> Vec<bool> {
+        let mut used = vec![false; self.vertices()];
+        indices.iter().for_each(|vertex| used[*vertex as usize] = true);
+        used
     }
 
     fn validate_targets(&self) -> Result<(), InputError> {
@@ -269,6 +319,7 @@ mod tests {
             targets: vec![MorphTarget { vertices: vec![2], deltas: vec![delta] }],
             weights: vec![-3.0],
             weight_keys: vec![],
+            levels: vec![],
         };
         (mesh, vec![skin])
     }
@@ -327,5 +378,32 @@ mod tests {
             mesh.influences = Influences::new("w", 3, vec![given; 3]).expect("valid");
         };
         assert_eq!(refused(&far), "mesh.influences");
+    }
+
+    #[test]
+    fn levels_are_nested_and_coarser_and_coarser() {
+        // Two triangles; then the first.
+        let levelled = |levels: &[(&[u32], f32)]| {
+            let (mut mesh, skins) = triangle();
+            mesh.indices = vec![0, 1, 2, 2, 1, 0];
+            let level =
+                |(indices, error): &(&[u32], f32)| MeshLevel { indices: indices.to_vec(), error: *error };
+            mesh.levels = levels.iter().map(level).collect();
+            mesh.validate(&skins).map_err(|error| error.field)
+        };
+        let (one, none): (&[u32], &[u32]) = (&[0, 1, 2], &[]);
+        assert_eq!(levelled(&[(one, 0.0), (one, 0.5), (&[1, 1, 1], 0.5)]), Ok(()));
+        assert_eq!(levelled(&vec![(one, 1.0); 15]), Ok(()));
+        let refused =
+            |levels: &[(&[u32], f32)], field: &str| assert_eq!(levelled(levels), Err(field.to_owned()));
+        refused(&vec![(one, 1.0); 16], "mesh.levels.len");
+        refused(&[(one, -1.0)], "mesh.levels[0].error");
+        refused(&[(one, f32::NAN)], "mesh.levels[0].error");
+        refused(&[(one, f32::INFINITY)], "mesh.levels[0].error");
+        refused(&[(one, 1.0), (one, 0.5)], "mesh.levels[1].error");
+        refused(&[(one, 1.0), (none, 1.0)], "mesh.levels[1].indices.len");
+        refused(&[(&[0, 1], 1.0)], "mesh.levels[0].indices.len");
+        refused(&[(&[0, 1, 3], 1.0)], "mesh.levels[0].indices[2]");
+        refused(&[(&[0, 1, 1], 1.0), (one, 1.0)], "mesh.levels[1].indices[2]");
     }
 }

@@ -22,7 +22,7 @@ pub mod weights;
 
 pub use extent::Extent;
 pub use material::Material;
-pub use mesh::{Mesh, reaches};
+pub use mesh::{Mesh, MeshLevel, reaches};
 pub use morph::{MorphTarget, WeightKeys};
 pub use skin::{Blend, Vertex};
 pub use weights::{Influence, Influences, Reduction};

@@ -72,6 +72,7 @@ fn limb() -> Model {
         targets: vec![],
         weights: vec![],
         weight_keys: vec![],
+        levels: vec![],
     };
     let (clips, materials, images) = (vec![], vec![], vec![]);
     Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images }

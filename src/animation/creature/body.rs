@@ -240,6 +240,7 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
         targets: vec![],
         weights: vec![],
         weight_keys: vec![],
+        levels: vec![],
     })
 }
 

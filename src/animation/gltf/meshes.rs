@@ -167,6 +167,7 @@ impl Reader<'_, '_> {
             targets,
             weights,
             weight_keys,
+            levels: vec![],
         })
     }
 

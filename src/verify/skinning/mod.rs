@@ -67,6 +67,7 @@ pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
         targets: (0..shape.targets).map(|_| target(&mut draw, shape.vertices)).collect(),
         weights: vec![0.0; shape.targets],
         weight_keys: vec![],
+        levels: vec![],
     };
     mesh.validate(std::slice::from_ref(&skin))?;
     let (clips, materials, images) = (vec![], vec![], vec![]);
