@@ -16,6 +16,7 @@ pub mod morph;
 pub mod morph_weights;
 pub mod palette;
 pub mod picture;
+mod pose;
 pub mod select;
 pub mod skin;
 pub mod weights;
