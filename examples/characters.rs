@@ -54,6 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 moved: None,
                 placements: &placements,
                 fade: [10.0, 40.0],
+                levels: &[],
                 blend: Blend::Linear,
                 albedos: &albedos,
             },

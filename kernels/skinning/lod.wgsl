@@ -1,4 +1,6 @@
-// Which instances are seen, and how far their influences fade. A thread decides for one instance.
+// Which instances are seen, how far their influences fade, and with which level of detail. A thread decides for one
+// instance.
+import package::wgsl::skinning::reduction::Reduction;
 
 struct LodParams {
     // Of the view's volume: unit normals inwards, and distances.
@@ -14,14 +16,14 @@ struct LodParams {
     instances: u32,
     // The most influences.
     most: u32,
+    // From where on levels 1, 2 … are used, not descending; how many.
+    distances: array<vec4<f32>, 4>,
+    coarser: u32,
+    // From one level's list of instances to the next one's.
+    stride: u32,
 }
 
-struct Reduction {
-    fade: f32,
-    most: u32,
-}
-
-// Of an indirect draw.
+// Of the indirect draw of a level.
 struct Arguments {
     indices: u32,
     instances: atomic<u32>,
@@ -35,9 +37,10 @@ struct Arguments {
 @group(0) @binding(1) var<storage, read> placements: array<vec4<f32>>;
 // With no influences of those that are not seen.
 @group(0) @binding(2) var<storage, read_write> reductions: array<Reduction>;
-// The instances that are seen.
+// The instances that are seen, level by level.
 @group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
-@group(0) @binding(4) var<storage, read_write> arguments: Arguments;
+// One a level.
+@group(0) @binding(4) var<storage, read_write> arguments: array<Arguments>;
 
 // At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
 // or of their squares' sum.
@@ -70,12 +73,16 @@ fn main(
         let side = params.planes[plane];
         is_seen = is_seen && dot(side.xyz, center) + side.w >= -radius;
     }
-    var reduction = Reduction(0.0, 0u);
+    var reduction = Reduction(0.0, 0u, 0u);
     if is_seen {
         let away = length(center - params.eye.xyz);
         let way = clamp((away - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
-        reduction = Reduction(floor(way * params.steps) / params.steps, params.most);
-        drawn[atomicAdd(&arguments.instances, 1u)] = instance;
+        var level = 0u;
+        while level < params.coarser && away >= params.distances[level >> 2u][level & 3u] {
+            level++;
+        }
+        reduction = Reduction(floor(way * params.steps) / params.steps, params.most, level);
+        drawn[level * params.stride + atomicAdd(&arguments[level].instances, 1u)] = instance;
     }
     reductions[instance] = reduction;
 }

@@ -1,5 +1,6 @@
 // Morph targets: vertices with the weighted deltas of their targets added, before skinning. A workgroup morphs a cluster
-// of 64 vertices of one instance: every one that is seen, or with COMPACTED those of a list.
+// of 64 vertices of one instance that is seen, at its level of detail: every one, or with COMPACTED those of a list.
+import package::wgsl::skinning::reduction::Reduction;
 
 override COMPACTED: bool = false;
 
@@ -9,6 +10,8 @@ struct MorphParams {
     instances: u32,
     // Clusters times instances.
     pairs: u32,
+    // Clusters of each level of detail.
+    levels: array<vec4<u32>, 4>,
 }
 
 @group(0) @binding(0) var<uniform> params: MorphParams;
@@ -20,8 +23,8 @@ struct MorphParams {
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
 // Of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
-// Of each instance: fade and most influences; 0 of those where it is not seen.
-@group(0) @binding(5) var<storage, read> reductions: array<vec2<u32>>;
+// One an instance.
+@group(0) @binding(5) var<storage, read> reductions: array<Reduction>;
 // cluster * instances + instance, of those to be skinned.
 @group(0) @binding(6) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and how many pairs.
@@ -47,7 +50,8 @@ fn main(
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    if reductions[instance].y == 0u {
+    let level = min(reductions[instance].level, 15u);
+    if reductions[instance].most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
     let first = 5u * vertex;

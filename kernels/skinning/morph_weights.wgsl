@@ -3,6 +3,7 @@
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::{place, times};
+import package::wgsl::skinning::reduction::Reduction;
 
 struct MorphWeightsParams {
     targets: u32,
@@ -26,8 +27,8 @@ struct WeightEntry {
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 // One a clip.
 @group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
-// Of each instance: fade and most influences; 0 of those where it is not seen.
-@group(0) @binding(3) var<storage, read> reductions: array<vec2<u32>>;
+// One an instance.
+@group(0) @binding(3) var<storage, read> reductions: array<Reduction>;
 // Binding 4: the times.
 // A value a target, key by key.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
@@ -61,7 +62,7 @@ fn main(
         return;
     }
     let index = pair / params.targets;
-    if reductions[index].y == 0u {
+    if reductions[index].most == 0u {
         return;
     }
     let instance = instances[index];

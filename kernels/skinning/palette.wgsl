@@ -1,6 +1,7 @@
 // Palettes: what takes vertices from where they were bound to the model's space, for each instance and bone of a skin.
 // With DUAL taken apart into a stretch and a rigid motion after it. A thread makes one bone's; none of instances that
 // are not seen.
+import package::wgsl::skinning::reduction::Reduction;
 
 override DUAL: bool = false;
 
@@ -19,8 +20,8 @@ struct PaletteParams {
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
 // Three rows a bone of the skeleton and instance.
 @group(0) @binding(3) var<storage, read> models: array<vec4<f32>>;
-// Of each instance: fade and most influences; 0 of those where it is not seen.
-@group(0) @binding(4) var<storage, read> reductions: array<vec2<u32>>;
+// One an instance.
+@group(0) @binding(4) var<storage, read> reductions: array<Reduction>;
 // Three rows, or with DUAL rotation, dual part, diagonal and what is above it.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
@@ -95,7 +96,7 @@ fn main(
         return;
     }
     let instance = pair / params.bones;
-    if reductions[instance].y == 0u {
+    if reductions[instance].most == 0u {
         return;
     }
     let bone = pair - instance * params.bones;

@@ -1,13 +1,14 @@
-// Which clusters of which instances are skinned, of those that are seen: those with a bone that moved, those of
-// instances whose reduction changed, and with morph targets those of instances whose weights changed. A thread decides
-// for one cluster. With FINISH, a thread takes note of one instance's reduction and weights, and the first one writes
-// the arguments of the dispatch.
+// Which clusters of which instances are skinned, of those that are seen, at their level of detail: those with a bone
+// that moved, those of instances whose influences count otherwise, those beyond the level of the frame before, and with
+// morph targets those of instances whose weights changed. A thread decides for one cluster. With FINISH, a thread takes
+// note of one instance's reduction and weights, and the first one writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
+import package::wgsl::skinning::reduction::Reduction;
 
 override FINISH: bool = false;
 
 // Words of an instance in `skinned`, before its weights.
-const SKINNED_WORDS = 3u;
+const SKINNED_WORDS = 4u;
 
 struct SelectParams {
     instances: u32,
@@ -19,6 +20,8 @@ struct SelectParams {
     vertices: u32,
     // Morph targets.
     targets: u32,
+    // Clusters of each level of detail.
+    levels: array<vec4<u32>, 4>,
 }
 
 // Workgroups of the dispatch, how many pairs, and how many were counted so far.
@@ -35,26 +38,32 @@ struct Dispatched {
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
 // The bones of each instance that moved, likewise.
 @group(0) @binding(2) var<storage, read> moved: array<u32>;
-// Of each instance: fade and most influences; 0 of those where it is not seen.
-@group(0) @binding(3) var<storage, read> reductions: array<vec2<u32>>;
+// One an instance.
+@group(0) @binding(3) var<storage, read> reductions: array<Reduction>;
 // Of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
 // Where each vertex's deltas begin; one more than there are vertices.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
-// Of each instance in the frame before: fade, most influences, for how many frames it has been seen (2 for more),
-// and the weights.
+// Of each instance in the frame before: its reduction, for how many frames it has been seen (2 for more), and the
+// weights.
 @group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
 // cluster * instances + instance, of those to be skinned.
 @group(0) @binding(7) var<storage, read_write> pairs: array<u32>;
 @group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 
+fn clusters_of(level: u32) -> u32 {
+    let at = min(level, 15u);
+    return params.levels[at >> 2u][at & 3u];
+}
+
 fn finish(index: u32) {
     if index < params.instances {
         let to = index * (SKINNED_WORDS + params.targets);
         let now = reductions[index];
-        skinned[to] = now.x;
-        skinned[to + 1u] = now.y;
-        skinned[to + 2u] = select(min(skinned[to + 2u] + 1u, 2u), 0u, now.y == 0u);
+        skinned[to] = bitcast<u32>(now.fade);
+        skinned[to + 1u] = now.most;
+        skinned[to + 2u] = now.level;
+        skinned[to + 3u] = select(min(skinned[to + 3u] + 1u, 2u), 0u, now.most == 0u);
         for (var target_index = 0u; target_index < params.targets; target_index++) {
             skinned[to + SKINNED_WORDS + target_index] = weights[index * params.targets + target_index];
         }
@@ -99,11 +108,12 @@ fn main(
     }
     let instance = index - cluster * params.instances;
     let now = reductions[instance];
-    if now.y == 0u {
+    if now.most == 0u || cluster >= clusters_of(now.level) {
         return;
     }
     let last = instance * (SKINNED_WORDS + params.targets);
-    var found = now.x != skinned[last] || now.y != skinned[last + 1u];
+    var found = bitcast<u32>(now.fade) != skinned[last] || now.most != skinned[last + 1u]
+        || cluster >= clusters_of(skinned[last + 2u]);
     for (var word = 0u; word < params.words && !found; word++) {
         found = (masks[cluster * params.words + word] & moved[instance * params.words + word]) != 0u;
     }

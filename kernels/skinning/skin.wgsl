@@ -1,6 +1,8 @@
 // Skinning (A section 8.4): vertices where their bones take them, with as many influences as each instance's reduction
-// leaves; none of those that are not seen. A workgroup skins a cluster of 64 vertices of one instance: every one, or with COMPACTED those of a list.
-// Instances run faster than clusters, so that a cluster's vertices stay in the cache.
+// leaves; none of those that are not seen, nor beyond their level of detail. A workgroup skins a cluster of 64 vertices
+// of one instance: every one, or with COMPACTED those of a list. Instances run faster than clusters, so that a cluster's
+// vertices stay in the cache.
+import package::wgsl::skinning::reduction::Reduction;
 
 override COMPACTED: bool = false;
 // Dual quaternions in place of matrices.
@@ -17,11 +19,8 @@ struct SkinParams {
     // In the output; in the others they count from `first_instance`.
     instances: u32,
     first_instance: u32,
-}
-
-struct Reduction {
-    fade: f32,
-    most: u32,
+    // Clusters of each level of detail.
+    levels: array<vec4<u32>, 4>,
 }
 
 @group(0) @binding(0) var<uniform> params: SkinParams;
@@ -161,7 +160,8 @@ fn main(
     }
     let instance = params.first_instance + place;
     let reduction = reductions[instance];
-    if reduction.most == 0u {
+    let level = min(reduction.level, 15u);
+    if reduction.most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
     let rows = blended(

@@ -1,6 +1,6 @@
-//! Crowds of several characters in one picture: who is seen and how far each fades is decided in one compute pass;
-//! meshes are skinned once; every mesh, which has one material, is one indirect draw, all in the caller's render pass
-//! with its depth buffer.
+//! Crowds of several characters in one picture: who is seen, how far each fades and with which level of detail is decided
+//! in one compute pass; meshes are skinned once; every level of a mesh, which has one material, is one indirect draw, all
+//! in the caller's render pass with its depth buffer.
 
 use glam::{Mat4, Vec3};
 
@@ -11,7 +11,7 @@ use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use crate::skinning::ball::ball_in_clips;
 use crate::skinning::frame::SkinFrame;
-use crate::skinning::lod::{LodJob, LodPass, LodView};
+use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, number_at};
 use crate::skinning::picture::Light;
 use crate::skinning::{Blend, Reduction};
 use crate::{Error, InputError};
@@ -33,6 +33,9 @@ pub struct Character<'a> {
     pub placements: &'a Buffer<Affine>,
     /// World units from the eye up to which every influence counts, and from which on vertices follow one bone.
     pub fade: [f32; 2],
+    /// World units from the eye from which on levels 1, 2 … of the meshes are used, not descending; of a mesh that has
+    /// fewer, its last. Without, all are drawn whole.
+    pub levels: &'a [f32],
     /// How influences are blended.
     pub blend: Blend,
     /// Colours, one a mesh: [`Albedo::of_meshes`].
@@ -53,9 +56,9 @@ pub struct CrowdScene {
 pub struct DrawnCharacter {
     /// One a mesh. The caller may write weights of morph targets here.
     pub frames: Vec<SkinFrame>,
-    /// One a mesh. The second of the first's arguments is how many instances are drawn.
+    /// One a mesh. The second of the first's arguments of each level is how many instances are drawn.
     pub scenes: Vec<SkinnedScene>,
-    /// Which instances these are.
+    /// Which instances these are, level by level, [`list_stride`](crate::skinning::lod::list_stride) words each.
     pub drawn: Buffer<u32>,
     view: LodView,
     lod: LodJob,
@@ -76,10 +79,10 @@ impl CrowdScene {
     /// Prepares a character, and says which it is among [`CrowdScene::characters`]. Morph targets are as at rest.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes, other than one colour a mesh, distances out of order, no instances,
-    /// and buffers that are too small; [`GpuError`].
+    /// [`InputError`] for a model without meshes, other than one colour a mesh, distances out of order, no
+    /// instances, and buffers that are too small; [`GpuError`].
     pub fn add(&mut self, gpu: &Gpu, character: &Character<'_>) -> Result<usize, Error> {
-        let Character { model, models, moved, placements, fade, blend, albedos } = *character;
+        let Character { model, models, moved, placements, fade, levels, blend, albedos } = *character;
         let (meshes, count) = (model.meshes.len(), placements.len());
         if meshes == 0 {
             return Err(InputError::new("model.meshes", "none", "must be at least one").into());
@@ -88,7 +91,8 @@ impl CrowdScene {
             let bound = format!("must be {meshes}, one a mesh");
             return Err(InputError::new("albedos.len", albedos.len(), bound).into());
         }
-        let drawn = Buffer::new(gpu, "drawn", count)?;
+        let levels = LevelRanges::new(levels)?;
+        let drawn = Buffer::new(gpu, "drawn", list_words(count, 1 + levels.distances().len()))?;
         let (mut frames, mut scenes) = (Vec::with_capacity(meshes), Vec::with_capacity(meshes));
         for (mesh, albedo) in albedos.iter().enumerate() {
             let mut skin = SkinFrame::new(gpu, model, mesh, models, count, blend)?;
@@ -113,7 +117,7 @@ impl CrowdScene {
         let [near, far] = fade;
         let (clip_from_world, eye) = (Mat4::IDENTITY, Vec3::ZERO);
         let most = Reduction::FULL.most;
-        let view = LodView { clip_from_world, eye, near, far, steps: STEPS, most, center, radius };
+        let view = LodView { clip_from_world, eye, near, far, steps: STEPS, most, center, radius, levels };
         let reductions = &frames[0].crowd.reductions;
         let lod = self.lod.prepare(gpu, &view, placements, reductions, &drawn, &scenes[0].arguments)?;
         let is_gated = moved.is_some();
@@ -162,14 +166,20 @@ impl CrowdScene {
 }
 
 impl DrawnCharacter {
+    /// Levels of detail that are told apart, the meshes themselves included.
+    fn levels(&self) -> usize {
+        1 + self.view.levels.distances().len()
+    }
+
     /// What was decided for the first mesh holds for all of the character.
     fn share(&self, encoder: &mut wgpu::CommandEncoder) {
         let (frame, scene) = (&self.frames[0].crowd.reductions, &self.scenes[0].arguments);
         for (other, drawn) in self.frames.iter().zip(&self.scenes).skip(1) {
             let reductions = &other.crowd.reductions;
             encoder.copy_buffer_to_buffer(frame.raw(), 0, reductions.raw(), 0, reductions.bytes());
-            // The number of instances.
-            encoder.copy_buffer_to_buffer(scene.raw(), 4, drawn.arguments.raw(), 4, 4);
+            for number in (0..self.levels()).map(number_at) {
+                encoder.copy_buffer_to_buffer(scene.raw(), number, drawn.arguments.raw(), number, 4);
+            }
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all. A mesh has one material:
-//! a model of several is drawn mesh by mesh.
+//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all, or for all of a level of
+//! detail. A mesh has one material: a model of several is drawn mesh by mesh.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
@@ -9,7 +9,10 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, sh
 use crate::render::albedo::Albedo;
 use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
+use crate::skinning::clusters::ClusterLevel;
+use crate::skinning::lod::{DRAW_WORDS, list_stride};
 use crate::skinning::material::Alpha;
+use crate::skinning::mesh::MOST_LEVELS;
 use crate::skinning::picture::Light;
 use crate::skinning::skin::Vertex;
 use crate::{Error, InputError};
@@ -33,13 +36,14 @@ pub struct SkinnedRenderer {
 /// What is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct SkinnedInstances<'a> {
-    /// Triangles and texture coordinates.
+    /// Triangles of all levels, and texture coordinates.
     pub mesh: &'a MeshBuffers,
     /// As [`crate::skinning::skin::SkinPass`] writes them.
     pub skinned: &'a Buffer<Vertex>,
     /// From the model's space into the world, one an instance.
     pub placements: &'a Buffer<Affine>,
-    /// The instances that are drawn.
+    /// The instances that are drawn: one list, at most as long as there are places, of the mesh itself; or one a level of
+    /// detail, [`list_stride`] words each. Lists of levels that the mesh lacks are drawn with its last.
     pub drawn: &'a Buffer<u32>,
     /// Colour.
     pub albedo: &'a Albedo,
@@ -78,19 +82,18 @@ impl SkinnedRenderer {
         gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
     }
 
-    /// Binds instances; all that `drawn` has room for are drawn until [`SkinnedScene::arguments`] says otherwise.
+    /// Binds instances. Until [`SkinnedScene::arguments`] says otherwise, as many of the first list are drawn as it has
+    /// room for, one a place at most, and none of the others.
     ///
     /// # Errors
-    /// [`InputError`] for too few vertices or places; [`GpuError`].
+    /// [`InputError`] for too few vertices or places, and other than whole lists of at most [`MOST_LEVELS`] levels;
+    /// [`GpuError`].
     pub fn scene(&self, gpu: &Gpu, instances: &SkinnedInstances<'_>) -> Result<SkinnedScene, Error> {
         let SkinnedInstances { mesh, skinned, placements, drawn, albedo, light } = *instances;
         light.validate()?;
         let vertices = mesh.vertices.len();
         skinned.check_holds("skinned", vertices * placements.len())?;
-        if drawn.len() > placements.len() {
-            let bound = format!("must be at most {}, one a place", placements.len());
-            return Err(InputError::new("drawn.len", drawn.len(), bound).into());
-        }
+        let [levels, words] = lists(drawn.len(), placements.len())?;
         let view = SkinnedView {
             clip_from_world: Mat4::IDENTITY,
             light: light.direction.normalize().extend(light.ambient),
@@ -100,33 +103,68 @@ impl SkinnedRenderer {
         };
         let uniform = Uniform::new(gpu, "skinned view", &view)?;
         let texture = albedo.texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            skinned.raw().as_entire_binding(),
-            mesh.uv.raw().as_entire_binding(),
-            placements.raw().as_entire_binding(),
-            drawn.raw().as_entire_binding(),
-            wgpu::BindingResource::TextureView(&texture),
-            wgpu::BindingResource::Sampler(&albedo.texture.sampler),
-        ];
         let (pipeline, layouts) = self.pipeline(gpu, mesh.double_sided, albedo.alpha)?;
-        let group = bind(gpu, &shaders::RENDER_SKINNED, &layouts, 0, &resources)?;
-        let counts = [mesh.indices.len() as u32, drawn.len() as u32, 0, 0, 0];
-        let arguments = Buffer::from_slice(gpu, "draw", &counts)?;
-        let indices = mesh.indices.clone();
-        Ok(SkinnedScene { pipeline, view, uniform, group, indices, arguments })
+        let group = |level: usize| {
+            let resources = [
+                uniform.raw().as_entire_binding(),
+                skinned.raw().as_entire_binding(),
+                mesh.uv.raw().as_entire_binding(),
+                placements.raw().as_entire_binding(),
+                list(drawn, level, words),
+                wgpu::BindingResource::TextureView(&texture),
+                wgpu::BindingResource::Sampler(&albedo.texture.sampler),
+            ];
+            bind(gpu, &shaders::RENDER_SKINNED, &layouts, 0, &resources)
+        };
+        let instances = drawn.len().min(placements.len()) as u32;
+        let arguments = (0..levels).flat_map(|level| {
+            let ClusterLevel { first_index, indices, .. } = mesh.level(level as u32);
+            [indices, if level == 0 { instances } else { 0 }, first_index, 0, 0]
+        });
+        Ok(SkinnedScene {
+            arguments: Buffer::from_slice(gpu, "draw", &arguments.collect::<Vec<_>>())?,
+            groups: (0..levels).map(group).collect::<Result<_, _>>()?,
+            indices: mesh.indices.clone(),
+            pipeline,
+            view,
+            uniform,
+        })
     }
+}
+
+/// How many lists of drawn instances there are, and the words of each.
+fn lists(words: usize, places: usize) -> Result<[usize; 2], InputError> {
+    if words <= places {
+        return Ok([1, words]);
+    }
+    let stride = list_stride(places);
+    let levels = words / stride;
+    if !(2..=MOST_LEVELS).contains(&levels) || !words.is_multiple_of(stride) {
+        let bound = format!(
+            "must be at most {places}, one a place, or {stride} for each of 2 to {MOST_LEVELS} levels"
+        );
+        return Err(InputError::new("drawn.len", words, bound));
+    }
+    Ok([levels, stride])
+}
+
+/// A list, to be bound. An empty one has room for a word.
+fn list(drawn: &Buffer<u32>, at: usize, words: usize) -> wgpu::BindingResource<'_> {
+    let [offset, size] = [at * words, words.max(1)].map(|words| (size_of::<u32>() * words) as u64);
+    let size = wgpu::BufferSize::new(size);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: drawn.raw(), offset, size })
 }
 
 /// Instances of a mesh: set the camera, then draw in any render pass.
 #[derive(Debug, Clone)]
 pub struct SkinnedScene {
-    /// Of the indirect draw: indices, instances, and three zeros. The caller or a kernel may change the second.
+    /// Of the indirect draw of each level that `drawn` has a list of, five words: indices, instances, the first index, and
+    /// two zeros. The caller or a kernel may change the second.
     pub arguments: Buffer<u32>,
     pipeline: wgpu::RenderPipeline,
     view: SkinnedView,
     uniform: Uniform<SkinnedView>,
-    group: Group,
+    groups: Vec<Group>,
     indices: Buffer<u32>,
 }
 
@@ -143,9 +181,11 @@ impl SkinnedScene {
     /// Draws the instances.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
         pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed_indirect(self.arguments.raw(), 0);
+        for (level, group) in self.groups.iter().enumerate() {
+            pass.set_bind_group(0, group, &[]);
+            pass.draw_indexed_indirect(self.arguments.raw(), (size_of::<u32>() * DRAW_WORDS * level) as u64);
+        }
     }
 }
 
@@ -153,6 +193,15 @@ impl SkinnedScene {
 mod tests {
     use super::*;
     use crate::gpu::layout::layout_test;
+
+    #[test]
+    fn lists_are_whole() {
+        assert_eq!((lists(0, 9), lists(9, 9), lists(64, 64)), (Ok([1, 0]), Ok([1, 9]), Ok([1, 64])));
+        assert_eq!((lists(192, 64), lists(256, 65)), (Ok([3, 64]), Ok([2, 128])));
+        for (words, places) in [(64, 63), (10, 9), (129, 64), (17 * 64, 64)] {
+            assert_eq!(lists(words, places).expect_err("refused").field, "drawn.len");
+        }
+    }
 
     layout_test!(skinned_view_layout: SkinnedView = RENDER_SKINNED "SkinnedView");
 }

@@ -1,8 +1,10 @@
 //! What skinning has on the device: a mesh in clusters with its skin, and for each instance what moves it and where its
 //! vertices are.
 
-use super::clusters::Clusters;
-use super::mesh::Mesh;
+use glam::UVec4;
+
+use super::clusters::{ClusterLevel, Clusters};
+use super::mesh::{MOST_LEVELS, Mesh};
 use super::morph::MorphTarget;
 use super::skin::{Blend, Vertex};
 use super::weights::Reduction;
@@ -18,8 +20,10 @@ pub struct MeshBuffers {
     pub vertices: Buffer<Vertex>,
     /// One a vertex.
     pub uv: Buffer<[f32; 2]>,
-    /// Three a triangle.
+    /// Three a triangle, of all levels of detail: see [`Clusters::indices`].
     pub indices: Buffer<u32>,
+    /// See [`Clusters::levels`].
+    pub levels: Vec<ClusterLevel>,
     /// See [`Clusters::influences`].
     pub influences: Buffer<u32>,
     /// See [`Clusters::masks`].
@@ -57,6 +61,7 @@ impl MeshBuffers {
             vertices: Buffer::from_slice(gpu, "mesh vertices", &clusters.vertices)?,
             uv: Buffer::from_slice(gpu, "mesh uv", &clusters.uv)?,
             indices: Buffer::from_slice(gpu, "mesh indices", &clusters.indices)?,
+            levels: clusters.levels.clone(),
             influences: Buffer::from_slice(gpu, "influences", &clusters.influences)?,
             masks: Buffer::from_slice(gpu, "cluster masks", &clusters.masks)?,
             delta_offsets: Buffer::from_slice(gpu, "morph offsets", &delta_offsets)?,
@@ -74,6 +79,17 @@ impl MeshBuffers {
     /// Clusters of 64 vertices.
     pub fn clusters(&self) -> usize {
         self.vertices.len().div_ceil(super::clusters::CLUSTER)
+    }
+
+    /// A level of detail; of one that the mesh lacks, its last.
+    pub fn level(&self, level: u32) -> ClusterLevel {
+        self.levels[(level as usize).min(self.levels.len() - 1)]
+    }
+
+    /// Clusters of each level, as kernels look them up: of those that the mesh lacks, its last one's.
+    pub(crate) fn clusters_of_levels(&self) -> [UVec4; MOST_LEVELS / 4] {
+        let of = |level: usize| self.level(level as u32).clusters;
+        std::array::from_fn(|at| UVec4::from_array(std::array::from_fn(|lane| of(4 * at + lane))))
     }
 }
 
@@ -106,7 +122,8 @@ pub struct SkinnedCrowd {
     pub reductions: Buffer<Reduction>,
     /// Weights of morph targets, instance by instance. 0 at first.
     pub weights: Buffer<f32>,
-    /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + place`.
+    /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + place`. Clusters beyond
+    /// an instance's level stay as they were.
     pub morphed: Buffer<Vertex>,
     /// How many.
     pub instances: usize,

@@ -1,5 +1,7 @@
 //! Clusters: the vertices of a mesh in runs of 64 that follow few bones, laid out for the kernel.
 
+use std::cmp::Reverse;
+
 use super::mesh::Mesh;
 use super::skin::Vertex;
 use crate::InputError;
@@ -13,7 +15,20 @@ pub const CLUSTER: usize = 64;
 /// The most bones of a skin.
 pub const MOST_BONES: usize = 1 << 16;
 
-/// A mesh's vertices, cluster by cluster; the last cluster may have fewer.
+/// What a level of detail has of a mesh in clusters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClusterLevel {
+    /// Its vertices lie at the first so many places.
+    pub vertices: u32,
+    /// The first so many clusters hold them. The last of these may hold some of a finer level too.
+    pub clusters: u32,
+    /// Where its triangles begin in [`Clusters::indices`].
+    pub first_index: u32,
+    /// Three a triangle.
+    pub indices: u32,
+}
+
+/// A mesh's vertices, cluster by cluster; the last cluster may have fewer. Those of coarse levels come first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
     /// For each place the mesh's vertex there.
@@ -22,8 +37,10 @@ pub struct Clusters {
     pub vertices: Vec<Vertex>,
     /// Texture coordinates in this order.
     pub uv: Vec<[f32; 2]>,
-    /// The triangles, in the mesh's order, of vertices in this order.
+    /// The triangles of all levels, one behind the other, in the mesh's order, of vertices in this order.
     pub indices: Vec<u32>,
+    /// The mesh itself, with all of its vertices, and its levels ([`Mesh::levels`]).
+    pub levels: Vec<ClusterLevel>,
     /// Two words a cluster: where its influences begin, and how many its vertices have at most. There, in columns of 64
     /// words: the bones, two a word, the strongest in the lower half of the first; then the weights of all but the
     /// strongest, as bits. The strongest has what these leave of 1.
@@ -52,7 +69,8 @@ impl Clusters {
         skin.validate(skeleton)?;
         let bones = Order::new(skeleton);
         let slot_of = bones.slots_of_bones();
-        let order = order(mesh);
+        let bands = bands(mesh);
+        let order = order(mesh, &bands);
         let mut place = vec![0; mesh.vertices()];
         (0..).zip(&order).for_each(|(at, vertex)| place[*vertex as usize] = at);
         let vertices = morph(mesh, &[]);
@@ -61,7 +79,8 @@ impl Clusters {
         Ok(Self {
             vertices: order.iter().map(|vertex| vertices[*vertex as usize]).collect(),
             uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
-            indices: mesh.indices.iter().map(|index| place[*index as usize]).collect(),
+            indices: all_triangles(mesh).flatten().map(|index| place[*index as usize]).collect(),
+            levels: levels(mesh, &bands),
             influences: influences(mesh, &order),
             morphs: morphs(mesh, &place),
             masks: clusters.flat_map(|cluster| mask(mesh, skin, &slot_of, cluster, mask_words)).collect(),
@@ -80,6 +99,11 @@ impl Clusters {
         self.order.is_empty()
     }
 
+    /// A level; of one that the mesh lacks, its last.
+    pub fn level(&self, level: u32) -> ClusterLevel {
+        self.levels[(level as usize).min(self.levels.len() - 1)]
+    }
+
     /// Values one a place, back in the mesh's own order.
     pub fn in_mesh_order<T: Copy>(&self, placed: &[T]) -> Vec<T> {
         let mut all: Vec<_> = self.order.iter().zip(placed).collect();
@@ -88,13 +112,39 @@ impl Clusters {
     }
 }
 
-/// Vertices of the same strongest bone beside each other, then those of as many influences, then of the same others.
-fn order(mesh: &Mesh) -> Vec<u32> {
+fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
+    (0..=mesh.levels.len() as u32).map(|level| mesh.triangles(level))
+}
+
+/// The coarsest level that each vertex is in: at least the mesh itself.
+fn bands(mesh: &Mesh) -> Vec<u32> {
+    let mut bands = vec![0; mesh.vertices()];
+    for (level, triangles) in (0..).zip(all_triangles(mesh)) {
+        triangles.iter().for_each(|vertex| bands[*vertex as usize] = level);
+    }
+    bands
+}
+
+fn levels(mesh: &Mesh, bands: &[u32]) -> Vec<ClusterLevel> {
+    let mut first_index = 0;
+    let level = |(level, triangles): (u32, &[u32])| {
+        let vertices = bands.iter().filter(|band| **band >= level).count();
+        let clusters = vertices.div_ceil(CLUSTER) as u32;
+        let indices = triangles.len() as u32;
+        first_index += indices;
+        ClusterLevel { vertices: vertices as u32, clusters, first_index: first_index - indices, indices }
+    };
+    (0..).zip(all_triangles(mesh)).map(level).collect()
+}
+
+/// Vertices of coarse levels first; of these, those of the same strongest bone beside each other, then those of as many
+/// influences, then of the same others.
+fn order(mesh: &Mesh, bands: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
     order.sort_by_cached_key(|vertex| {
         let influences = mesh.influences.of(*vertex as usize);
         let bones: Vec<u32> = influences.iter().map(|influence| influence.bone).collect();
-        (bones.first().copied(), bones.len(), bones)
+        (Reverse(bands[*vertex as usize]), bones.first().copied(), bones.len(), bones)
     });
     order
 }
@@ -139,6 +189,7 @@ fn mask(mesh: &Mesh, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::skinning::mesh::MeshLevel;
 
     #[test]
     fn clusters_hold_every_vertex_and_its_bones() {
@@ -179,5 +230,38 @@ mod tests {
         }
         // Few bones a cluster, of 153.
         assert!(bones < 8 * clusters.len() as u32, "{bones} in {}", clusters.len());
+    }
+
+    #[test]
+    fn levels_are_the_first_places() {
+        let mut model = crate::animation::creature().expect("valid");
+        let mesh = &mut model.meshes[0];
+        let plain = Clusters::new(mesh, &model.skins, &model.skeleton).expect("fits");
+        let (vertices, indices) = (mesh.vertices() as u32, mesh.indices.len() as u32);
+        let whole = ClusterLevel { vertices, clusters: vertices.div_ceil(64), first_index: 0, indices };
+        assert_eq!((&plain.levels, plain.level(3)), (&vec![whole], whole));
+        let half: Vec<u32> = mesh.indices.chunks(6).flat_map(|pair| &pair[..3]).copied().collect();
+        let one = half[300..303].to_vec();
+        mesh.levels = [half, one].map(|indices| MeshLevel { indices, error: 0.0 }).to_vec();
+        let clusters = Clusters::new(mesh, &model.skins, &model.skeleton).expect("fits");
+        assert_eq!((clusters.levels.len(), clusters.level(0)), (3, whole));
+        assert_eq!(clusters.level(9), clusters.level(2));
+        let last = clusters.level(2);
+        assert_eq!((last.vertices, last.clusters, last.indices), (3, 1, 3));
+        for level in 0..3 {
+            let ClusterLevel { vertices, clusters: held, first_index, indices } = clusters.level(level);
+            let placed = &clusters.indices[first_index as usize..][..indices as usize];
+            let named: Vec<u32> = placed.iter().map(|place| clusters.order[*place as usize]).collect();
+            assert_eq!(named, mesh.triangles(level));
+            // Its vertices are the first places. The mesh itself has some without a triangle too.
+            let used: std::collections::BTreeSet<_> = placed.iter().copied().collect();
+            assert!(used.iter().copied().eq(0..vertices) || level == 0 && used.last() < Some(&vertices));
+            assert_eq!(held, vertices.div_ceil(64));
+        }
+        let ends = [1, 2].map(|level| clusters.level(level).first_index);
+        assert_eq!(ends, [indices, clusters.indices.len() as u32 - 3]);
+        let mut order = clusters.order.clone();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..whole.vertices));
     }
 }

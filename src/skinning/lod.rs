@@ -1,4 +1,5 @@
-//! What a crowd is drawn with: which instances are seen, and how far the influences of each fade with its distance.
+//! What a crowd is drawn with: which instances are seen, how far the influences of each fade with its distance, and
+//! which level of detail of the mesh it has there.
 //!
 //! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
 //! noticeably. An instance that is not seen is not skinned ([`Reduction::UNSEEN`]); seen again, it is skinned as a whole.
@@ -7,11 +8,14 @@ use glam::{Mat4, Vec3, Vec4};
 
 use crate::InputError;
 use crate::animation::transform::Affine;
+use crate::skinning::mesh::MOST_LEVELS;
 use crate::skinning::weights::{MOST_INFLUENCES, Reduction};
 
 #[cfg(feature = "gpu")]
 mod pass;
 
+#[cfg(feature = "gpu")]
+pub(crate) use pass::{DRAW_WORDS, number_at};
 #[cfg(feature = "gpu")]
 pub use pass::{LodJob, LodPass};
 
@@ -34,6 +38,63 @@ pub struct LodView {
     pub center: Vec3,
     /// Its radius.
     pub radius: f32,
+    /// Where instances are drawn with levels of detail of their mesh.
+    pub levels: LevelRanges,
+}
+
+/// World units from the eye from which on levels 1, 2 … of a mesh are used, in place of finer ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelRanges {
+    distances: [f32; MOST_LEVELS - 1],
+    coarser: usize,
+}
+
+impl LevelRanges {
+    /// Level 0 everywhere: the mesh itself.
+    pub const NONE: Self = Self { distances: [f32::MAX; MOST_LEVELS - 1], coarser: 0 };
+
+    /// Where level 1 begins, level 2 and so on. A level that begins where the next one does is not used.
+    ///
+    /// # Errors
+    /// [`InputError`] for distances that are not finite, or descend, and for [`MOST_LEVELS`] or more of them.
+    pub fn new(distances: &[f32]) -> Result<Self, InputError> {
+        let mut ranges = Self { coarser: distances.len(), ..Self::NONE };
+        let Some(to) = ranges.distances.get_mut(..distances.len()) else {
+            let bound = format!("must be at most {}", MOST_LEVELS - 1);
+            return Err(InputError::new("levels.len", distances.len(), bound));
+        };
+        to.copy_from_slice(distances);
+        let mut least = f32::MIN;
+        for (at, distance) in distances.iter().enumerate() {
+            if !(least..=f32::MAX).contains(distance) {
+                let bound = format!("must be finite, and at least {least}, where the level before begins");
+                return Err(InputError::new(format!("levels[{at}]"), distance, bound));
+            }
+            least = *distance;
+        }
+        Ok(ranges)
+    }
+
+    /// Where level 1 begins, level 2 and so on.
+    pub fn distances(&self) -> &[f32] {
+        &self.distances[..self.coarser]
+    }
+
+    /// The level at a distance.
+    pub fn at(&self, distance: f32) -> u32 {
+        self.distances().iter().take_while(|begin| distance >= **begin).count() as u32
+    }
+}
+
+/// Words from one level's list of drawn instances to the next one's: a multiple of 64, so that each list can be bound.
+pub fn list_stride(instances: usize) -> usize {
+    instances.next_multiple_of(64)
+}
+
+/// Words of the lists of drawn instances of so many levels, 1 to [`MOST_LEVELS`]: [`list_stride`] each, but for a single
+/// one, which needs no more than there are instances.
+pub fn list_words(instances: usize, levels: usize) -> usize {
+    if levels == 1 { instances } else { levels * list_stride(instances) }
 }
 
 /// [`LodView::near`] and [`LodView::far`] of crowds that do not fade.
@@ -111,6 +172,7 @@ mod tests {
             most: 8,
             center: Vec3::ZERO,
             radius: 1.0,
+            levels: LevelRanges::NONE,
         }
     }
 
@@ -125,6 +187,33 @@ mod tests {
         assert_eq!(refused(LodView { most: 9, ..view() }), "view.most");
         assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
         assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
+    }
+
+    #[test]
+    fn levels_follow_distances() {
+        let ranges = LevelRanges::new(&[-1.0, 5.0, 5.0, 9.0]).expect("ascending");
+        assert_eq!(
+            [-2.0, -1.0, 4.9, 5.0, 9.0, f32::MAX].map(|distance| ranges.at(distance)),
+            [0, 1, 1, 3, 4, 4]
+        );
+        assert_eq!(ranges.distances(), [-1.0, 5.0, 5.0, 9.0]);
+        assert_eq!(LevelRanges::new(&[]), Ok(LevelRanges::NONE));
+        assert_eq!(LevelRanges::NONE.at(f32::MAX), 0);
+        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").field;
+        assert_eq!(refused(&[2.0, 1.0]), "levels[1]");
+        assert_eq!(refused(&[1.0, f32::NAN]), "levels[1]");
+        assert_eq!(refused(&[f32::INFINITY]), "levels[0]");
+        assert_eq!(refused(&[0.0; 16]), "levels.len");
+        assert_eq!(LevelRanges::new(&[f32::MAX; 15]).map(|ranges| ranges.distances().len()), Ok(15));
+    }
+
+    #[test]
+    fn lists_can_be_bound() {
+        assert_eq!([1, 63, 64, 65].map(list_stride), [64, 64, 64, 128]);
+        assert_eq!(
+            [(63, 1), (63, 2), (64, 3), (65, 16)].map(|(count, levels)| list_words(count, levels)),
+            [63, 128, 192, 2048]
+        );
     }
 
     #[test]

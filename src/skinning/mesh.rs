@@ -68,6 +68,14 @@ impl Mesh {
         self.positions.len()
     }
 
+    /// Three a triangle of a level: 0 is the mesh itself, and one that it lacks its last.
+    pub fn triangles(&self, level: u32) -> &[u32] {
+        match self.levels.len().min(level as usize) {
+            0 => &self.indices,
+            level => &self.levels[level - 1].indices,
+        }
+    }
+
     /// Checks lengths, indices and ranges, and that it fits its skin.
     ///
     /// # Errors

@@ -5,6 +5,7 @@
 //!   over. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest vanish first, and those that
 //!   have vanished are not fetched.
 
+use super::mesh::MOST_LEVELS;
 use crate::InputError;
 
 /// The most bones that a vertex follows.
@@ -76,7 +77,7 @@ impl Influences {
     }
 }
 
-/// Which influences count.
+/// Which influences count, and which vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
@@ -85,14 +86,17 @@ pub struct Reduction {
     pub fade: f32,
     /// The k of `truncate`, at least 1; 0 of instances that are not seen, which are not skinned.
     pub most: u32,
+    /// The mesh's level of detail: 0 is the mesh itself ([`Mesh::levels`](super::mesh::Mesh::levels)). Of one that it
+    /// lacks, its last.
+    pub level: u32,
 }
 
 impl Reduction {
-    /// Every influence.
-    pub const FULL: Self = Self { fade: 0.0, most: MOST_INFLUENCES as u32 };
+    /// Every influence of every vertex.
+    pub const FULL: Self = Self { fade: 0.0, most: MOST_INFLUENCES as u32, level: 0 };
 
     /// Of instances that are not seen: nothing is skinned.
-    pub const UNSEEN: Self = Self { fade: 0.0, most: 0 };
+    pub const UNSEEN: Self = Self { fade: 0.0, most: 0, level: 0 };
 
     /// The strongest influences.
     ///
@@ -109,6 +113,15 @@ impl Reduction {
     /// [`InputError`] unless `fade` is in 0 to 1.
     pub fn fade(fade: f32) -> Result<Self, InputError> {
         let reduction = Self { fade, ..Self::FULL };
+        reduction.validate().map(|()| reduction)
+    }
+
+    /// Every influence of the vertices of a level.
+    ///
+    /// # Errors
+    /// [`InputError`] unless `level` is below [`MOST_LEVELS`].
+    pub fn level(level: u32) -> Result<Self, InputError> {
+        let reduction = Self { level, ..Self::FULL };
         reduction.validate().map(|()| reduction)
     }
 
@@ -142,6 +155,9 @@ impl Reduction {
         }
         if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
             return Err(InputError::new("truncate", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
+        }
+        if self.level as usize >= MOST_LEVELS {
+            return Err(InputError::new("level", self.level, format!("must be below {MOST_LEVELS}")));
         }
         Ok(())
     }

@@ -55,7 +55,7 @@ impl Instances {
         let Self { models, moved, placements } = self;
         // A gate decides on one of the two characters.
         let moved = (blend == Blend::Linear).then_some(moved);
-        Character { model, models, moved, placements, fade: [5.0, 25.0], blend, albedos }
+        Character { model, models, moved, placements, fade: [5.0, 25.0], levels: &[], blend, albedos }
     }
 }
 

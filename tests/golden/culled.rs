@@ -10,7 +10,7 @@ use relievo::reference::animation::sample::sample;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodJob, LodPass, LodView, ball, standing};
+use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, ball, standing};
 use relievo::skinning::picture::Light;
 use relievo::skinning::select::SKINNED_WORDS;
 use relievo::skinning::{Blend, Reduction};
@@ -61,6 +61,7 @@ impl Stage {
                 most: 4,
                 center,
                 radius: 1.1 * radius,
+                levels: LevelRanges::NONE,
             },
             gpu,
             model,
@@ -151,7 +152,7 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         let known = culled.skin.select.skinned.read_blocking(gpu).expect("read");
         let mut expected = 0;
         for (at, reduction) in reductions.iter().enumerate() {
-            let seen = known[SKINNED_WORDS * at + 2];
+            let seen = known[SKINNED_WORDS * at + 3];
             let wanted = if reduction.most == 0 { 0 } else { (seen_before[at] + 1).min(2) };
             assert_eq!(seen, wanted, "creature {at} of frame {frame}");
             // What stands still is skinned when it comes back, or fades.

@@ -42,6 +42,7 @@ fn a_figure_in_its_materials() {
         moved: None,
         placements: &Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
         fade: [1e3, 2e3],
+        levels: &[],
         blend: Blend::Linear,
         albedos: &albedos,
     };
@@ -57,7 +58,7 @@ fn a_figure_in_its_materials() {
         .map(|mesh| Surface::of(&model, model.material(mesh).expect("fits").expect("has one")))
         .collect();
     let parts: Vec<_> = (model.meshes.iter().zip(&skinned).zip(&surfaces))
-        .map(|((mesh, vertices), surface)| Part { mesh, vertices, surface })
+        .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
         .collect();
     let scene = Scene { clip_from_model, light: Light::default(), size: SIZE };
     let twin = scene.draw(&parts, SKY.map(|light| light as f32)).reduced(2).encoded();

@@ -11,7 +11,7 @@ use relievo::reference::animation::sample::sample;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodPass, LodView, ball, standing};
+use relievo::skinning::lod::{LevelRanges, LodPass, LodView, ball, standing};
 use relievo::skinning::picture::Light;
 use relievo::skinning::{Blend, Influence, Influences, Mesh, Reduction};
 use relievo::surface::linear_image::LinearImage;
@@ -180,7 +180,17 @@ fn a_crowd_near_and_far() {
     let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.4, -4.0), Vec3::Y);
     let clip_from_world = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0) * look;
     let (center, radius) = ball(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
-    let view = LodView { clip_from_world, eye, near: 5.0, far: 30.0, steps: 64, most: 8, center, radius };
+    let view = LodView {
+        clip_from_world,
+        eye,
+        near: 5.0,
+        far: 30.0,
+        steps: 64,
+        most: 8,
+        center,
+        radius,
+        levels: LevelRanges::NONE,
+    };
     let lod = LodPass::new(&gpu)
         .expect("compiled")
         .prepare(&gpu, &view, &placements, &skin.crowd.reductions, &drawn, &scene.arguments)

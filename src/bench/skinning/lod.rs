@@ -8,7 +8,7 @@ use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
 use crate::gpu::Buffer;
 use crate::reference::skinning::lod::lod;
-use crate::skinning::lod::{LodPass, LodView, standing};
+use crate::skinning::lod::{LevelRanges, LodPass, LodView, standing};
 use crate::skinning::weights::Reduction;
 
 /// A field of instances, a quarter of them seen.
@@ -29,6 +29,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         most: 8,
         center: Vec3::Y,
         radius: 1.0,
+        levels: LevelRanges::NONE,
     };
     for count in [1000, 100_000] {
         let place = |index: usize| {
@@ -41,7 +42,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 5)?);
         let job = pass.prepare(gpu, &view, &buffer, &reductions, &drawn, &arguments)?;
         // A place in; a reduction and a number out.
-        let copied = copy_of(gpu, 15 * count / 2)?;
+        let copied = copy_of(gpu, 16 * count / 2)?;
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
@@ -51,7 +52,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
                 ));
             }),
         ];
-        bench.case(format!("{count} instances"), (count, "instance"), 60 * count as u64, contenders)?;
+        bench.case(format!("{count} instances"), (count, "instance"), 64 * count as u64, contenders)?;
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ fn seen_of(instances: usize, every: usize) -> Vec<Reduction> {
 
 /// A tube along its bones; each vertex follows the `influences` bones nearest to it.
 fn tube(influences: usize, targets: usize) -> Result<Model, Error> {
-    let shape = Shape { bones: 2 * BONES, vertices: 1, influences: 1, targets: 0 };
+    let shape = Shape { bones: 2 * BONES, vertices: 1, influences: 1, targets: 0, levels: 0 };
     let mut model = random_model(1, shape)?;
     let vertices: Vec<[f32; 2]> = (0..RING * RING)
         .map(|vertex| [(vertex % RING) as f32 / RING as f32, (vertex / RING) as f32 / RING as f32])
@@ -74,6 +74,7 @@ fn tube(influences: usize, targets: usize) -> Result<Model, Error> {
         indices,
         targets: vec![target; targets],
         weights: vec![0.0; targets],
+        levels: vec![],
         ..model.meshes[0].clone()
     };
     Ok(model)

@@ -190,7 +190,7 @@ fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error
     };
     let surfaces = model.meshes.iter().map(surface).collect::<Result<Vec<_>, InputError>>()?;
     let parts: Vec<_> = (model.meshes.iter().zip(&skinned).zip(&surfaces))
-        .map(|((mesh, vertices), surface)| Part { mesh, vertices, surface })
+        .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
         .collect();
     let picture = scene.draw(&parts, SKY);
     Ok((skinned, picture))

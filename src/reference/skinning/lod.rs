@@ -11,6 +11,8 @@ use crate::skinning::weights::Reduction;
 pub struct Seen {
     /// How far the model's ball reaches into the view's volume; negative where it does not.
     pub depth: f32,
+    /// World units from the eye to the middle of the ball.
+    pub away: f32,
     /// The way from the beginning of the fade to its end, 0 to 1, before it is cut into steps.
     pub way: f32,
 }
@@ -29,18 +31,19 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let center = Vec3::from_array(rows.map(|row| row.dot(view.center.extend(1.0))));
     let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
-    let way = (center.distance(view.eye) - view.near) / (view.far - view.near);
-    Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), way: way.clamp(0.0, 1.0) }
+    let away = center.distance(view.eye);
+    let way = (away - view.near) / (view.far - view.near);
+    Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), away, way: way.clamp(0.0, 1.0) }
 }
 
 /// What an instance is drawn with; [`Reduction::UNSEEN`] where it is not seen.
 pub fn lod(view: &LodView, placement: &Affine) -> Reduction {
-    let Seen { depth, way } = seen(view, placement);
+    let Seen { depth, away, way } = seen(view, placement);
     let steps = view.steps as f32;
     if depth < 0.0 {
         return Reduction::UNSEEN;
     }
-    Reduction { fade: (way * steps).floor() / steps, most: view.most }
+    Reduction { fade: (way * steps).floor() / steps, most: view.most, level: view.levels.at(away) }
 }
 
 #[cfg(test)]

@@ -25,7 +25,9 @@ pub struct Scene {
 pub struct Part<'a> {
     /// Triangles and texture coordinates.
     pub mesh: &'a Mesh,
-    /// One a vertex of the mesh, in its order.
+    /// The mesh's level of detail: 0 is the mesh itself, and one that it lacks its last.
+    pub level: u32,
+    /// One a vertex of the mesh, in its order; of those that the level has.
     pub vertices: &'a [Vertex],
     /// Colour.
     pub surface: &'a Surface,
@@ -37,7 +39,7 @@ impl Scene {
         let pixels = (self.size[0] * self.size[1]) as usize;
         let mut canvas = Canvas { scene: self, depths: vec![1.0; pixels], pixels: vec![background; pixels] };
         for part in parts {
-            for triangle in part.mesh.indices.chunks_exact(3) {
+            for triangle in part.mesh.triangles(part.level).chunks_exact(3) {
                 let corner = |corner: usize| self.corner(part, triangle[corner] as usize);
                 canvas.triangle(part, [0, 1, 2].map(corner));
             }

@@ -33,13 +33,14 @@ impl Skinned {
     }
 }
 
+/// How influences count.
 fn bits(reduction: &Reduction) -> [u32; 2] {
     [reduction.fade.to_bits(), reduction.most]
 }
 
-/// `cluster · instances + instance` of what is skinned, of the instances that are seen: clusters with a bone that
-/// moved, clusters that targets move, where a weight is another than in the frame before, and all of instances whose
-/// reduction is another; ascending.
+/// `cluster · instances + instance` of what is skinned, of the instances that are seen, at their level of detail:
+/// clusters with a bone that moved, clusters that targets move, where a weight is another than in the frame before,
+/// those beyond the level of the frame before, and all of instances whose influences count otherwise; ascending.
 ///
 /// # Panics
 /// For lists of other lengths than the instances that `last` has.
@@ -48,7 +49,8 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
     let is_selected = |pair: &u32| {
         let (cluster, instance) = (*pair as usize / last.len(), *pair as usize % last.len());
         let (reduction, last) = (&now.reductions[instance], &last[instance]);
-        if reduction.most == 0 {
+        let is_beyond = |level| cluster >= clusters.level(level).clusters as usize;
+        if reduction.most == 0 || is_beyond(reduction.level) {
             return false;
         }
         let mask = &clusters.masks[cluster * words..][..words];
@@ -56,6 +58,7 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
         let targets = last.weights.len();
         let weights = now.weights[instance * targets..][..targets].iter().zip(&last.weights);
         bits(reduction) != bits(&last.reduction)
+            || is_beyond(last.reduction.level)
             || mask.iter().zip(moved).any(|(a, b)| a & b != 0)
             || clusters.morphs[cluster] && weights.clone().any(|(a, b)| a.to_bits() != b.to_bits())
     };

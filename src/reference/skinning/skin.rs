@@ -3,6 +3,7 @@
 use super::palette::{cross, dot, unit_or};
 use super::weights::reduced;
 use crate::animation::transform::Affine;
+use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::skin::Vertex;
 use crate::skinning::weights::{Influence, Influences, Reduction};
@@ -21,19 +22,24 @@ pub fn skin(
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
 }
 
-/// The same for one instance of a crowd, whose vertices stay as they are where it is not seen.
+/// The same for one instance of a crowd, whose vertices stay as they are where it is not seen, and in clusters beyond its
+/// level of detail. `clusters` are those of the mesh.
 ///
 /// # Panics
 /// As [`skin`].
 pub fn skin_seen(
     skinned: &mut [Vertex],
     vertices: &[Vertex],
-    influences: &Influences,
+    (influences, clusters): (&Influences, &Clusters),
     palette: &Palette,
     reduction: Reduction,
 ) {
     if reduction.most > 0 {
-        skinned.copy_from_slice(&skin(vertices, influences, palette, reduction));
+        let all = skin(vertices, influences, palette, reduction);
+        let places = CLUSTER * clusters.level(reduction.level).clusters as usize;
+        for vertex in clusters.order.iter().take(places).map(|vertex| *vertex as usize) {
+            skinned[vertex] = all[vertex];
+        }
     }
 }
 

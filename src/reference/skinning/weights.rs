@@ -117,6 +117,8 @@ mod tests {
         assert_eq!(field(Reduction::fade(f32::NAN)), "fade");
         assert_eq!(field(Reduction::truncate(0)), "truncate");
         assert_eq!(field(Reduction::truncate(9)), "truncate");
+        assert_eq!(field(Reduction::level(16)), "level");
+        assert_eq!(Reduction::level(15), Ok(Reduction { level: 15, ..Reduction::FULL }));
         assert_eq!(field(Reduction::at_distance(1.0, [5.0, 5.0])), "near");
         let fade = |distance| Reduction::at_distance(distance, [10.0, 30.0]).expect("in range").fade;
         assert_eq!([fade(0.0), fade(10.0), fade(15.0), fade(30.0), fade(99.0)], [0.0, 0.0, 0.25, 1.0, 1.0]);

@@ -3,11 +3,12 @@
 use encase::ShaderType;
 use glam::Vec4;
 
-use super::LodView;
-use crate::Error;
+use super::{LodView, list_stride, list_words};
 use crate::animation::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::skinning::mesh::MOST_LEVELS;
 use crate::skinning::weights::Reduction;
+use crate::{Error, InputError};
 
 /// `LodParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -19,10 +20,15 @@ pub(crate) struct LodParams {
     pub steps: f32,
     pub instances: u32,
     pub most: u32,
+    pub distances: [Vec4; MOST_LEVELS / 4],
+    pub coarser: u32,
+    pub stride: u32,
 }
 
 impl LodParams {
     fn new(view: &LodView, instances: usize) -> Self {
+        let begins = view.levels.distances();
+        let begin = |at: usize| begins.get(at).copied().unwrap_or(f32::MAX);
         Self {
             planes: view.planes(),
             eye: view.eye.extend(view.near),
@@ -31,8 +37,21 @@ impl LodParams {
             steps: view.steps as f32,
             instances: instances as u32,
             most: view.most,
+            distances: std::array::from_fn(|at| {
+                Vec4::from_array(std::array::from_fn(|lane| begin(4 * at + lane)))
+            }),
+            coarser: begins.len() as u32,
+            stride: list_stride(instances) as u32,
         }
     }
+}
+
+/// Words of the arguments of an indirect draw with indices.
+pub(crate) const DRAW_WORDS: usize = 5;
+
+/// The byte of arguments where a level's number of instances is.
+pub(crate) fn number_at(level: usize) -> u64 {
+    (size_of::<u32>() * (DRAW_WORDS * level + 1)) as u64
 }
 
 /// Decides what is drawn.
@@ -50,11 +69,12 @@ impl LodPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_LOD, &[])? })
     }
 
-    /// Prepares the reductions of all instances, the list of those that are seen, and the second of the `arguments` of an
-    /// indirect draw, their number ([`crate::render::SkinnedScene::arguments`]).
+    /// Prepares the reductions of all instances; of each level of the view the list of those that are seen, in
+    /// [`list_words`] words of `drawn` together; and their number, the second of five `arguments` a level of indirect
+    /// draws ([`crate::render::SkinnedScene::arguments`]).
     ///
     /// # Errors
-    /// [`crate::InputError`] for a view out of range and too small buffers; [`GpuError`].
+    /// [`InputError`] for a view out of range and too small buffers; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -67,8 +87,9 @@ impl LodPass {
         view.validate()?;
         let instances = placements.len();
         reductions.check_holds("reductions", instances)?;
-        drawn.check_holds("drawn", instances)?;
-        arguments.check_holds("arguments", 5)?;
+        let levels = 1 + view.levels.distances().len();
+        drawn.check_holds("drawn", list_words(instances, levels))?;
+        arguments.check_holds("arguments", DRAW_WORDS * levels)?;
         let uniform = Uniform::new(gpu, "lod", &LodParams::new(view, instances))?;
         let resources = [
             uniform.raw().as_entire_binding(),
@@ -83,7 +104,7 @@ impl LodPass {
             kernel: self.kernel.clone(),
         };
         let job = Job::new(gpu, "skinning/lod", vec![step])?;
-        Ok(LodJob { job, uniform, arguments: arguments.clone(), instances })
+        Ok(LodJob { job, uniform, arguments: arguments.clone(), instances, levels })
     }
 }
 
@@ -94,15 +115,21 @@ pub struct LodJob {
     uniform: Uniform<LodParams>,
     arguments: Buffer<u32>,
     instances: usize,
+    levels: usize,
 }
 
 impl LodJob {
     /// Chooses the view of the next submission.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a view out of range; [`GpuError`].
+    /// [`InputError`] for a view out of range, or of more levels than the one that was prepared; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, view: &LodView) -> Result<(), Error> {
         view.validate()?;
+        let coarser = view.levels.distances().len();
+        if coarser >= self.levels {
+            let bound = format!("must be below {}, the levels that were prepared", self.levels);
+            return Err(InputError::new("view.levels.len", coarser, bound).into());
+        }
         Ok(self.uniform.write(gpu, &LodParams::new(view, self.instances))?)
     }
 
@@ -117,8 +144,10 @@ impl LodJob {
         all: impl IntoIterator<Item = &'a Self, IntoIter: Clone>,
     ) {
         let all = all.into_iter();
-        // The number of instances.
-        all.clone().for_each(|lod| encoder.clear_buffer(lod.arguments.raw(), 4, Some(4)));
+        // The numbers of instances.
+        for (lod, level) in all.clone().flat_map(|lod| (0..lod.levels).map(move |level| (lod, level))) {
+            encoder.clear_buffer(lod.arguments.raw(), number_at(level), Some(4));
+        }
         let descriptor = wgpu::ComputePassDescriptor { label: Some("skinning/lod"), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
         all.for_each(|lod| lod.job.dispatch(&mut pass));

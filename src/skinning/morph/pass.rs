@@ -1,12 +1,14 @@
 //! `kernels/skinning/morph.wgsl`.
 
 use encase::ShaderType;
+use glam::UVec4;
 
 use crate::Error;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::mesh::MOST_LEVELS;
 
 /// `MorphParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -15,6 +17,7 @@ pub(crate) struct MorphParams {
     pub targets: u32,
     pub instances: u32,
     pub pairs: u32,
+    pub levels: [UVec4; MOST_LEVELS / 4],
 }
 
 /// Adds morph targets.
@@ -34,8 +37,8 @@ impl MorphPass {
         Ok(Self { all: kernel(0.0)?, active: kernel(1.0)? })
     }
 
-    /// Prepares the morphed vertices of all instances that are seen. Of a mesh without targets there are none, and
-    /// nothing is done.
+    /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail stay as they
+    /// were. Of a mesh without targets there are none, and nothing is done.
     ///
     /// # Errors
     /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
@@ -53,8 +56,8 @@ impl MorphPass {
         Ok(Job::new(gpu, "skinning/morph", steps)?)
     }
 
-    /// Prepares the active clusters of all instances, of those that are seen; the other vertices stay. Nothing for a
-    /// mesh without targets.
+    /// Prepares the active clusters of all instances, of those that are seen and not beyond their level of detail; the
+    /// other vertices stay. Nothing for a mesh without targets.
     ///
     /// # Errors
     /// As [`MorphPass::prepare`].
@@ -93,6 +96,7 @@ fn bind(
         targets: mesh.targets as u32,
         instances: crowd.instances as u32,
         pairs: pairs(mesh, crowd),
+        levels: mesh.clusters_of_levels(),
     };
     let uniform = Uniform::new(gpu, "morph", &params)?;
     let resources = [

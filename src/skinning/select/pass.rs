@@ -1,10 +1,12 @@
 //! `kernels/skinning/select.wgsl`.
 
 use encase::ShaderType;
+use glam::UVec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
+use crate::skinning::mesh::MOST_LEVELS;
 
 /// `SelectParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]
@@ -15,6 +17,7 @@ pub(crate) struct SelectParams {
     pub most: u32,
     pub vertices: u32,
     pub targets: u32,
+    pub levels: [UVec4; MOST_LEVELS / 4],
 }
 
 /// What a selection reads and remembers.
@@ -24,18 +27,18 @@ pub struct SelectBuffers {
     /// [`MeshBuffers::mask_words`] words an instance. Put [`Active::dirty`](crate::animation::compact::Active::dirty)
     /// here where a gate decides. A bone below one that moved has moved too.
     pub moved: Buffer<u32>,
-    /// Of each instance in the frame before, in 3 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, and
-    /// most influences; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first, so
-    /// that what is seen then is skinned.
+    /// Of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, most
+    /// influences and level; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first,
+    /// so that what is seen then is skinned.
     ///
-    /// The third word is 0 of what is not seen, 1 of what is seen for the first time or again, 2 of what was seen in the
+    /// The fourth word is 0 of what is not seen, 1 of what is seen for the first time or again, 2 of what was seen in the
     /// frame before too. At 1, vertices that [`keep_last`](crate::skinning::skin::keep_last) copied are of another time,
     /// or nothing: motion vectors then know of the placement alone.
     pub skinned: Buffer<u32>,
 }
 
 /// Words of an instance in [`SelectBuffers::skinned`], before its weights.
-pub const SKINNED_WORDS: usize = 3;
+pub const SKINNED_WORDS: usize = 4;
 
 impl SelectBuffers {
     /// Room for a crowd. No bone has moved.
@@ -93,6 +96,7 @@ impl SelectPass {
             most: gpu.device().limits().max_compute_workgroups_per_dimension,
             vertices: mesh.vertices.len() as u32,
             targets: mesh.targets as u32,
+            levels: mesh.clusters_of_levels(),
         };
         let uniform = Uniform::new(gpu, "select", &params)?;
         let resources = [

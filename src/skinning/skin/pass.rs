@@ -3,12 +3,14 @@
 use std::ops::Range;
 
 use encase::ShaderType;
+use glam::UVec4;
 
 use super::{Blend, Vertex};
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::mesh::MOST_LEVELS;
 use crate::{Error, InputError};
 
 /// `SkinParams` of the kernel.
@@ -19,6 +21,7 @@ pub(crate) struct SkinParams {
     pub bones: u32,
     pub instances: u32,
     pub first_instance: u32,
+    pub levels: [UVec4; MOST_LEVELS / 4],
 }
 
 /// Skins vertices.
@@ -47,7 +50,8 @@ impl SkinPass {
         Ok(Self { kernels, blend })
     }
 
-    /// Prepares every vertex of those that are seen of some instances, which are `skinned` one after the other, in the mesh's clusters.
+    /// Prepares every vertex of those that are seen of some instances, which are `skinned` one after the other, in the
+    /// mesh's clusters. Clusters beyond an instance's level of detail stay as they were.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another mesh or kind of blending, instances that it lacks, and too small an
@@ -73,7 +77,8 @@ impl SkinPass {
         Ok(Job::new(gpu, "skinning/skin", vec![step])?)
     }
 
-    /// Prepares the active clusters of all instances, of those that are seen; the other vertices stay.
+    /// Prepares the active clusters of all instances, of those that are seen and not beyond their level of detail; the
+    /// other vertices stay.
     ///
     /// # Errors
     /// As [`SkinPass::prepare`].
@@ -123,6 +128,7 @@ impl SkinPass {
             bones: mesh.bones.len() as u32,
             instances: instances.len() as u32,
             first_instance: instances.start as u32,
+            levels: mesh.clusters_of_levels(),
         };
         let uniform = Uniform::new(gpu, "skin", &params)?;
         let resources = [
@@ -142,7 +148,8 @@ impl SkinPass {
 /// Records a copy of vertices as they are, before the next skinning changes them: last frame's, for motion vectors.
 ///
 /// Instances that were not seen in the frame before have no vertices of that frame: theirs are of the time when they
-/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are.
+/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are, and at which
+/// level the others were: so are vertices beyond it.
 ///
 /// # Errors
 /// [`InputError`] for buffers of different lengths.

@@ -6,19 +6,32 @@ use crate::Error;
 use crate::animation::transform::Affine;
 use crate::gpu::Buffer;
 use crate::reference::skinning::lod::{Seen, lod, seen};
-use crate::skinning::lod::{LodPass, LodView, standing};
+use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, standing};
 use crate::skinning::weights::Reduction;
 use crate::verify::animation::Draw;
 use crate::verify::compare::Comparison;
-use crate::verify::poison::Poisoned;
+use crate::verify::poison::{POISON, Poisoned};
 use crate::verify::{Cases, compare};
 
 /// How near to a decision rounding may decide otherwise: places are within 200 of the origin, and their sums carry some
 /// 20ε of that.
 const TOUCH: f32 = 3e-4;
 
-/// Instances everywhere around several cameras; nobody in sight, and all. Those at the very edge of the view and of a
-/// step of the fade are left out, and counted.
+/// Where cameras look, and where levels begin.
+const DIRECTIONS: [(&str, Vec3, &[f32]); 4] = [
+    ("south", Vec3::Z, &[]),
+    ("aside", Vec3::new(1.0, -0.2, 0.3), &[40.0]),
+    ("up", Vec3::Y, &[-1.0, 9.0, 20.0]),
+    (
+        "back",
+        Vec3::new(0.1, 0.0, -1.0),
+        &[0.0, 10.0, 20.0, 25.0, 30.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 90.0, f32::MAX],
+    ),
+];
+
+/// Instances everywhere around several cameras; nobody in sight, and all; without levels, with one more, and with as many
+/// as there may be, some of them empty. Those at the very edge of the view, of a step of the fade and of a level are left
+/// out, and counted. What is not listed stays as it was.
 ///
 /// # Errors
 /// What the device reports.
@@ -36,21 +49,26 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             )
         };
         let placements: Vec<Affine> = (0..count).map(&mut place).collect();
-        for (name, towards) in [("south", Vec3::Z), ("aside", Vec3::new(1.0, -0.2, 0.3)), ("up", Vec3::Y)] {
-            let view = view(towards);
+        for (name, towards, levels) in DIRECTIONS {
+            let view = LodView { levels: LevelRanges::new(levels)?, ..view(towards) };
+            let levels = 1 + levels.len();
             let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
             let (reductions, drawn) =
-                (Poisoned::<Reduction>::new(gpu, count)?, Poisoned::<u32>::new(gpu, count)?);
-            let arguments = Buffer::from_slice(gpu, "arguments", &[7, 99, 0, 0, 0])?;
+                (Poisoned::<Reduction>::new(gpu, count)?, Poisoned::new(gpu, list_words(count, levels))?);
+            let arguments = Buffer::from_slice(gpu, "arguments", &[7, 99, 3, 0, 0].repeat(levels))?;
             let job = pass.prepare(gpu, &view, &buffer, &reductions.buffer, &drawn.buffer, &arguments)?;
             // Twice: the number of instances begins anew.
             gpu.run("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
-            let number = arguments.read_blocking(gpu)?;
-            let guard = drawn.check(gpu, |_| compare::exact(&[0], &[0]))?;
-            let list = drawn.buffer.read_blocking(gpu)?;
-            let comparison = reductions
-                .check(gpu, |reductions| compared(&view, &placements, reductions, &list, &number))?;
-            cases.add(format!("{count} instances, {name}"), if guard.holds { comparison } else { guard });
+            let arguments = arguments.read_blocking(gpu)?;
+            let (mut lists, mut found) = (Vec::new(), Vec::new());
+            let kept = drawn.check(gpu, |drawn| split(drawn, &arguments, count, &mut lists))?;
+            let guard = reductions.check(gpu, |reductions| {
+                found = reductions.to_vec();
+                compare::exact(&[0], &[0])
+            })?;
+            cases.add(format!("{count} instances, {name}: the lists' ends"), kept);
+            cases.add(format!("{count} instances, {name}: the reductions' end"), guard);
+            cases.add(format!("{count} instances, {name}"), compared(&view, &placements, &found, &lists));
         }
     }
     Ok(())
@@ -70,37 +88,51 @@ fn view(towards: Vec3) -> LodView {
         most: 5,
         center: Vec3::new(0.0, 0.9, 0.1),
         radius: 1.2,
+        levels: LevelRanges::NONE,
     }
 }
 
-/// For each instance whether it is listed, its fade, and its most influences.
+/// The lists of all levels, as long as the arguments say. What is behind each is still poison, and the arguments' other
+/// words are as they were.
+fn split(drawn: &[u32], arguments: &[u32], count: usize, lists: &mut Vec<Vec<u32>>) -> Comparison {
+    let stride = if arguments.len() == 5 { count } else { list_stride(count) };
+    let mut behind = Vec::new();
+    for (list, arguments) in drawn.chunks(stride).zip(arguments.chunks(5)) {
+        let (listed, rest) = list.split_at((arguments[1] as usize).min(list.len()));
+        lists.push(listed.to_vec());
+        behind.extend(rest.iter().map(|word| word ^ POISON));
+        behind.extend([arguments[0] ^ 7, arguments[2] ^ 3, arguments[3], arguments[4]]);
+    }
+    compare::exact(&behind, &vec![0; behind.len()])
+}
+
+/// For each instance how often it is listed, and how often for its level; its fade, most influences and level.
 fn compared(
     view: &LodView,
     placements: &[Affine],
     reductions: &[Reduction],
-    list: &[u32],
-    number: &[u32],
+    lists: &[Vec<u32>],
 ) -> Comparison {
-    let listed = &list[..(number[1] as usize).min(placements.len())];
     let (mut actual, mut expected, mut touching) = (Vec::new(), Vec::new(), 0_usize);
     for (instance, placement) in placements.iter().enumerate() {
-        let Seen { depth, way } = seen(view, placement);
+        let Seen { depth, away, way } = seen(view, placement);
         let step = way * view.steps as f32;
         let at_step = way > 0.0 && way < 1.0 && (step - step.round()).abs() < TOUCH;
-        if depth.abs() < TOUCH || at_step {
+        let at_level = view.levels.distances().iter().any(|begin| (away - begin).abs() < TOUCH);
+        if depth.abs() < TOUCH || at_step || at_level {
             touching += 1;
             continue;
         }
-        let times = listed.iter().filter(|drawn| **drawn == instance as u32).count();
         let (found, wanted) = (reductions[instance], lod(view, placement));
-        actual.extend([times as f32, found.fade, found.most as f32]);
-        expected.extend([f32::from(wanted.most > 0), wanted.fade, wanted.most as f32]);
+        let times = |list: &Vec<u32>| list.iter().filter(|drawn| **drawn == instance as u32).count();
+        let all: usize = lists.iter().map(times).sum();
+        let own = times(&lists[wanted.level as usize]);
+        let is_seen = f32::from(wanted.most > 0);
+        actual.extend([all as f32, own as f32, found.fade, found.most as f32, found.level as f32]);
+        expected.extend([is_seen, is_seen, wanted.fade, wanted.most as f32, wanted.level as f32]);
     }
-    if touching * 20 > placements.len() + 20 || number[0] != 7 {
-        return Comparison::failed(
-            placements.len(),
-            format!("{touching} too near to tell, arguments {number:?}"),
-        );
+    if touching * 20 > placements.len() + 20 {
+        return Comparison::failed(placements.len(), format!("{touching} too near to tell"));
     }
     // One instance may touch and go.
     if expected.is_empty() { compare::exact(&[0], &[0]) } else { compare::absolute(&actual, &expected, 1e-6) }

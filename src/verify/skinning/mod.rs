@@ -13,7 +13,7 @@ use crate::animation::skeleton::Skin;
 use crate::animation::transform::{Affine, Transform};
 use crate::reference::animation::concat::{affine, product};
 use crate::skinning::morph::MorphDelta;
-use crate::skinning::{Influence, Influences, Mesh, MorphTarget, Reduction, Vertex};
+use crate::skinning::{Influence, Influences, Mesh, MeshLevel, MorphTarget, Reduction, Vertex};
 use crate::verify::animation::{Draw, random_skeleton};
 use crate::verify::poison::POISON;
 
@@ -28,18 +28,21 @@ pub struct Shape {
     pub influences: usize,
     /// Morph targets.
     pub targets: usize,
+    /// Of detail, besides the mesh itself; needs three vertices.
+    pub levels: usize,
 }
 
-/// Vertices around the boundaries of clusters; bones around those of sets; one influence to eight.
+/// Vertices around the boundaries of clusters; bones around those of sets; one influence to eight; no levels, some and
+/// as many as there may be.
 pub const SHAPES: [Shape; 8] = [
-    Shape { bones: 1, vertices: 1, influences: 1, targets: 0 },
-    Shape { bones: 9, vertices: 63, influences: 2, targets: 1 },
-    Shape { bones: 32, vertices: 64, influences: 3, targets: 0 },
-    Shape { bones: 33, vertices: 65, influences: 4, targets: 2 },
-    Shape { bones: 64, vertices: 127, influences: 5, targets: 0 },
-    Shape { bones: 65, vertices: 500, influences: 7, targets: 3 },
-    Shape { bones: 153, vertices: 1000, influences: 8, targets: 0 },
-    Shape { bones: 1000, vertices: 129, influences: 8, targets: 1 },
+    Shape { bones: 1, vertices: 1, influences: 1, targets: 0, levels: 0 },
+    Shape { bones: 9, vertices: 63, influences: 2, targets: 1, levels: 1 },
+    Shape { bones: 32, vertices: 64, influences: 3, targets: 0, levels: 0 },
+    Shape { bones: 33, vertices: 65, influences: 4, targets: 2, levels: 15 },
+    Shape { bones: 64, vertices: 127, influences: 5, targets: 0, levels: 2 },
+    Shape { bones: 65, vertices: 500, influences: 7, targets: 3, levels: 3 },
+    Shape { bones: 153, vertices: 1000, influences: 8, targets: 0, levels: 15 },
+    Shape { bones: 1000, vertices: 129, influences: 8, targets: 1, levels: 1 },
 ];
 
 /// A model of this shape, with one mesh and no clip.
@@ -60,18 +63,37 @@ pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
         normals: vertices.clone().map(|_| unit(&mut draw)).collect(),
         tangents: vertices.clone().map(|_| tangent(&mut draw)).collect(),
         uv: vertices.clone().map(|_| [0; 2].map(|_| draw.signed())).collect(),
-        indices: (0..shape.vertices as u32 / 3 * 3).collect(),
+        levels: levels(&mut draw, shape),
+        indices: triangles(shape).collect(),
         double_sided: true,
         material: None,
         influences: influences(&mut draw, shape, skin.bones.len())?,
         targets: (0..shape.targets).map(|_| target(&mut draw, shape.vertices)).collect(),
         weights: vec![0.0; shape.targets],
         weight_keys: vec![],
-        levels: vec![],
     };
     mesh.validate(std::slice::from_ref(&skin))?;
     let (clips, materials, images) = (vec![], vec![], vec![]);
     Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images })
+}
+
+/// All vertices but two at most have a triangle.
+fn triangles(shape: Shape) -> std::ops::Range<u32> {
+    0..shape.vertices as u32 / 3 * 3
+}
+
+/// Half of the triangles, a quarter and so on; one in the end.
+fn levels(draw: &mut Draw, shape: Shape) -> Vec<MeshLevel> {
+    let mut left: Vec<u32> = triangles(shape).step_by(3).collect();
+    let mut level = |at| {
+        let half = left.len().div_ceil(2);
+        while left.len() > half {
+            left.swap_remove(draw.word() as usize % left.len());
+        }
+        let indices = left.iter().flat_map(|first| *first..first + 3).collect();
+        MeshLevel { indices, error: at as f32 }
+    };
+    (0..shape.levels).map(&mut level).collect()
 }
 
 fn unit(draw: &mut Draw) -> [f32; 3] {
@@ -137,17 +159,21 @@ pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine>
     matrices
 }
 
-/// Full, truncated, fading and unseen ones in turn.
+/// Full, truncated, fading and unseen ones in turn, half of them at coarse levels, which the mesh may lack.
 pub fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
     let mut draw = Draw::new(case ^ 0xfade);
-    let reduction = |instance: usize| match (instance as u32 + case) % 5 {
+    let reduction = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
         0 => Reduction::FULL,
         1 => Reduction { most: 1 + draw.word() % 8, ..Reduction::FULL },
         2 => Reduction { fade: draw.signed().abs(), ..Reduction::FULL },
         3 => Reduction { fade: (draw.word() % 2) as f32, ..Reduction::FULL },
         _ => Reduction::UNSEEN,
     };
-    (0..instances).map(reduction).collect()
+    let levelled = |instance| {
+        let level = [0, 0, 0, 0, 1, 2, 3, 15, u32::MAX][draw.word() as usize % 9];
+        Reduction { level, ..reduction(instance, &mut draw) }
+    };
+    (0..instances).map(levelled).collect()
 }
 
 fn column_major(matrix: &Affine) -> [f32; 16] {

@@ -17,7 +17,7 @@ use crate::verify::{Cases, compare};
 use crate::{Error, InputError};
 
 /// Frames in a row; of 64 bones how many move; whether reductions and weights are other ones.
-const FRAMES: [(&str, u32, bool); 7] = [
+const FRAMES: [(&str, u32, bool); 10] = [
     ("the first", 8, true),
     ("others seen and faded", 2, true),
     ("bones alone", 5, false),
@@ -25,6 +25,9 @@ const FRAMES: [(&str, u32, bool); 7] = [
     ("all unseen", 5, false),
     ("all back", 0, false),
     ("nothing again", 0, false),
+    ("other levels", 0, false),
+    ("other levels again", 1, false),
+    ("all whole", 0, false),
 ];
 
 /// What decides in a frame.
@@ -47,7 +50,11 @@ impl Frame {
         let instances = self.reductions.len();
         let reductions = match name {
             "all unseen" => vec![Reduction::UNSEEN; instances],
-            "all back" => vec![Reduction::FULL; instances],
+            "all back" | "all whole" => vec![Reduction::FULL; instances],
+            "other levels" | "other levels again" => {
+                let level = |old: &Reduction| Reduction { level: draw.word() % 5, ..*old };
+                self.reductions.iter().map(level).collect()
+            }
             _ if is_other => random_reductions(case + share, instances),
             _ => self.reductions.clone(),
         };
@@ -60,8 +67,9 @@ impl Frame {
     }
 }
 
-/// No bone, some and all; reductions that change and such as do not; instances that leave the view and come back; weights
-/// of targets that move some of the clusters. Lists are compared sorted, with their number, the workgroups behind them, and what is remembered.
+/// No bone, some and all; reductions that change and such as do not; instances that leave the view and come back; levels
+/// that get coarser and finer; weights of targets that move some of the clusters. Lists are compared sorted, with their
+/// number, the workgroups behind them, and what is remembered.
 ///
 /// # Errors
 /// What the device reports.
@@ -119,9 +127,9 @@ fn listed(actual: &[u32], dispatched: &[u32], expected: &[u32]) -> Comparison {
 
 fn words_of(last: &[Skinned]) -> Vec<u32> {
     let words = |last: &Skinned| {
-        let Reduction { fade, most } = last.reduction;
+        let Reduction { fade, most, level } = last.reduction;
         let weights = last.weights.iter().map(|weight| weight.to_bits());
-        [fade.to_bits(), most, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
+        [fade.to_bits(), most, level, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
     };
     last.iter().flat_map(words).collect()
 }

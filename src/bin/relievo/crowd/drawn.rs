@@ -10,7 +10,7 @@ use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, ColorTexture};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LodJob, LodPass, LodView, NO_FADE};
+use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE};
 use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
 use relievo::skinning::{Blend, Extent, Reduction};
@@ -348,6 +348,7 @@ impl<'a> World<'a> {
             most: if let Skinning::All(reduction) = skinning { reduction.most } else { Reduction::FULL.most },
             center,
             radius,
+            levels: LevelRanges::NONE,
         };
         let lod = LodPass::new(gpu)?.prepare(
             gpu,
