@@ -26,6 +26,7 @@
 //! The same input gives the same collapses on every machine: only `+ − × ÷` and square roots, in a fixed order, and
 //! ties go to the lower index. Time grows as n log n in triangles, and in proportion to poses.
 
+mod attached;
 mod attributes;
 mod melax;
 mod neighbors;
@@ -99,6 +100,9 @@ pub struct Collapse {
     end: u32,
     /// The most that a collapse has cost so far, in units of positions: what the mesh is off by, as the cost sees it.
     pub error: f32,
+    /// No point of the mesh that is gone was further from what is left than this after it, in any pose; infinite where
+    /// that was not limited.
+    pub distance: f32,
     /// Triangles left after it.
     pub triangles: u32,
 }
@@ -163,6 +167,19 @@ impl Simplified {
         (above + 1).min(self.collapses.len())
     }
 
+    /// How many collapses leave no point further from the surface than this.
+    pub fn collapses_within(&self, distance: f32) -> usize {
+        self.collapses.partition_point(|collapse| collapse.distance <= distance)
+    }
+
+    /// The point that a vertex is a wedge of: the same number for all wedges at a place.
+    ///
+    /// # Panics
+    /// For a vertex that there is not.
+    pub fn point(&self, vertex: u32) -> u32 {
+        self.points[vertex as usize]
+    }
+
     /// What each vertex is after so many collapses: itself, or what it became.
     ///
     /// # Panics
@@ -215,13 +232,36 @@ impl Simplified {
 /// [`InputError`] for no pose, poses of different lengths, indices that are not three a triangle or out of range,
 /// attributes that are not `stride` a vertex, numbers that are not finite, and an error below 0 or not a number.
 pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, InputError> {
+    simplify_within(surface, options, &[f32::INFINITY])
+}
+
+/// Simplifies a mesh as far as can be with every point that is gone within a distance of what is left, in every pose;
+/// then, from there on, within the next distance, and so on. Each point is near one and the same triangle in all poses.
+/// That is measured, where [`Options::error`] is an average: of as many triangles, those have less of an average error,
+/// these less of a largest one. Takes a few times longer.
+///
+/// # Errors
+/// As [`simplify()`]; for distances that are below 0 or descend.
+pub fn simplify_within(
+    surface: &Surface<'_>,
+    options: &Options,
+    distances: &[f32],
+) -> Result<Simplified, InputError> {
     validate(surface)?;
+    let mut least = 0.0;
+    for (at, distance) in distances.iter().enumerate() {
+        if !(least..=f32::INFINITY).contains(distance) {
+            let bound = format!("must be at least {least}");
+            return Err(InputError::new(format!("distances[{at}]"), distance, bound));
+        }
+        least = *distance;
+    }
     if options.error.is_nan() || options.error < 0.0 {
         return Err(InputError::new("error", options.error, "must be at least 0"));
     }
     let points = Points::new(surface.poses);
     let topology = Topology::new(&points, surface.indices);
-    Ok(reducer::reduce(surface, points, topology, options))
+    Ok(reducer::reduce(surface, points, topology, options, distances))
 }
 
 fn validate(surface: &Surface<'_>) -> Result<(), InputError> {

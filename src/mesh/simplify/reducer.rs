@@ -1,5 +1,6 @@
 //! Collapse after collapse.
 
+use super::attached::Attached;
 use super::melax;
 use super::neighbors::{Neighbor, Neighbors};
 use super::points::Points;
@@ -16,50 +17,79 @@ struct Reducer<'a> {
     cost: Cost,
     /// With [`Cost::Quadric`] alone.
     quadrics: Option<Quadrics<'a>>,
+    /// Where distances are limited.
+    attached: Option<Attached>,
     neighbors: Neighbors,
     /// Of points, and of vertices.
     marks: [Marks; 2],
 }
 
 /// Collapses as the options say.
-pub fn reduce(surface: &Surface<'_>, points: Points, topology: Topology, options: &Options) -> Simplified {
+pub fn reduce(
+    surface: &Surface<'_>,
+    points: Points,
+    topology: Topology,
+    options: &Options,
+    distances: &[f32],
+) -> Simplified {
     let triangles = topology.triangles();
     let quadrics = match options.cost {
         Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
         Cost::Melax { .. } => None,
     };
     let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
-    let mut reducer =
-        Reducer { points, topology, cost: options.cost, quadrics, neighbors: Neighbors::default(), marks };
-    let (collapses, moved, stopped) = reducer.run(options);
+    let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
+    let attached = is_limited.then(|| Attached::new(&topology, &points, surface.indices.len() / 3));
+    let neighbors = Neighbors::default();
+    let mut reducer = Reducer { points, topology, cost: options.cost, quadrics, attached, neighbors, marks };
+    let mut done = Done::default();
+    let mut stopped = Stopped::Exhausted;
+    for distance in distances {
+        stopped = reducer.run(options, *distance, &mut done);
+        if stopped != Stopped::Exhausted {
+            break;
+        }
+    }
+    let Done { collapses, moved, .. } = done;
     Simplified { collapses, moved, points: reducer.points.into_of(), triangles, stopped }
 }
 
+/// What was done.
+#[derive(Default)]
+struct Done {
+    collapses: Vec<Collapse>,
+    moved: Vec<[u32; 2]>,
+    error: f32,
+}
+
 impl Reducer<'_> {
-    fn run(&mut self, options: &Options) -> (Vec<Collapse>, Vec<[u32; 2]>, Stopped) {
+    /// Goes on until nothing is left that is legal, with no point further off than a distance.
+    fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
+        if let Some(attached) = &mut self.attached {
+            attached.set_most(distance);
+        }
         let first = (0..self.points.len() as u32).map(|point| self.find(point)).collect();
         let mut queue = Queue::new(first);
-        let (mut collapses, mut moved) = (Vec::new(), Vec::new());
-        let mut error = 0.0_f32;
         let mut surroundings = Vec::new();
         loop {
             if self.topology.triangles() <= options.triangles {
-                return (collapses, moved, Stopped::Triangles);
+                return Stopped::Triangles;
             }
-            let Some((point, best)) = queue.pop() else { return (collapses, moved, Stopped::Exhausted) };
+            let Some((point, best)) = queue.pop() else { return Stopped::Exhausted };
             if !self.is_legal(point, best.neighbor) {
                 queue.set(point, self.find_legal(point));
                 continue;
             }
             let cost = best.cost.sqrt() as f32;
             if cost > options.error {
-                return (collapses, moved, Stopped::Error);
+                return Stopped::Error;
             }
-            error = error.max(cost);
+            done.error = done.error.max(cost);
             self.look_around([point, best.neighbor], &mut surroundings);
-            self.collapse(point, best.neighbor, &mut moved);
+            self.collapse(point, best.neighbor, &mut done.moved);
+            let (error, end) = (done.error, done.moved.len() as u32);
             let triangles = self.topology.triangles() as u32;
-            collapses.push(Collapse { end: moved.len() as u32, error, triangles });
+            done.collapses.push(Collapse { end, error, distance, triangles });
             queue.set(point, None);
             for &(other, is_changed) in &surroundings {
                 // The others' triangles are as they were, so are their costs; what was illegal may be legal now.
@@ -140,6 +170,10 @@ impl Reducer<'_> {
         !differ
             && self.topology.keeps_topology(point, neighbor, &mut self.marks[0])
             && !turns_any(&self.topology, &self.points, point, neighbor)
+            && self
+                .attached
+                .as_mut()
+                .is_none_or(|attached| attached.keeps_near(&self.topology, &self.points, point, neighbor))
     }
 
     /// A point becomes its neighbour: all its vertices, those too that have no triangles any more.
@@ -156,6 +190,9 @@ impl Reducer<'_> {
             }
         }
         let live = moved.len();
+        if let Some(attached) = &mut self.attached {
+            attached.collapse(&self.topology, point);
+        }
         self.topology.collapse(point, neighbor, &moved[start..]);
         if let Some(quadrics) = &mut self.quadrics {
             quadrics.merge(&self.points, point, neighbor, &moved[start..]);
