@@ -59,14 +59,39 @@ impl Extent {
     ///
     /// What else is off adds to it: bones that a gate holds back by ε′ pixels, and a fade by ε, together show ε + ε′.
     pub fn fade_range(&self, lens: &Lens, picture: [u32; 2], pixels: f32) -> [f32; 2] {
-        let [focal, pixels, radius, stray] =
-            [lens.focal_pixels, pixels, self.radius, self.stray].map(f64::from);
+        let far = self.distance(lens, picture, pixels, self.stray);
+        [self.radius, far.max(self.radius.next_up())]
+    }
+
+    /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](super::mesh::MeshLevel::error)) may be
+    /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs inside the picture is seen more than
+    /// `pixels` from the mesh's surface, and no point of that from theirs. Placements neither stretch nor shrink. Where
+    /// nothing may be off, levels with an error begin at the end of all numbers.
+    ///
+    /// By the formula of [`Extent::fade_range`], with an error in place of the stray: of two points of the two surfaces
+    /// that lie so near each other the one is a vertex that is off, the other its right place. Both are in the ball, as
+    /// the vertices of triangles are. So the distance is r + error·(focal + ε·c)/(ε·c²).
+    ///
+    /// What else is off adds to it, a fade too: within ε pixels a crowd may fade by a share and have levels by the rest.
+    pub fn level_ranges(
+        &self,
+        lens: &Lens,
+        picture: [u32; 2],
+        pixels: f32,
+        errors: impl IntoIterator<Item = f32>,
+    ) -> Vec<f32> {
+        errors.into_iter().map(|error| self.distance(lens, picture, pixels, error)).collect()
+    }
+
+    /// How far the middle of the ball must be away for what is `off` in it to be so many pixels off: the radius at least,
+    /// and finite.
+    fn distance(&self, lens: &Lens, picture: [u32; 2], pixels: f32, off: f32) -> f32 {
+        let [focal, pixels, radius, off] = [lens.focal_pixels, pixels, self.radius, off].map(f64::from);
         let [width, height] = picture.map(|edge| f64::from(edge) / 2.0 / focal);
         let cosine = (1.0 + width * width + height * height).sqrt().recip();
-        let far = radius + stray * (focal + pixels * cosine) / (pixels * cosine * cosine);
-        // Nothing strays, or nothing may.
-        let far = far.max(radius).min(f64::from(f32::MAX)) as f32;
-        [self.radius, far.max(self.radius.next_up())]
+        let distance = radius + off * (focal + pixels * cosine) / (pixels * cosine * cosine);
+        // Nothing is off, or nothing may be.
+        distance.max(radius).min(f64::from(f32::MAX)) as f32
     }
 }
 
@@ -120,6 +145,7 @@ fn stray(influences: &[Influence], places: &[Vec3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::skinning::lod::LevelRanges;
 
     #[test]
     fn strays_are_the_largest_of_all_fades() {
@@ -160,6 +186,40 @@ mod tests {
         for pixels in [0.0, 1.0] {
             let [near, far] = range(&rigid, pixels);
             assert!(near < far && far.is_finite(), "{near} {far}");
+        }
+    }
+
+    #[test]
+    fn levels_begin_where_their_errors_are_so_many_pixels() {
+        let (lens, picture) = (Lens::new(1080, 1.0, 0.1), [1920, 1080]);
+        let extent = Extent { center: Vec3::ZERO, radius: 1.5, stray: 0.02 };
+        let ranges =
+            |pixels, errors: &[f32]| extent.level_ranges(&lens, picture, pixels, errors.iter().copied());
+        let errors = [0.0, 0.02, 0.02, 0.5];
+        let begins = ranges(1.0, &errors);
+        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&lens, picture, 1.0)[1]));
+        assert!(begins.is_sorted() && LevelRanges::new(&begins).is_ok());
+        assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
+        assert!(ranges(1.0, &[]).is_empty());
+
+        // Off in every direction, at the places of the ball that are nearest, in the middle and a corner of the picture.
+        let focal = lens.focal_pixels;
+        let screen = |place: Vec3| place.truncate() * (focal / place.z);
+        let corner = Vec3::new(960.0 / focal, 540.0 / focal, 1.0).normalize();
+        for pixels in [0.25, 1.0, 8.0] {
+            let mut largest = 0.0_f32;
+            for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
+                for nearest in [Vec3::Z, corner].map(|towards| (begin - extent.radius) * towards) {
+                    let unit = |at: i32| {
+                        let [a, b] = [0.1 * at as f32, 0.37 * at as f32];
+                        Vec3::new(libm::cosf(a) * libm::cosf(b), libm::sinf(a) * libm::cosf(b), libm::sinf(b))
+                    };
+                    for towards in (0..500).map(unit).filter(|_| error > 0.0) {
+                        largest = largest.max(screen(nearest).distance(screen(nearest + error * towards)));
+                    }
+                }
+            }
+            assert!((0.9 * pixels..=1.001 * pixels).contains(&largest), "{largest} of {pixels}");
         }
     }
 }

@@ -30,15 +30,29 @@ pub fn checks(gpu: &Gpu) -> Albedo {
     ColorTexture::linear(gpu, &Mips::of_color(image), true).expect("uploaded").into()
 }
 
+/// Rings of vertices of the limb.
+pub const RINGS: usize = 41;
+
+/// Quads around the limb.
+pub const SIDES: usize = 24;
+
+fn corner(ring: usize, side: usize) -> u32 {
+    (ring * (SIDES + 1) + side) as u32
+}
+
+/// Two triangles of the limb, so many rings and sides wide.
+pub fn quad(ring: usize, side: usize, step: usize) -> [u32; 6] {
+    let [a, b] = [corner(ring, side), corner(ring, side + step)];
+    let [c, d] = [corner(ring + step, side + step), corner(ring + step, side)];
+    [a, b, d, b, c, d]
+}
+
 /// A limb along X around two bones that share the vertices in its middle.
-fn limb() -> Model {
-    const RINGS: usize = 41;
-    const SIDES: usize = 24;
+pub fn limb() -> Model {
     let bone = |name: &str, parent| Bone { name: name.to_owned(), parent, rest: Transform::IDENTITY };
     let skeleton = Skeleton::of_joints(vec![bone("upper", None), bone("lower", Some(0))]).expect("valid");
     let identity = Mat4::IDENTITY.to_cols_array();
     let skin = Skin { name: "limb".to_owned(), bones: vec![0, 1], inverse_binds: vec![identity; 2] };
-    let corner = |ring: usize, side: usize| (ring * (SIDES + 1) + side) as u32;
     let (mut positions, mut normals, mut uv, mut follows) = (vec![], vec![], vec![], vec![]);
     for (ring, side) in (0..RINGS).flat_map(|ring| (0..=SIDES).map(move |side| (ring, side))) {
         let along = 2.0 * ring as f32 / (RINGS - 1) as f32 - 1.0;
@@ -51,12 +65,7 @@ fn limb() -> Model {
         let share = share * share * (3.0 - 2.0 * share);
         follows.push(vec![Influence { bone: 0, weight: 1.0 - share }, Influence { bone: 1, weight: share }]);
     }
-    let quad = |ring: usize, side: usize| {
-        let [a, b, c, d] =
-            [corner(ring, side), corner(ring, side + 1), corner(ring + 1, side + 1), corner(ring + 1, side)];
-        [a, b, d, b, c, d]
-    };
-    let rings = (0..RINGS - 1).flat_map(|ring| (0..SIDES).flat_map(move |side| quad(ring, side)));
+    let rings = (0..RINGS - 1).flat_map(|ring| (0..SIDES).flat_map(move |side| quad(ring, side, 1)));
     let mesh = Mesh {
         name: "limb".to_owned(),
         skin: 0,
@@ -78,7 +87,7 @@ fn limb() -> Model {
     Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images }
 }
 
-fn rows(matrix: Mat4) -> Affine {
+pub fn rows(matrix: Mat4) -> Affine {
     let [x, y, z, _] = matrix.transpose().to_cols_array_2d();
     [x, y, z]
 }

@@ -90,7 +90,10 @@ struct Scene {
 
 impl Scene {
     fn new(gpu: &Gpu, influences: usize, targets: usize, instances: usize) -> Result<Self, Error> {
-        let model = tube(influences, targets)?;
+        Self::of(gpu, tube(influences, targets)?, instances)
+    }
+
+    fn of(gpu: &Gpu, model: Model, instances: usize) -> Result<Self, Error> {
         let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
         let bones: Vec<_> = model.skins[0].inverse_binds.iter().map(rows).collect();

@@ -1,6 +1,6 @@
 //! Skinning of crowds.
 
-use super::{CROWDS, RING, Scene, seen_of};
+use super::{CROWDS, RING, Scene, seen_of, tube};
 use crate::Error;
 use crate::bench::terrain::copy_of;
 use crate::bench::{Backend, Bench, Contender};
@@ -10,6 +10,7 @@ use crate::reference::skinning::palette::rows;
 use crate::reference::skinning::skin::skin;
 use crate::skinning::buffers::ActiveClusters;
 use crate::skinning::clusters::CLUSTER;
+use crate::skinning::mesh::MeshLevel;
 use crate::skinning::palette::Palette;
 use crate::skinning::skin::{Blend, SkinPass, Vertex};
 use crate::skinning::weights::Reduction;
@@ -57,6 +58,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     }
     some(bench, &pass)?;
     seen(bench, &pass)?;
+    levelled(bench, &pass)?;
     faded(bench, &pass)
 }
 
@@ -109,6 +111,39 @@ fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
         }),
     ];
     bench.case("4, a quarter of 10k × 100 seen, no list", (all, "vertex"), 292 * all as u64, contenders)
+}
+
+/// A hundred instances at a level of a quarter of the vertices, without a list that leaves out the others' clusters:
+/// nanoseconds a vertex of those clusters that it has.
+fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let mut model = tube(4, 0)?;
+    let mesh = &mut model.meshes[0];
+    let quarter = mesh.indices[..mesh.indices.len() / 12 * 3].to_vec();
+    mesh.levels = vec![MeshLevel { indices: quarter, error: 0.0 }];
+    let scene = Scene::of(gpu, model, CROWDS[1])?;
+    let level = Reduction::level(1)?;
+    scene.crowd.reductions.write(gpu, &[level; CROWDS[1]])?;
+    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
+    let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
+    let each = CLUSTER * scene.clusters.level(1).clusters as usize;
+    let all = CROWDS[1] * each;
+    let copied = copy_of(gpu, 73 * all / 2)?;
+    let mesh = &scene.model.meshes[0];
+    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+    let unskinned = morph(mesh, &[]);
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            // As many as in these clusters; which ones does not matter.
+            let some = &unskinned[..each];
+            for _ in 0..CROWDS[1] {
+                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, level)));
+            }
+        }),
+    ];
+    bench.case("4, 10k × 100 at a level of a quarter, no list", (all, "vertex"), 292 * all as u64, contenders)
 }
 
 /// A hundred instances at full fade: the weight that decides is read, and one bone.
