@@ -176,12 +176,15 @@ mod tests {
             levels.map(|level| level.indices.len()).min().unwrap_or(mesh.indices.len())
         };
         assert!(5 * triangles(0.011) < mesh.indices.len() && 9 * triangles(0.018) < mesh.indices.len());
-        for (level, MeshLevel { error, .. }) in found.levels.iter().enumerate() {
+        for (level, MeshLevel { indices, error }) in found.levels.iter().enumerate() {
             let mut worst = 0.0_f32;
             for moment in [(0, 0.123), (0, 0.77), (2, 0.41)] {
                 let places = Pose::new(&model, mesh, moment).positions(mesh);
+                let mut drawn = vec![Vec3::NAN; places.len()];
+                indices.iter().for_each(|vertex| drawn[*vertex as usize] = places[*vertex as usize]);
                 for (vertex, place) in places.iter().enumerate() {
-                    let nearest = found.nearest(level, vertex, *place, |vertex| places[vertex as usize]);
+                    let nearest = found.nearest(level, vertex, *place, |vertex| drawn[vertex as usize]);
+                    assert!(nearest.is_finite(), "level {level}: vertex {vertex}");
                     worst = worst.max(nearest.distance(*place));
                 }
             }

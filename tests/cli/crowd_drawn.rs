@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::harness::{Run, relievo};
 use crate::scene::Scene;
 
-const SMALL: [&str; 8] = ["--model", "builtin", "--clip", "walk", "--instances", "4", "--frames", "10"];
+const SMALL: [&str; 8] = ["--model", "builtin", "--clip", "walk", "--instances", "4", "--frames", "11"];
 
 /// Runs `crowd` into the folder `out` of a folder of its own.
 fn run(arguments: &[&str]) -> (Run, PathBuf, tempfile::TempDir) {
@@ -49,7 +49,7 @@ fn crowds_are_drawn_and_timed() {
             assert!(number(&row[format!("full_{field}")]) > 0.0, "full_{field}");
         }
         let error = &row["vertex_error"];
-        assert_eq!((number(&error["points"]), number(&error["unseen"])), (4.0 * 5284.0 * 10.0, 0.0));
+        assert_eq!((number(&error["points"]), number(&error["unseen"])), (4.0 * 5284.0 * 11.0, 0.0));
     }
     // Beyond the range nothing moves, so that nothing is skinned, and what is drawn is the first frame.
     assert_eq!(number(&far["skinned_share"]), 0.0);
@@ -74,7 +74,7 @@ fn the_gate_off_is_exact() {
 }
 
 #[test]
-fn scenes_compare_four_ways() {
+fn scenes_compare_five_ways() {
     let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
     let fade = ["--skinning", "fade"];
     let ([near, far], out, _folder) = rows("scene.json", &[&gate[..], &fade].concat());
@@ -85,40 +85,53 @@ fn scenes_compare_four_ways() {
         assert!(worst(row, "animation") > 0.0 && worst(row, "animation") <= bound, "{row}");
         // Stale bones move no vertex further, whichever it follows.
         assert!(worst(row, "both") <= worst(row, "skinning") + bound, "{row}");
-        for way in ["off", "animation", "skinning", "both"] {
+        for way in ["off", "animation", "skinning", "both", "all"] {
             assert!(number(&row[way]["frame_nanoseconds"]) > 0.0, "{way}");
+            assert!(way == "all" || number(&row[way]["triangle_share"]) == 1.0, "{way}");
         }
-        let cheaper = number(&row["off"]["frame_nanoseconds"]) / number(&row["both"]["frame_nanoseconds"]);
-        assert!((number(&row["cheaper"]["frame"]) - cheaper).abs() < 1e-9);
+        for (way, field) in [("both", "cheaper"), ("all", "all_cheaper")] {
+            let cheaper = number(&row["off"]["frame_nanoseconds"]) / number(&row[way]["frame_nanoseconds"]);
+            assert!((number(&row[field]["frame"]) - cheaper).abs() < 1e-9);
+        }
     }
     assert!(number(&far["tall_pixels"]) < 100.0 && number(&far["mean_omega"]) == 0.0);
     assert!(image::open(out.join("scene.png")).expect("a PNG").width() >= 600);
     assert!(out.join("crowd_300.png").is_file());
     // A fade's end is the strongest bone alone.
     let ([truncated_near, truncated], ..) =
-        rows("scene.json", &[&gate[..], &["--skinning", "truncate:1"]].concat());
+        rows("scene.json", &[&gate[..], &["--skinning", "truncate:1", "--mesh", "full"]].concat());
+    assert_eq!((&truncated["all"], &truncated["all_cheaper"]), (&Value::Null, &Value::Null));
     let metres = |row: &Value| number(&row["skinning"]["vertex_error"]["max_metres"]);
     assert!((metres(&truncated) - metres(&far)).abs() < 1e-5 && metres(&far) > 1e-3);
     assert!(metres(&truncated_near) > metres(&near));
 }
 
-/// Half a pixel for the gate, half a pixel for the fade: one for both, wherever the crowd stands.
+/// Half a pixel for the gate, half a pixel for the fade, half a pixel for the meshes: one and a half for all, wherever
+/// the crowd stands.
 #[test]
-fn both_levels_of_detail_keep_a_pixel() {
+fn levels_of_detail_keep_their_pixels() {
     let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
-    let (rows, out, _folder) = rows("scene.json", &gate);
+    let ([near, far], out, _folder) = rows("scene.json", &gate);
     let text = std::fs::read(out.join("scene.json")).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
-    assert_eq!(report["skinning"], "bounded:0.5");
-    let [near, far] = [0, 1].map(|end| number(&report["fade"][0][end]));
-    assert!(near > 50.0 && near < 300.0 && far > 2000.0, "{near} to {far}");
+    assert_eq!((&report["skinning"], &report["mesh"]), (&json!("bounded:0.5"), &json!("bounded:0.5")));
+    let levels = report["levels"][0].as_array().expect("one mesh");
+    for pair in levels.windows(2) {
+        let fields =
+            |level: &Value| ["triangles", "vertices", "error_metres", "from"].map(|f| number(&level[f]));
+        let ([t, v, e, f], [fewer_t, fewer_v, more_e, more_f]) = (fields(&pair[0]), fields(&pair[1]));
+        assert!(fewer_t < t && fewer_v < v && more_e >= e && more_f >= f, "{pair:?}");
+    }
+    let [begin, end] = [0, 1].map(|end| number(&report["fade"][0][end]));
+    assert!(begin > 50.0 && begin < 300.0 && end > 2000.0, "{begin} to {end}");
     assert!((0.001..0.1).contains(&number(&report["stray_metres"][0])));
-    for row in rows {
+    for row in [&near, &far] {
         let worst = |way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
         // As far as places of the picture round.
         assert!(worst("animation") <= 0.501 && worst("skinning") <= 0.501 && worst("both") <= 1.002, "{row}");
-        assert!(worst("skinning") > 0.03 && worst("both") >= 0.03, "{row}");
+        assert!(worst("all") <= 1.503 && worst("skinning") > 0.03 && worst("both") >= 0.03, "{row}");
     }
+    assert!(number(&far["all"]["triangle_share"]) < 0.5 * number(&near["all"]["triangle_share"]));
 }
 
 /// A triangle that a morph target makes ten times as high in two seconds; the one bone that moves has no vertices.
@@ -193,12 +206,15 @@ fn morph_targets_move_in_crowds() {
 fn bad_input_is_refused_and_nothing_written() {
     for (arguments, words) in [
         (&["--image", "--frames", "4"][..], &["frames", "4", "5"][..]),
-        (&["--scene", "--frames", "8"], &["frames", "8", "9"]),
+        (&["--scene", "--frames", "10"], &["frames", "10", "11"]),
         (&["--image", "--backend", "cpu"], &["backend", "gpu"]),
         (&["--skinning", "fade"], &["skinning", "--image"]),
         (&["--image", "--skinning", "half"], &["skinning", "half", "truncate:K"]),
         (&["--image", "--skinning", "truncate:0"], &["skinning", "truncate:0"]),
         (&["--image", "--skinning", "bounded:-1"], &["skinning", "bounded:-1", "1e6"]),
+        (&["--mesh", "full"], &["mesh", "--image"]),
+        (&["--image", "--mesh", "half"], &["mesh", "half", "bounded:PIXELS"]),
+        (&["--scene", "--mesh", "bounded:-1"], &["mesh", "bounded:-1", "1e6"]),
         (&["--image", "--scene"], &["--image", "--scene"]),
         (&["--scene", "--pareto"], &["--pareto", "--scene"]),
     ] {

@@ -14,6 +14,7 @@ mod report;
 mod scene;
 mod skinning;
 mod stage;
+mod triangles;
 mod twin;
 mod verdict;
 #[cfg(feature = "gpu")]
@@ -85,16 +86,20 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///     submission; "compute_nanoseconds", "draw_nanoseconds": what precedes the drawing, and the drawing, each alone
 ///   "full_…" of each: the same crowd without a gate, fully skinned
 ///   "skinned_share": clusters that were skinned, of all, in the frames that were timed
+///   "triangle_share": triangles that were drawn, of all meshes in full
 ///   "drawn_timed_by": as "timed_by", of these; on a processor wall
-///   "vertex_error": as "error", of all skinned vertices from those of the full crowd, in the frames that were timed;
+///   "vertex_error": as "error", of all vertices of the full crowd to those drawn, or where a mesh lacks them, to its
+///     surface, in the frames that were timed;
 ///     "unseen" are those of instances out of view too, which are not skinned, nor among the "points"
 ///
-/// With --scene, instead: the whole frame at each distance in four ways, which differ in nothing else: "off" (all bones,
-/// all influences), "animation" (the gate), "skinning" (--skinning), "both". DIR/scene.json: what report.json says of
-/// the crowd, "vertices", for each mesh "fade" (units from which on it fades, and from which on it is rigid, or null) and
-/// "stray_metres" (how far the whole fade takes a vertex), and "distances": "distance", "tall_pixels" (size of the
+/// With --scene, instead: the whole frame at each distance in five ways, which differ in nothing else: "off" (all bones,
+/// influences and triangles), "animation" (the gate), "skinning" (--skinning), "both" of these, and "all" (both, and
+/// --mesh, where it is not full). DIR/scene.json: what report.json says of
+/// the crowd, "vertices", "skinning", "mesh", for each mesh "fade" (units from which on it fades, and from which on it is rigid, or null) and
+/// "stray_metres" (how far the whole fade takes a vertex), "levels" [{"triangles", "vertices", "error_metres", "from"
+/// (units)}], and "distances": "distance", "tall_pixels" (size of the
 /// nearest instance), "mean_omega", for each way the fields above, and "cheaper" {"frame", "compute"}, off divided by
-/// both. scene.png: "frame_nanoseconds" against distance; crowd_<distance>.png: both.
+/// both, and "all_cheaper", by all. scene.png: "frame_nanoseconds" against distance; crowd_<distance>.png: the last way.
 ///
 /// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
 /// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
@@ -167,7 +172,7 @@ pub struct Crowd {
     /// Draws the crowd, and times the whole frame.
     #[arg(long, conflicts_with = "pareto")]
     image: bool,
-    /// Draws the crowd with and without level of detail in animation and skinning.
+    /// Draws the crowd with and without level of detail in animation, skinning and meshes.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
     /// Which bones vertices follow: all of theirs; the K strongest; all, fading to one over --range; or all, fading as far
@@ -175,6 +180,10 @@ pub struct Crowd {
     /// bounded:0.5.
     #[arg(long, value_name = "full|truncate:K|fade|bounded:PIXELS")]
     skinning: Option<String>,
+    /// Which triangles meshes have: all; or as few as it takes for no surface to be more than PIXELS off, which add to
+    /// those of --skinning and the gate. Default: full, with --scene bounded:0.5.
+    #[arg(long, value_name = "full|bounded:PIXELS")]
+    mesh: Option<String>,
     /// The folder.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,

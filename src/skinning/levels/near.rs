@@ -61,14 +61,14 @@ impl Sides {
         let heirs = simplified.heirs(collapses);
         let point = |vertex: u32| simplified.point(vertex);
         let ring = Around::new(level.iter().map(|vertex| point(*vertex)), mesh.vertices());
-        let used: BTreeSet<u32> = level.iter().copied().collect();
+        let mut used = vec![false; mesh.vertices()];
+        level.iter().for_each(|vertex| used[*vertex as usize] = true);
         let before = |vertex: u32| {
-            let heir = heirs[vertex as usize];
-            // A vertex without triangles has no heir on the level either.
-            if used.contains(&vertex) || !used.contains(&heir) {
+            if used[vertex as usize] {
                 return Vec::new();
             }
-            let candidates = ring.two_rings(point(heir), level, &point);
+            // None for a vertex without triangles. The heir itself may be a wedge that the level has no triangle of.
+            let candidates = ring.two_rings(point(heirs[vertex as usize]), level, &point);
             let places = |key: &Vec<Vec3>| key[vertex as usize];
             nearest_in_each(keys, places, candidates)
         };

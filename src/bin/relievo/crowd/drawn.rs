@@ -10,7 +10,7 @@ use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, ColorTexture};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE};
+use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE, list_words};
 use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
 use relievo::skinning::{Blend, Extent, Reduction};
@@ -23,7 +23,8 @@ use super::plan::{FIELD_OF_VIEW, LINES};
 use super::play::middle;
 use super::skinning::Skinning;
 use super::stage::{Scene, Stage};
-use super::vertices::{Figures, Spread};
+use super::triangles::Triangles;
+use super::vertices::{Figures, Seen, Skinned, Spread};
 
 /// Frames of a run that are timed.
 const TIMED: u32 = 45;
@@ -49,6 +50,14 @@ pub enum By {
     All,
 }
 
+/// How a crowd is animated, skinned and drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Way {
+    pub by: By,
+    pub skinning: Skinning,
+    pub triangles: Triangles,
+}
+
 /// Looks at a crowd. The first is what the others are compared with.
 pub struct Drawing<'a> {
     gpu: &'a Gpu,
@@ -62,11 +71,14 @@ pub struct Drawing<'a> {
 
 /// A way to animate and skin, and its own vertices.
 struct Look {
-    by: By,
+    way: Way,
     meshes: Vec<Drawable>,
     times: Times,
     spread: Spread,
+    /// Those that were skinned, and all.
     clusters: [u64; 2],
+    /// Those that were drawn, and all.
+    triangles: [u64; 2],
 }
 
 /// Nanoseconds, frame by frame.
@@ -80,6 +92,8 @@ struct Times {
 
 struct Drawable {
     skin: SkinFrame,
+    /// Where each of the mesh's vertices lies among an instance's.
+    places: Vec<u32>,
     lod: LodJob,
     weights: MorphWeightsJob,
     scene: SkinnedScene,
@@ -92,13 +106,12 @@ impl<'a> Drawing<'a> {
         stage: &'a Stage<'a>,
         scene: &'a Scene,
         (table, choice, lods): (&GateTable, Choice, &[Lod]),
-        ways: &[(By, Skinning)],
+        ways: &[Way],
     ) -> Result<Self, Error> {
         let device = Device::new(gpu, stage, table, choice, lods)?;
         let world = World::new(gpu, stage, scene)?;
-        let look = |(by, skinning): &(By, Skinning)| world.look(&device, *by, *skinning);
         Ok(Self {
-            looks: ways.iter().map(look).collect::<Result<_, Error>>()?,
+            looks: ways.iter().map(|way| world.look(&device, *way)).collect::<Result<_, Error>>()?,
             target: Target::new(gpu, PICTURE)?,
             timer: Timer::for_drawing(gpu)?,
             gpu,
@@ -127,7 +140,7 @@ impl<'a> Drawing<'a> {
                     self.device.gated.frame.record(encoder);
                     self.looks
                         .iter()
-                        .filter(|look| look.by == By::Gate)
+                        .filter(|look| look.way.by == By::Gate)
                         .for_each(|look| look.compute(encoder));
                 })?;
             }
@@ -161,14 +174,14 @@ impl<'a> Drawing<'a> {
         };
         let chosen = (turn < 2 * looks.len()).then_some(turn / 2);
         for by in [By::Gate, By::All] {
-            if chosen.is_none_or(|chosen| looks[chosen].by != by) {
+            if chosen.is_none_or(|chosen| looks[chosen].way.by != by) {
                 gpu.run("animation", |encoder| animate(by, encoder))?;
             }
         }
         if let Some(chosen) = chosen {
             let look = &looks[chosen];
             let compute = |encoder: &mut wgpu::CommandEncoder| {
-                animate(look.by, encoder);
+                animate(look.way.by, encoder);
                 look.compute(encoder);
             };
             let draw = |encoder: &mut wgpu::CommandEncoder| look.draw(target, encoder);
@@ -200,22 +213,33 @@ impl<'a> Drawing<'a> {
     /// Reads all looks back, and compares them with the first.
     fn compare(&mut self) -> Result<(), Error> {
         for mesh in 0..self.stage.plan.model.meshes.len() {
-            let first = &self.looks[0].meshes[mesh].skin;
-            let fresh = first.skinned.read_blocking(self.gpu)?;
-            // The same in all looks.
-            let reductions = first.crowd.reductions.read_blocking(self.gpu)?;
-            let is_seen: Vec<bool> = reductions.iter().map(|reduction| reduction.most > 0).collect();
-            let seen = is_seen.iter().filter(|is_seen| **is_seen).count();
+            let first = &self.looks[0].meshes[mesh];
+            let fresh = first.skin.skinned.read_blocking(self.gpu)?;
+            let places = first.places.clone();
+            let fresh = Skinned { vertices: &fresh, places: &places };
             for look in &mut self.looks {
-                let skin = &look.meshes[mesh].skin;
+                let Drawable { skin, places, .. } = &look.meshes[mesh];
                 let own = skin.skinned.read_blocking(self.gpu)?;
-                look.spread.add(self.stage, self.scene, &is_seen, &own, &fresh);
-                let all = skin.crowd.instances * skin.clusters.len();
-                let some = match look.by {
-                    By::All => seen * skin.clusters.len(),
-                    By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3] as usize,
+                let reductions = skin.crowd.reductions.read_blocking(self.gpu)?;
+                let levelled = self.stage.levelled.as_ref().filter(|_| look.way.triangles != Triangles::All);
+                let seen =
+                    Seen { reductions: &reductions, levels: levelled.map(|levelled| &levelled.levels[mesh]) };
+                look.spread.add(self.stage, self.scene, seen, Skinned { vertices: &own, places }, fresh);
+                let levels = reductions.iter().filter(|reduction| reduction.most > 0);
+                let levels = levels.map(|reduction| skin.clusters.level(reduction.level));
+                let clusters = match look.way.by {
+                    By::All => levels.clone().map(|level| level.clusters).sum(),
+                    By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3],
                 };
-                look.clusters = [look.clusters[0] + some as u64, look.clusters[1] + all as u64];
+                let drawn: u64 = levels.map(|level| u64::from(level.indices)).sum();
+                let all = skin.crowd.instances as u64;
+                let full = skin.clusters.level(0);
+                for (sums, found) in [
+                    (&mut look.clusters, [clusters.into(), all * u64::from(full.clusters)]),
+                    (&mut look.triangles, [drawn, all * u64::from(full.indices)]),
+                ] {
+                    *sums = [sums[0] + found[0], sums[1] + found[1]];
+                }
             }
         }
         Ok(())
@@ -226,7 +250,7 @@ impl Look {
     /// Palettes, the choice of clusters, and vertices.
     fn skin(&self, encoder: &mut wgpu::CommandEncoder) {
         for mesh in &self.meshes {
-            match self.by {
+            match self.way.by {
                 By::Gate => mesh.skin.record_moved(encoder),
                 By::All => mesh.skin.record_all(encoder),
             }
@@ -261,10 +285,15 @@ impl Look {
             compute_nanoseconds: compute,
             draw_nanoseconds: draw,
             nanoseconds_per_vertex: skin / vertices as f64,
-            skinned_share: self.clusters[0] as f64 / self.clusters[1].max(1) as f64,
+            skinned_share: share(self.clusters),
+            triangle_share: share(self.triangles),
             vertex_error: self.spread.errors(),
         }
     }
+}
+
+fn share([some, all]: [u64; 2]) -> f64 {
+    some as f64 / all.max(1) as f64
 }
 
 /// What all looks share.
@@ -300,20 +329,23 @@ impl<'a> World<'a> {
         })
     }
 
-    fn look(&self, device: &Device, by: By, skinning: Skinning) -> Result<Look, Error> {
+    fn look(&self, device: &Device, way: Way) -> Result<Look, Error> {
         let meshes = 0..self.stage.plan.model.meshes.len();
         Ok(Look {
-            by,
-            meshes: meshes.map(|mesh| self.drawable(device, by, skinning, mesh)).collect::<Result<_, _>>()?,
+            way,
+            meshes: meshes.map(|mesh| self.drawable(device, way, mesh)).collect::<Result<_, _>>()?,
             times: Times::default(),
             spread: Spread::default(),
             clusters: [0; 2],
+            triangles: [0; 2],
         })
     }
 
-    fn drawable(&self, device: &Device, by: By, skinning: Skinning, index: usize) -> Result<Drawable, Error> {
+    fn drawable(&self, device: &Device, way: Way, index: usize) -> Result<Drawable, Error> {
         let Self { gpu, stage, placements, .. } = self;
-        let (model, count) = (&stage.plan.model, stage.instances.len());
+        let Way { by, skinning, triangles } = way;
+        let (model, count) = (stage.model(triangles), stage.instances.len());
+        let levels = LevelRanges::new(&level_begins(stage, triangles, index))?;
         let skin = match by {
             By::All => SkinFrame::new(gpu, model, index, &device.full.crowd.models, count, Blend::Linear)?,
             By::Gate => SkinFrame::new(gpu, model, index, &device.gated.crowd.models, count, Blend::Linear)?
@@ -326,7 +358,7 @@ impl<'a> World<'a> {
         };
         let keys = WeightSet::new(mesh, &stage.set, &[stage.plan.clip_index])?;
         let weights = MorphWeightsPass::new(gpu)?.prepare(gpu, &keys, playing, &skin.crowd)?;
-        let drawn = Buffer::new(gpu, "drawn", count)?;
+        let drawn = Buffer::new(gpu, "drawn", list_words(count, 1 + levels.distances().len()))?;
         let instances = SkinnedInstances {
             mesh: &skin.mesh,
             skinned: &skin.skinned,
@@ -348,7 +380,7 @@ impl<'a> World<'a> {
             most: if let Skinning::All(reduction) = skinning { reduction.most } else { Reduction::FULL.most },
             center,
             radius,
-            levels: LevelRanges::NONE,
+            levels,
         };
         let lod = LodPass::new(gpu)?.prepare(
             gpu,
@@ -358,7 +390,9 @@ impl<'a> World<'a> {
             &drawn,
             &scene.arguments,
         )?;
-        Ok(Drawable { skin, lod, weights, scene })
+        let mut places = vec![0; skin.clusters.order.len()];
+        (0..).zip(&skin.clusters.order).for_each(|(place, vertex)| places[*vertex as usize] = place);
+        Ok(Drawable { skin, places, lod, weights, scene })
     }
 }
 
@@ -368,6 +402,17 @@ pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 
         Skinning::All(_) => None,
         Skinning::Fade(range) => Some([range.min, range.max].map(|units| units * stage.metres_a_unit)),
         Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.lens, PICTURE, pixels)),
+    }
+}
+
+/// Metres from where on a mesh has each of its levels.
+pub fn level_begins(stage: &Stage<'_>, triangles: Triangles, mesh: usize) -> Vec<f32> {
+    match triangles {
+        Triangles::All => Vec::new(),
+        Triangles::Bounded(pixels) => {
+            let errors = stage.model(triangles).meshes[mesh].levels.iter().map(|level| level.error);
+            stage.extents[mesh].level_ranges(&stage.lens, PICTURE, pixels, errors)
+        }
     }
 }
 

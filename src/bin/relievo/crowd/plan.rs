@@ -7,6 +7,7 @@ use relievo::{Error, animation::lod::Lens};
 
 use super::gates::{Mode, TICKS};
 use super::skinning::{Drawn, Skinning};
+use super::triangles::Triangles;
 use super::{Crowd, Layout};
 use crate::pose::{find, open, open_bare};
 use crate::priorities;
@@ -53,6 +54,7 @@ pub struct Plan {
     pub tall: f32,
     pub drawn: Option<Drawn>,
     pub skinning: Skinning,
+    pub triangles: Triangles,
 }
 
 impl Plan {
@@ -87,11 +89,14 @@ impl Plan {
             return Err(InputError::new("backend", "cpu", "must be gpu, as the crowd is drawn").into());
         }
         drawn.map_or(Ok(()), |drawn| drawn.check(a.frames))?;
-        if drawn.is_none() && a.skinning.is_some() {
-            return Err(InputError::new("skinning", "given", "must come with --image or --scene").into());
+        for (field, given) in [("skinning", &a.skinning), ("mesh", &a.mesh)] {
+            if drawn.is_none() && given.is_some() {
+                return Err(InputError::new(field, "given", "must come with --image or --scene").into());
+            }
         }
         let faded = if a.scene { "bounded:0.5" } else { "full" };
         let skinning = a.skinning.as_deref().unwrap_or(faded);
+        let triangles = Triangles::new(a.mesh.as_deref().unwrap_or(faded))?;
         let model = if drawn.is_some() { open(&a.model)? } else { open_bare(&a.model)? };
         let clip = find(&model, &a.model, &a.clip)?;
         #[cfg(feature = "gpu")]
@@ -122,6 +127,7 @@ impl Plan {
             tall: a.tall,
             drawn,
             skinning: Skinning::new(skinning, range)?,
+            triangles,
         })
     }
 

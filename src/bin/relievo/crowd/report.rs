@@ -89,6 +89,8 @@ struct Report<'a> {
     focal_pixels: f32,
     #[serde(skip_serializing_if = "Option::is_none")]
     skinning: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mesh: Option<String>,
     distances: Vec<Row>,
     /// By the names of their files.
     #[cfg(feature = "gpu")]
@@ -245,6 +247,7 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
         rate: plan.rate,
         focal_pixels: stage.lens.focal_pixels,
         skinning: plan.drawn.map(|_| plan.skinning.to_string()),
+        mesh: plan.drawn.map(|_| plan.triangles.to_string()),
         distances: rows,
         #[cfg(feature = "gpu")]
         pictures,
@@ -280,9 +283,11 @@ fn draw(
     (table, choice): (&relievo::animation::GateTable, super::Choice),
     rows: &mut [Row],
 ) -> Result<Vec<(String, image::RgbaImage)>, Error> {
-    use super::drawn::{By, Drawing};
+    use super::drawn::{By, Drawing, Way};
+    use super::triangles::Triangles;
     let plan = stage.plan;
-    let ways = [(By::All, super::skinning::FULL), (By::Gate, plan.skinning)];
+    let full = Way { by: By::All, skinning: super::skinning::FULL, triangles: Triangles::All };
+    let ways = [full, Way { by: By::Gate, skinning: plan.skinning, triangles: plan.triangles }];
     let progress = bar(rows.len() as u64 * u64::from(plan.frames + 1), "drawing");
     let mut pictures = Vec::with_capacity(rows.len());
     for row in rows {

@@ -20,7 +20,7 @@ impl Drawn {
     fn least_frames(self) -> u32 {
         match self {
             Self::Image => 5,
-            Self::Scene => 9,
+            Self::Scene => 11,
         }
     }
 
@@ -54,6 +54,9 @@ impl Skinning {
     pub fn new(text: &str, range: Range) -> Result<Self, InputError> {
         let refused =
             || InputError::new("skinning", text, "must be full, truncate:K, fade or bounded:PIXELS");
+        if let Some(pixels) = bounded("skinning", text) {
+            return pixels.map(Self::Bounded);
+        }
         match text.split_once(':') {
             None if text == "full" => Ok(Self::All(Reduction::FULL)),
             None if text == "fade" => Ok(Self::Fade(range)),
@@ -62,14 +65,16 @@ impl Skinning {
                     InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
                 })
             }
-            Some(("bounded", pixels)) => match pixels.parse() {
-                Ok(pixels) if (0.0..=1e6).contains(&pixels) => Ok(Self::Bounded(pixels)),
-                Ok(_) => Err(InputError::new("skinning", text, "must be 0 to 1e6 pixels")),
-                Err(_) => Err(refused()),
-            },
             _ => Err(refused()),
         }
     }
+}
+
+/// The pixels of `bounded:PIXELS`, if that is what it is.
+pub fn bounded(field: &str, text: &str) -> Option<Result<f32, InputError>> {
+    let pixels = text.strip_prefix("bounded:")?;
+    let within = pixels.parse().ok().filter(|pixels| (0.0..=1e6).contains(pixels));
+    Some(within.ok_or_else(|| InputError::new(field, text, "must be bounded: and 0 to 1e6 pixels")))
 }
 
 impl fmt::Display for Skinning {

@@ -1,6 +1,8 @@
 //! Who plays, and where the camera stands.
 
 use relievo::InputError;
+#[cfg(feature = "gpu")]
+use relievo::animation::Model;
 use relievo::animation::{ClipSet, GateTable, Instance, Lens, Lod, Order, lod::OMEGA_ONE, sample::Wrap};
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::gate::scramble;
@@ -9,6 +11,8 @@ use relievo::skinning;
 use super::Layout;
 use super::gates::{Mode, Source};
 use super::plan::Plan;
+#[cfg(feature = "gpu")]
+use super::triangles::{Levelled, Triangles};
 
 /// A crowd, its clip, and what all gates need.
 pub struct Stage<'a> {
@@ -25,6 +29,9 @@ pub struct Stage<'a> {
     /// What each mesh does in the clip, where the crowd is drawn.
     #[cfg(feature = "gpu")]
     pub extents: Vec<skinning::Extent>,
+    /// The model with levels of detail, where the crowd is drawn with these.
+    #[cfg(feature = "gpu")]
+    pub levelled: Option<Levelled>,
     /// The middle of the model's height at rest, metres.
     middle: f32,
 }
@@ -63,9 +70,25 @@ impl<'a> Stage<'a> {
             lens: plan.lens(metres_a_unit),
             #[cfg(feature = "gpu")]
             extents: extents_of(plan, meshes.len())?,
+            #[cfg(feature = "gpu")]
+            levelled: match plan.triangles {
+                Triangles::Bounded(_) if plan.drawn.is_some() => {
+                    Some(Levelled::new(&plan.model, plan.clip_index, poses(plan))?)
+                }
+                _ => None,
+            },
             middle: ((low[1] + high[1]) / 2.0) as f32,
             plan,
         })
+    }
+
+    /// The model, with levels of detail or without.
+    #[cfg(feature = "gpu")]
+    pub fn model(&self, triangles: Triangles) -> &Model {
+        match (triangles, &self.levelled) {
+            (Triangles::Bounded(_), Some(levelled)) => &levelled.model,
+            _ => &self.plan.model,
+        }
     }
 
     pub fn table(&self, mode: Mode) -> Result<GateTable, InputError> {
@@ -154,10 +177,16 @@ pub fn moving_bones(table: &GateTable) -> usize {
 const POSES: [f32; 2] = [60.0, 1000.0];
 
 #[cfg(feature = "gpu")]
-fn extents_of(plan: &Plan, meshes: usize) -> Result<Vec<skinning::Extent>, InputError> {
+fn poses(plan: &Plan) -> usize {
     let [rate, most] = POSES;
-    let poses = (rate * plan.clip.duration()).clamp(1.0, most).ceil() as usize + 1;
-    (0..meshes).map(|mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses)).collect()
+    (rate * plan.clip.duration()).clamp(1.0, most).ceil() as usize + 1
+}
+
+#[cfg(feature = "gpu")]
+fn extents_of(plan: &Plan, meshes: usize) -> Result<Vec<skinning::Extent>, InputError> {
+    (0..meshes)
+        .map(|mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses(plan)))
+        .collect()
 }
 
 /// The corners of a box around bones and as far as they are long.

@@ -1,7 +1,8 @@
 //! How far skinned vertices lie from fresh ones, and what a look at a crowd takes.
 
+use glam::Vec3;
 use rayon::prelude::*;
-use relievo::skinning::Vertex;
+use relievo::skinning::{MeshLevels, Reduction, Vertex};
 use serde::Serialize;
 
 use super::errors::{Errors, Tally, View, length};
@@ -15,6 +16,7 @@ pub struct Figures {
     pub draw_nanoseconds: f64,
     pub nanoseconds_per_vertex: f64,
     pub skinned_share: f64,
+    pub triangle_share: f64,
     pub vertex_error: Errors,
 }
 
@@ -32,34 +34,67 @@ impl Default for Spread {
     }
 }
 
+/// The vertices of a mesh, instance by instance.
+#[derive(Clone, Copy)]
+pub struct Skinned<'a> {
+    pub vertices: &'a [Vertex],
+    /// Where each of the mesh's lies among an instance's.
+    pub places: &'a [u32],
+}
+
+/// What an instance has of a mesh.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// One an instance; those that are out of view are not skinned.
+    pub reductions: &'a [Reduction],
+    /// Of a mesh that has levels of detail.
+    pub levels: Option<&'a MeshLevels>,
+}
+
 impl Spread {
-    /// Adds a frame of a mesh; lists are instance by instance. Those that are out of view are not skinned.
+    /// Adds a frame of a mesh: how far what is drawn lies from each of the mesh's vertices.
     pub fn add(
         &mut self,
         stage: &Stage<'_>,
         scene: &Scene,
-        is_seen: &[bool],
-        stale: &[Vertex],
-        fresh: &[Vertex],
+        seen: Seen<'_>,
+        stale: Skinned<'_>,
+        fresh: Skinned<'_>,
     ) {
         let count = stage.instances.len();
-        let vertices = (fresh.len() / count).max(1);
+        let vertices = fresh.places.len().max(1);
         // As many instances as make a share of the work a processor.
         let each = count.div_ceil(rayon::current_num_threads());
-        let lists = stale.par_chunks(each * vertices).zip(fresh.par_chunks(each * vertices));
+        let lists =
+            stale.vertices.par_chunks(each * vertices).zip(fresh.vertices.par_chunks(each * vertices));
         let shares: Vec<Self> = lists
             .enumerate()
-            .map(|(share, (stale, fresh))| {
+            .map(|(share, (stales, freshes))| {
                 let mut found = Self::default();
-                let instances = stale.chunks(vertices).zip(fresh.chunks(vertices));
-                for (instance, (stale, fresh)) in (share * each..).zip(instances) {
-                    if !is_seen[instance] {
-                        found.unseen += fresh.len() as u64;
+                let instances = stales.chunks(vertices).zip(freshes.chunks(vertices));
+                for (instance, (stales, freshes)) in (share * each..).zip(instances) {
+                    let reduction = seen.reductions[instance];
+                    if reduction.most == 0 {
+                        found.unseen += vertices as u64;
                         continue;
                     }
                     let (origin, turn) = (scene.origins[instance], scene.turns[instance]);
                     let view = View { origin, turn, lens: stage.lens };
-                    stale.iter().zip(fresh).for_each(|(stale, fresh)| found.add_one(&view, stale, fresh));
+                    let level = seen.levels.filter(|_| reduction.level > 0);
+                    let own =
+                        |vertex: u32| Vec3::from(stales[stale.places[vertex as usize] as usize].position);
+                    for vertex in 0..vertices {
+                        let wanted = Vec3::from(freshes[fresh.places[vertex] as usize].position);
+                        let drawn = match level {
+                            None => own(vertex as u32),
+                            Some(levels) => {
+                                let last = levels.levels.len().saturating_sub(1);
+                                let level = (reduction.level as usize - 1).min(last);
+                                levels.nearest(level, vertex, wanted, own)
+                            }
+                        };
+                        found.add_one(&view, drawn, wanted);
+                    }
                 }
                 found
             })
@@ -71,9 +106,9 @@ impl Spread {
         }
     }
 
-    fn add_one(&mut self, view: &View, stale: &Vertex, fresh: &Vertex) {
-        let point = fresh.position.map(f64::from);
-        let way = std::array::from_fn(|axis| f64::from(stale.position[axis]) - point[axis]);
+    fn add_one(&mut self, view: &View, drawn: Vec3, wanted: Vec3) {
+        let point = wanted.to_array().map(f64::from);
+        let way = std::array::from_fn(|axis| f64::from(drawn[axis]) - point[axis]);
         self.metres.add(length(way));
         match view.pixels(point, way) {
             None => self.unseen += 1,

@@ -1,0 +1,108 @@
+//! `--mesh`: the levels of detail of a crowd's meshes.
+
+use std::fmt;
+
+use relievo::InputError;
+#[cfg(feature = "gpu")]
+use relievo::{
+    animation::Model,
+    skinning::{Mesh, MeshLevels},
+};
+
+use super::skinning::bounded;
+
+/// Which triangles of its meshes a crowd has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Triangles {
+    All,
+    /// As few as it takes for no surface to be more than so many pixels off.
+    Bounded(f32),
+}
+
+impl Triangles {
+    /// From the command line.
+    pub fn new(text: &str) -> Result<Self, InputError> {
+        match bounded("mesh", text) {
+            Some(pixels) => Ok(Self::Bounded(pixels?)),
+            None if text == "full" => Ok(Self::All),
+            None => Err(InputError::new("mesh", text, "must be full or bounded:PIXELS")),
+        }
+    }
+}
+
+impl fmt::Display for Triangles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("full"),
+            Self::Bounded(pixels) => write!(f, "bounded:{pixels}"),
+        }
+    }
+}
+
+/// A model whose meshes have levels.
+#[cfg(feature = "gpu")]
+pub struct Levelled {
+    pub model: Model,
+    /// One a mesh.
+    pub levels: Vec<MeshLevels>,
+}
+
+#[cfg(feature = "gpu")]
+impl Levelled {
+    /// For one of a model's clips, looked at in so many poses.
+    pub fn new(model: &Model, clip: usize, poses: usize) -> Result<Self, InputError> {
+        let meshes = 0..model.meshes.len();
+        let levels: Vec<_> =
+            meshes.map(|mesh| MeshLevels::new(model, mesh, &[clip], poses)).collect::<Result<_, _>>()?;
+        let mut model = model.clone();
+        for (mesh, found) in model.meshes.iter_mut().zip(&levels) {
+            mesh.levels.clone_from(&found.levels);
+        }
+        Ok(Self { model, levels })
+    }
+}
+
+/// What `scene.json` says of a level.
+#[cfg(feature = "gpu")]
+#[derive(serde::Serialize)]
+pub struct LevelReport {
+    triangles: usize,
+    vertices: usize,
+    error_metres: f32,
+    /// Units from which on it is used.
+    from: f32,
+}
+
+#[cfg(feature = "gpu")]
+impl LevelReport {
+    /// Of a mesh's levels, with the metres from which on each is used.
+    pub fn of_mesh(mesh: &Mesh, begins: &[f32], metres_a_unit: f32) -> Vec<Self> {
+        let report = |(level, begin): (&relievo::skinning::MeshLevel, &f32)| {
+            let mut vertices = level.indices.clone();
+            vertices.sort_unstable();
+            vertices.dedup();
+            Self {
+                triangles: level.indices.len() / 3,
+                vertices: vertices.len(),
+                error_metres: level.error,
+                from: begin / metres_a_unit,
+            }
+        };
+        mesh.levels.iter().zip(begins).map(report).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        for name in ["full", "bounded:0.25"] {
+            assert_eq!(Triangles::new(name).expect("valid").to_string(), name);
+        }
+        for name in ["", "bounded", "bounded:-1", "bounded:NaN", "half", "full:1"] {
+            assert_eq!(Triangles::new(name).expect_err("refused").field, "mesh", "{name}");
+        }
+    }
+}
