@@ -62,12 +62,38 @@ impl Reducer<'_> {
             collapses.push(Collapse { end: moved.len() as u32, error, triangles });
             queue.set(point, None);
             for &(other, is_changed) in &surroundings {
-                // The others' triangles are as they were, so are their costs; what was illegal may be legal now.
-                if is_changed || queue.best(other).is_none_or(|best| best.is_second) {
-                    queue.set(other, self.find(other));
+                let before = queue.best(other).copied();
+                let now = match before {
+                    // Its triangles are as they were, so are its costs; what was illegal may be legal now.
+                    Some(before) if !is_changed && !before.is_second => continue,
+                    Some(before) if other != best.neighbor && self.is_plain(other, point, &before) => {
+                        self.nearer(other, best.neighbor, before)
+                    }
+                    _ => self.find(other),
+                };
+                if now != before {
+                    queue.set(other, now);
                 }
             }
         }
+    }
+
+    /// Whether what a point had best become is still there, and its other costs are what they were but for that of
+    /// becoming what `gone` became.
+    fn is_plain(&self, point: u32, gone: u32, best: &Best) -> bool {
+        self.quadrics.as_ref().is_some_and(|quadrics| !quadrics.has_attributes())
+            && self.topology.kind(point) == Kind::Interior
+            && self.points.wedges(point).len() == 1
+            && !best.is_second
+            && best.neighbor != gone
+    }
+
+    /// The better of a neighbour and what was best.
+    fn nearer(&self, point: u32, neighbor: u32, best: Best) -> Option<Best> {
+        let is_lower = neighbor < best.neighbor;
+        let most = if is_lower { best.cost.next_up() } else { best.cost };
+        let cost = self.quadrics.as_ref()?.shape_cost(&self.points, [point, neighbor], most);
+        Some(cost.map_or(best, |cost| Best { neighbor, cost, is_second: false }))
     }
 
     /// Who neighbours a point that is about to become another, whether its triangles change, and that other.
@@ -125,7 +151,11 @@ impl Reducer<'_> {
     /// Of a collapse to one of the neighbours last looked at; none where it is not below `most`.
     fn cost(&self, point: u32, neighbor: &Neighbor, most: f64) -> Option<f64> {
         match &self.quadrics {
-            Some(quadrics) => quadrics.cost(&self.points, &self.neighbors, point, neighbor, most),
+            Some(quadrics) => {
+                let shape = quadrics.shape_cost(&self.points, [point, neighbor.point], most)?;
+                let all = shape + quadrics.attribute_cost(&self.points, &self.neighbors, point, neighbor);
+                (all < most).then_some(all)
+            }
             None => melax::cost(&self.topology, &self.points, [point, neighbor.point], most),
         }
     }
