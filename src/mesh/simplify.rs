@@ -163,6 +163,11 @@ impl Simplified {
         (above + 1).min(self.collapses.len())
     }
 
+    /// How many collapses cost at most so much.
+    pub fn collapses_within(&self, error: f32) -> usize {
+        self.collapses.partition_point(|collapse| collapse.error <= error)
+    }
+
     /// What each vertex is after so many collapses: itself, or what it became.
     ///
     /// # Panics
