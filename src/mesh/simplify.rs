@@ -167,8 +167,13 @@ impl Simplified {
         (above + 1).min(self.collapses.len())
     }
 
-    /// How many collapses leave no point further from the surface than this.
-    pub fn collapses_within(&self, distance: f32) -> usize {
+    /// How many collapses cost at most so much.
+    pub fn collapses_within(&self, error: f32) -> usize {
+        self.collapses.partition_point(|collapse| collapse.error <= error)
+    }
+
+    /// How many collapses leave no place further from what is left than this: see [`simplify_within`].
+    pub fn collapses_near(&self, distance: f32) -> usize {
         self.collapses.partition_point(|collapse| collapse.distance <= distance)
     }
 

@@ -145,7 +145,7 @@ fn level_triangles(mesh: &Mesh, simplified: &Simplified) -> Vec<(usize, Vec<u32>
     distances.dedup();
     let mut last = mesh.indices.len() / 3;
     let level = |distance: f32| {
-        let collapses = simplified.collapses_within(distance);
+        let collapses = simplified.collapses_near(distance);
         let indices = simplified.triangles(&mesh.indices, collapses);
         let left = indices.len() / 3;
         if left == 0 || left as f64 > WORTHWHILE * last as f64 {

@@ -3,7 +3,7 @@
 use relievo::mesh::{Cost, Options, Simplified, Stopped, simplify};
 
 use crate::measure::{Topology, area, topology};
-use crate::shapes::{Shape, bare, bumps, cube, ground, sphere, torus};
+use crate::shapes::{Shape, bare, bumps, cube, ground, shuffled, sphere, torus};
 
 const COSTS: [Cost; 3] =
     [Cost::Quadric, Cost::Melax { check_normals: false }, Cost::Melax { check_normals: true }];
@@ -33,7 +33,7 @@ fn keeps_topology(shape: &Shape, expected: Topology) {
 #[test]
 fn spheres_stay_closed() {
     let shape = sphere(16, 10);
-    keeps_topology(&shape, Topology { is_manifold: true, border: 0, euler: 2 });
+    keeps_topology(&shape, Topology { is_manifold: true, most_uses: 1, border: 0, euler: 2 });
     each_way(&shape, |simplified, cost| {
         let least = if cost == (Cost::Melax { check_normals: true }) { 40 } else { 12 };
         assert!(simplified.triangles_left() <= least, "{cost:?} {}", simplified.triangles_left());
@@ -43,13 +43,13 @@ fn spheres_stay_closed() {
 
 #[test]
 fn tori_keep_their_hole() {
-    keeps_topology(&torus(18, 12), Topology { is_manifold: true, border: 0, euler: 0 });
+    keeps_topology(&torus(18, 12), Topology { is_manifold: true, most_uses: 1, border: 0, euler: 0 });
 }
 
 #[test]
 fn charts_stay_together() {
     let shape = cube(6);
-    keeps_topology(&shape, Topology { is_manifold: true, border: 0, euler: 2 });
+    keeps_topology(&shape, Topology { is_manifold: true, most_uses: 1, border: 0, euler: 2 });
     let chart = |vertex: u32| vertex / 49;
     each_way(&shape, |simplified, _| {
         assert_eq!(simplified.triangles_left(), 12);
@@ -88,7 +88,7 @@ fn tetrahedra_have_no_legal_collapse() {
     let places =
         vec![[1.0, 0.0, 0.0], [-0.5, 0.0, 0.9], [-0.5, 0.0, -0.9], [0.0, 0.1, 0.0], [0.0, -2.0, 0.0]];
     let double = bare(places, vec![0, 3, 1, 1, 3, 2, 2, 3, 0, 1, 4, 0, 2, 4, 1, 0, 4, 2]);
-    keeps_topology(&double, Topology { is_manifold: true, border: 0, euler: 2 });
+    keeps_topology(&double, Topology { is_manifold: true, most_uses: 1, border: 0, euler: 2 });
     let simplified = double.simplified(&Options::default());
     assert_eq!(simplified.collapses().len(), 1);
     assert_eq!(simplified.moved(0)[0][0], 3);
@@ -130,4 +130,49 @@ fn points_that_are_not_manifold_stay() {
             assert!(!line(*from) && !point(*from), "{from} went");
         }
     });
+}
+
+/// Spheres and tori with triangles missing anywhere: holes, islands, strips, and fans that meet in a point.
+#[test]
+fn tattered_meshes_keep_their_topology() {
+    for seed in 0..60 {
+        let mut shape = if seed % 2 == 0 { sphere(10, 7) } else { torus(12, 8) };
+        let left = shape.triangles() * (3 + seed as usize % 7) / 10;
+        let kept = &shuffled(shape.triangles(), seed)[..left];
+        shape.indices = kept.iter().flat_map(|at| shape.indices[*at as usize * 3..][..3].to_vec()).collect();
+        let whole = topology(&shape, &shape.indices);
+        each_way(&shape, |simplified, cost| {
+            let mut border = whole.border;
+            for collapses in 0..=simplified.collapses().len() {
+                let level = topology(&shape, &simplified.triangles(&shape.indices, collapses));
+                assert_eq!(level.most_uses, 1, "{cost:?} {seed} after {collapses}");
+                assert_eq!(level.euler, whole.euler, "{cost:?} {seed} after {collapses}");
+                assert_eq!(level.is_manifold, whole.is_manifold, "{cost:?} {seed} after {collapses}");
+                assert!(level.border <= border);
+                border = level.border;
+            }
+        });
+    }
+}
+
+/// Triangles of any corners, most edges with three triangles and more.
+#[test]
+fn any_triangles_will_do() {
+    let mut collapses = 0;
+    for seed in 0..200 {
+        let points = 6 + seed as usize % 20;
+        let place = |at: u32| [(at * 7 % 5) as f32, (at * 3 % 7) as f32, (at * 5 % 11) as f32];
+        let places = (0..points as u32).map(place).collect();
+        let indices = (0..4 + seed % 9).flat_map(|at| shuffled(points, seed * 100 + at)[..3].to_vec());
+        let shape = bare(places, indices.collect());
+        let whole = topology(&shape, &shape.indices);
+        each_way(&shape, |simplified, _| {
+            collapses += simplified.collapses().len();
+            let level = simplified.triangles(&shape.indices, simplified.collapses().len());
+            assert_eq!(level.len() / 3, simplified.triangles_left());
+            let level = topology(&shape, &level);
+            assert!(level.most_uses <= whole.most_uses && level.border <= whole.border);
+        });
+    }
+    assert!(collapses > 100, "{collapses}");
 }

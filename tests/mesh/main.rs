@@ -1,6 +1,8 @@
 //! Simplified meshes.
 
+mod attributes;
 mod closed;
+mod creature;
 mod input;
 mod measure;
 mod quality;

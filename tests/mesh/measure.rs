@@ -10,6 +10,8 @@ use crate::shapes::Shape;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Topology {
     pub is_manifold: bool,
+    /// Triangles on one side of an edge.
+    pub most_uses: usize,
     /// Edges with one triangle.
     pub border: usize,
     pub euler: i64,
@@ -21,19 +23,19 @@ impl Topology {
     pub fn of(indices: &[u32]) -> Self {
         let mut edges = HashMap::new();
         let mut around: HashMap<u32, Vec<[u32; 2]>> = HashMap::new();
-        let mut is_manifold = true;
         for triangle in indices.chunks_exact(3) {
             for at in 0..3 {
                 let [a, b, c] = [0, 1, 2].map(|corner| triangle[(at + corner) % 3]);
-                is_manifold &= a != b && edges.insert([a, b], ()).is_none();
+                *edges.entry([a, b]).or_insert(0) += 1;
                 around.entry(a).or_default().push([b, c]);
             }
         }
-        is_manifold &= around.values().all(|fan| is_connected(fan));
+        let most_uses = edges.values().copied().max().unwrap_or(0);
+        let is_manifold = most_uses <= 1 && around.values().all(|fan| is_connected(fan));
         let border = edges.keys().filter(|[a, b]| !edges.contains_key(&[*b, *a])).count();
         let undirected = (edges.len() + border) / 2;
         let euler = around.len() as i64 - undirected as i64 + (indices.len() / 3) as i64;
-        Self { is_manifold, border, euler }
+        Self { is_manifold, most_uses, border, euler }
     }
 }
 

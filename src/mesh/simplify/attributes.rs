@@ -96,3 +96,47 @@ impl<'a> Attributes<'a> {
         self.quadrics[heir as usize].add(&moved);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::simplify::points::Points;
+
+    /// Against the sum written out, for a vertex that goes twice.
+    #[test]
+    fn it_sums_squared_differences_from_linear_functions() {
+        let places = [[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [0.0, 1.0, 1.0], [-1.0, 0.25, 0.5], [0.5, -2.0, 1.5]];
+        let values: [f32; 10] = [0.0, 1.0, 3.0, -1.0, 0.5, 0.25, -2.0, 1.5, 0.75, 2.0];
+        let indices = [0, 1, 2, 0, 2, 3, 0, 3, 4];
+        let points = Points::new(&[places.to_vec()]);
+        let topology = Topology::new(&points, &indices);
+        let place = |point| points.place(point, 0);
+        let mut attributes = Attributes::new(&topology, 3, place, &values, 2);
+        let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
+        // Each attribute's plane through a triangle's corners, at a place on it or beside it.
+        let off = |triangle: usize, to: u32| -> f64 {
+            let corners = [0, 1, 2].map(|at| indices[triangle * 3 + at]);
+            let [a, b, c] = corners.map(place);
+            let (first, second, d) = (b - a, c - a, place(to) - a);
+            let gram = first.length_squared() * second.length_squared() - first.dot(second).powi(2);
+            let u = (d.dot(first) * second.length_squared() - d.dot(second) * first.dot(second)) / gram;
+            let v = (d.dot(second) * first.length_squared() - d.dot(first) * first.dot(second)) / gram;
+            let square = |attribute| {
+                let [a, b, c] = corners.map(|vertex| value(vertex, attribute));
+                (a + u * (b - a) + v * (c - a) - value(to, attribute)).powi(2)
+            };
+            0.5 * first.cross(second).length() * (square(0) + square(1))
+        };
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-12 * (1.0 + b);
+        let direct = attributes.cost(0, 3, place(3) - place(0));
+        assert!(close(direct, off(0, 3)), "{direct}");
+        attributes.merge(0, 3, place(3) - place(0));
+        // Vertex 3 had the last two triangles of its own.
+        let cost = attributes.cost(3, 4, place(4) - place(3));
+        let expected = off(0, 4) + 2.0 * off(1, 4);
+        assert!(close(cost, expected), "{cost} {expected}");
+        attributes.merge(3, 1, place(1) - place(3));
+        let cost = attributes.cost(1, 2, place(2) - place(1));
+        assert!(close(cost, 2.0 * off(2, 2)), "{cost}");
+    }
+}

@@ -44,3 +44,48 @@ fn unit_normal(topology: &Topology, points: &Points, triangle: u32, pose: usize)
     let places = topology.corners(triangle).map(|corner| points.place(corner.point, pose));
     normal(places).map_or(DVec3::ZERO, |normal| normal / normal.length())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(places: &[[f32; 3]], indices: &[u32]) -> (Points, Topology) {
+        let points = Points::new(&[places.to_vec()]);
+        let topology = Topology::new(&points, indices);
+        (points, topology)
+    }
+
+    /// A floor of four squares and a wall of as many: along the edge between them a point costs nothing, away from it
+    /// half the way, as the other side's triangles are turned by 90°.
+    #[test]
+    fn edges_are_kept() {
+        let mut places = Vec::new();
+        for along in 0..3 {
+            let at = |row: i32| [along as f32, row.max(0) as f32 * 3.0, row.min(0) as f32 * -2.0];
+            places.extend((-2..=2).map(at));
+        }
+        let mut indices = Vec::new();
+        for along in 0..2 {
+            for row in 0..4 {
+                let at = along * 5 + row;
+                indices.extend([at, at + 6, at + 5, at, at + 1, at + 6]);
+            }
+        }
+        let (points, topology) = of(&places, &indices);
+        let cost = |from, to| cost(&topology, &points, [from, to], f64::INFINITY).map(f64::sqrt);
+        assert_eq!(cost(7, 2), Some(0.0));
+        assert_eq!(cost(7, 12), Some(0.0));
+        assert_eq!(cost(7, 6), Some(1.0));
+        assert_eq!(cost(7, 8), Some(1.5));
+        assert_eq!(cost(6, 7), Some(0.0));
+        assert_eq!(super::cost(&topology, &points, [7, 8], 2.25), None);
+        assert!(!differ(&topology, &points, [6, 8]));
+    }
+
+    #[test]
+    fn a_tetrahedrons_corners_face_away_from_each_other() {
+        let places = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+        let (points, topology) = of(&places, &[0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2]);
+        assert!(differ(&topology, &points, [0, 3]));
+    }
+}

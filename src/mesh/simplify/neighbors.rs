@@ -34,13 +34,26 @@ impl IntoIterator for Heirs {
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbor {
     pub point: u32,
-    /// How many triangles there are; of two at most, the point's vertex and the neighbour's.
+    /// How many triangles; of two at most, who meets there.
     triangles: u32,
-    meets: [[u32; 2]; 2],
+    meets: [Meet; 2],
+}
+
+impl Neighbor {
+    fn meets(&self) -> &[Meet] {
+        &self.meets[..self.triangles.min(2) as usize]
+    }
+}
+
+/// A point's vertex and its neighbour's in one triangle.
+#[derive(Debug, Clone, Copy, Default)]
+struct Meet {
+    own: Wedge,
+    other: u32,
 }
 
 /// One of a point's vertices that has triangles.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Wedge {
     pub vertex: u32,
     /// The same for wedges that lie beside each other, split here alone.
@@ -52,6 +65,7 @@ pub struct Wedge {
 pub struct Neighbors {
     all: Vec<Neighbor>,
     wedges: Vec<Wedge>,
+    sheets: usize,
 }
 
 impl Neighbors {
@@ -61,63 +75,73 @@ impl Neighbors {
         self.wedges.clear();
         let [points, vertices] = marks;
         points.clear();
+        let mut is_split = false;
         for spoke in topology.spokes(point) {
+            let own = Wedge { vertex: spoke.vertex, sheet: 0 };
+            is_split |= self.wedges.first().is_some_and(|first| first.vertex != own.vertex);
+            if self.wedges.is_empty() {
+                self.wedges.push(own);
+            }
             for other in [spoke.next, spoke.last] {
                 let at = points.get(other.point).unwrap_or_else(|| {
                     points.set(other.point, self.all.len() as u32);
-                    self.all.push(Neighbor { point: other.point, triangles: 0, meets: [[0; 2]; 2] });
+                    self.all.push(Neighbor { point: other.point, triangles: 0, meets: Default::default() });
                     self.all.len() as u32 - 1
                 });
                 let neighbor = &mut self.all[at as usize];
-                neighbor.meets[(neighbor.triangles as usize).min(1)] = [spoke.vertex, other.vertex];
+                neighbor.meets[(neighbor.triangles as usize).min(1)] = Meet { own, other: other.vertex };
                 neighbor.triangles += 1;
             }
-            if self.wedges.first().is_none_or(|first| first.vertex != spoke.vertex) {
-                self.wedges.push(Wedge { vertex: spoke.vertex, sheet: 0 });
-            }
         }
-        if self.wedges.len() > 1 {
+        self.sheets = 1;
+        if is_split {
             self.find_sheets(topology, point, vertices);
         }
         self.keep_allowed(topology, point);
     }
 
-    /// Each wedge once, and those in one sheet whose triangles meet in an edge with one vertex at its far end.
+    /// Lists each wedge once; those are in one sheet whose triangles meet in an edge with one vertex at its far end.
     fn find_sheets(&mut self, topology: &Topology, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();
         for spoke in topology.spokes(point) {
-            if vertices.get(spoke.vertex).is_none() {
-                let count = self.wedges.len() as u32;
-                vertices.set(spoke.vertex, count);
-                self.wedges.push(Wedge { vertex: spoke.vertex, sheet: count });
-            }
-            vertices.set(spoke.last.vertex, vertices.get(spoke.vertex).unwrap_or_default());
+            let own = vertices.get(spoke.vertex).unwrap_or_else(|| {
+                let sheet = self.wedges.len() as u32;
+                self.wedges.push(Wedge { vertex: spoke.vertex, sheet });
+                vertices.set(spoke.vertex, sheet);
+                sheet
+            });
+            vertices.set(spoke.last.vertex, own);
         }
+        self.sheets = self.wedges.len();
+        let wedge = |vertex| vertices.get(vertex).map(|at| at as usize);
         for spoke in topology.spokes(point) {
-            let (own, beside) = (vertices.get(spoke.vertex), vertices.get(spoke.next.vertex));
-            if let (Some(own), Some(beside)) = (own, beside) {
-                let [own, beside] = [own, beside].map(|wedge| self.wedges[wedge as usize].sheet);
-                if own != beside {
-                    (self.wedges.iter_mut().filter(|wedge| wedge.sheet == own))
-                        .for_each(|wedge| wedge.sheet = beside);
-                }
+            let (Some(own), Some(beside)) = (wedge(spoke.vertex), wedge(spoke.next.vertex)) else { continue };
+            let [own, beside] = [own, beside].map(|at| self.wedges[at].sheet);
+            if own != beside {
+                let joined = self.wedges.iter_mut().filter(|wedge| wedge.sheet == own);
+                joined.for_each(|wedge| wedge.sheet = beside);
+                self.sheets -= 1;
             }
+        }
+        for meet in self.all.iter_mut().flat_map(|neighbor| &mut neighbor.meets) {
+            meet.own.sheet = wedge(meet.own.vertex).map_or(0, |at| self.wedges[at].sheet);
         }
     }
 
-    /// Of a border, along it alone; and all wedges need heirs.
+    /// Of a border, along it alone; and every sheet meets the neighbour.
     fn keep_allowed(&mut self, topology: &Topology, point: u32) {
-        let mut all = std::mem::take(&mut self.all);
-        all.retain(|neighbor| {
+        let sheets = self.sheets;
+        self.all.retain(|neighbor| {
             let is_along = match topology.kind(point) {
                 Kind::Interior => neighbor.triangles == 2,
                 Kind::Border => neighbor.triangles == 1 && topology.kind(neighbor.point) == Kind::Border,
                 Kind::Locked => false,
             };
-            is_along && self.wedges.iter().all(|wedge| self.heirs(neighbor, wedge).count > 0)
+            let first = neighbor.meets[0].own.sheet;
+            let are_two = neighbor.meets().iter().any(|meet| meet.own.sheet != first);
+            is_along && sheets == if are_two { 2 } else { 1 }
         });
-        self.all = all;
     }
 
     pub fn all(&self) -> &[Neighbor] {
@@ -130,20 +154,12 @@ impl Neighbors {
 
     /// What a wedge may become: what it shares an edge with, or else what others of its sheet do.
     pub fn heirs(&self, neighbor: &Neighbor, wedge: &Wedge) -> Heirs {
-        let meets = &neighbor.meets[..neighbor.triangles.min(2) as usize];
         let mut heirs = Heirs::default();
-        for [own, other] in meets {
-            if *own == wedge.vertex {
-                heirs.add(*other);
-            }
-        }
+        let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);
+        own.for_each(|meet| heirs.add(meet.other));
         if heirs.count == 0 {
-            for [own, other] in meets {
-                let beside = self.wedges.iter().find(|wedge| wedge.vertex == *own);
-                if beside.is_some_and(|beside| beside.sheet == wedge.sheet) {
-                    heirs.add(*other);
-                }
-            }
+            let beside = neighbor.meets().iter().filter(|meet| meet.own.sheet == wedge.sheet);
+            beside.for_each(|meet| heirs.add(meet.other));
         }
         heirs
     }

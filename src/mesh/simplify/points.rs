@@ -94,3 +94,22 @@ fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     }
     of
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wedges_are_at_one_place_in_every_pose() {
+        let rest = vec![[0.0; 3], [1.0; 3], [-0.0; 3], [0.0; 3], [1.0; 3], [0.0; 3], [0.0; 3]];
+        let mut posed = rest.clone();
+        posed[3] = [2.0; 3];
+        posed[5] = [2.0; 3];
+        posed[6] = [3.0; 3];
+        let points = Points::new(&[rest, posed]);
+        assert_eq!(points.len(), 4);
+        assert_eq!([0, 1, 2, 3].map(|point| points.wedges(point)), [&[0, 2][..], &[1, 4], &[3, 5], &[6]]);
+        assert_eq!([0, 1].map(|pose| points.place(2, pose)), [DVec3::ZERO, DVec3::splat(2.0)]);
+        assert_eq!(points.into_of(), [0, 1, 0, 2, 1, 2, 3]);
+    }
+}

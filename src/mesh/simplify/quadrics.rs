@@ -8,11 +8,6 @@ use super::quadric::Quadric;
 use super::topology::{Corner, Topology};
 use super::turned::normal;
 
-/// How much a square on a border's edge counts against as much area of a triangle.
-const BORDER: f64 = 10.0;
-/// The same of a seam's edge.
-const SEAM: f64 = 1.0;
-
 /// Quadrics of everything.
 pub struct Quadrics<'a> {
     /// Point by point, each in all poses.
@@ -34,20 +29,17 @@ impl<'a> Quadrics<'a> {
         Self { shape, attributes }
     }
 
-    /// The mean square distance where a point becomes its neighbour, in the worst pose, and that of its attributes;
-    /// none where it is not below `most`.
-    pub fn cost(
-        &self,
-        points: &Points,
-        neighbors: &Neighbors,
-        point: u32,
-        neighbor: &Neighbor,
-        most: f64,
-    ) -> Option<f64> {
+    pub fn has_attributes(&self) -> bool {
+        self.attributes.is_some()
+    }
+
+    /// The mean square distance of a point's planes from its neighbour, in the worst pose; none where it is not below
+    /// `most`.
+    pub fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
             let quadric = &self.shape[point as usize * points.poses() + pose];
-            let d = points.place(neighbor.point, pose) - points.place(point, pose);
+            let d = points.place(neighbor, pose) - points.place(point, pose);
             if quadric.weight > 0.0 {
                 worst = worst.max(quadric.at(d) / quadric.weight);
             }
@@ -55,15 +47,25 @@ impl<'a> Quadrics<'a> {
                 return None;
             }
         }
-        let Some(attributes) = &self.attributes else { return Some(worst) };
+        Some(worst)
+    }
+
+    /// The mean square difference of attributes, where a point and all its wedges become what they had best become.
+    pub fn attribute_cost(
+        &self,
+        points: &Points,
+        neighbors: &Neighbors,
+        point: u32,
+        neighbor: &Neighbor,
+    ) -> f64 {
+        let Some(attributes) = &self.attributes else { return 0.0 };
         let (mut sum, mut weight) = (0.0, 0.0);
         for wedge in neighbors.wedges() {
             let (_, cost) = self.heir(points, neighbors, point, neighbor, wedge);
             sum += cost;
             weight += attributes.weight(wedge.vertex);
         }
-        let cost = if weight > 0.0 { worst + sum / weight } else { worst };
-        (cost < most).then_some(cost)
+        if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
     /// What a wedge becomes, at the least cost to its attributes, and that cost.
@@ -96,7 +98,9 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Its plane for each corner, and planes across those of its edges that are of a border or a seam for their ends.
+/// Its plane for each corner, weighted by its area, and for both ends of an edge that is held the plane across it,
+/// weighted by the square of its length: a border that is off by a distance costs about that distance. These are not part
+/// of the weight by which sums are divided, or ends of borders would seem nearer to their triangles than they are.
 fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, triangle: u32) {
     let corners = topology.corners(triangle);
     let of = corners.map(|corner| corner.point);
@@ -104,42 +108,33 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, tri
     if of[0] == of[1] || of[1] == of[2] || of[2] == of[0] {
         return;
     }
-    let holds = [0, 1, 2].map(|at| hold(topology, triangle, corners[at], corners[(at + 1) % 3]));
+    let held = [0, 1, 2].map(|at| is_held(topology, triangle, corners[at], corners[(at + 1) % 3]));
     for pose in 0..points.poses() {
         let places = of.map(|point| points.place(point, pose));
         let Ok(normal) = normal(places) else { continue };
         let length = normal.length();
-        let mut add = |point: u32, quadric: &Quadric| {
-            shape[point as usize * points.poses() + pose].add(quadric);
-        };
+        let at = of.map(|point| point as usize * points.poses() + pose);
         let plane = Quadric::linear(normal / length, length * 0.5);
-        of.iter().for_each(|point| add(*point, &plane));
-        for at in 0..3 {
-            if let Some(weight) = holds[at] {
-                let edge = places[(at + 1) % 3] - places[at];
-                let across = edge.cross(normal).normalize();
-                let plane = Quadric::linear(across, edge.length_squared() * weight);
-                add(of[at], &plane);
-                add(of[(at + 1) % 3], &plane);
+        at.iter().for_each(|at| shape[*at].add(&plane));
+        for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+            if held[from] {
+                let edge = places[to] - places[from];
+                let across = Quadric::linear(edge.cross(normal).normalize(), edge.length_squared());
+                shape[at[from]].add_unweighted(&across);
+                shape[at[to]].add_unweighted(&across);
             }
         }
     }
 }
 
-/// How strongly an edge of a triangle is held in place: on a border, or where both its ends differ from those of the
-/// triangle on the other side.
-fn hold(topology: &Topology, triangle: u32, from: Corner, to: Corner) -> Option<f64> {
-    let [fewer, other] = if topology.around(from.point).len() < topology.around(to.point).len() {
-        [from, to]
-    } else {
-        [to, from]
-    };
-    let beside = topology.spokes(fewer.point).filter(|spoke| spoke.triangle != triangle).find_map(|spoke| {
-        let far = [spoke.next, spoke.last].into_iter().find(|far| far.point == other.point)?;
-        Some([spoke.vertex, far.vertex])
+/// Whether an edge of a triangle is of a border, or differs at both ends from that of the triangle on the other side.
+fn is_held(topology: &Topology, triangle: u32, from: Corner, to: Corner) -> bool {
+    let is_shorter = topology.around(from.point).len() < topology.around(to.point).len();
+    let [near, far] = if is_shorter { [from, to] } else { [to, from] };
+    let mut others = topology.spokes(near.point).filter(|spoke| spoke.triangle != triangle);
+    let beside = others.find_map(|spoke| {
+        let end = [spoke.next, spoke.last].into_iter().find(|end| end.point == far.point)?;
+        Some([spoke.vertex, end.vertex])
     });
-    match beside {
-        None => Some(BORDER),
-        Some([near, far]) => (near != fewer.vertex && far != other.vertex).then_some(SEAM),
-    }
+    beside.is_none_or(|[vertex, end]| vertex != near.vertex && end != far.vertex)
 }

@@ -22,9 +22,11 @@ struct Reducer<'a> {
     neighbors: Neighbors,
     /// Of points, and of vertices.
     marks: [Marks; 2],
+    /// Those of the last collapse, and whether their triangles changed.
+    surroundings: Vec<(u32, bool)>,
 }
 
-/// Collapses as the options say.
+/// Collapses as the options say, within one distance after the other.
 pub fn reduce(
     surface: &Surface<'_>,
     points: Points,
@@ -33,15 +35,8 @@ pub fn reduce(
     distances: &[f32],
 ) -> Simplified {
     let triangles = topology.triangles();
-    let quadrics = match options.cost {
-        Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
-        Cost::Melax { .. } => None,
-    };
-    let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
-    let attached = is_limited.then(|| Attached::new(&topology, &points, surface.indices.len() / 3));
-    let neighbors = Neighbors::default();
-    let mut reducer = Reducer { points, topology, cost: options.cost, quadrics, attached, neighbors, marks };
+    let mut reducer = Reducer::new(surface, points, topology, options.cost, is_limited);
     let mut done = Done::default();
     let mut stopped = Stopped::Exhausted;
     for distance in distances {
@@ -62,42 +57,95 @@ struct Done {
     error: f32,
 }
 
-impl Reducer<'_> {
-    /// Goes on until nothing is left that is legal, with no point further off than a distance.
+impl<'a> Reducer<'a> {
+    fn new(surface: &Surface<'a>, points: Points, topology: Topology, cost: Cost, is_limited: bool) -> Self {
+        let quadrics = match cost {
+            Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
+            Cost::Melax { .. } => None,
+        };
+        let attached = is_limited.then(|| Attached::new(&topology, &points, surface.indices.len() / 3));
+        let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
+        let (neighbors, surroundings) = (Neighbors::default(), Vec::new());
+        Self { points, topology, cost, quadrics, attached, neighbors, marks, surroundings }
+    }
+
+    /// Goes on until nothing is left that is legal, with no place further off than a distance.
     fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
         if let Some(attached) = &mut self.attached {
             attached.set_most(distance);
         }
-        let first = (0..self.points.len() as u32).map(|point| self.find(point)).collect();
-        let mut queue = Queue::new(first);
-        let mut surroundings = Vec::new();
+        let mut queue = self.queue();
         loop {
             if self.topology.triangles() <= options.triangles {
                 return Stopped::Triangles;
             }
-            let Some((point, best)) = queue.pop() else { return Stopped::Exhausted };
-            if !self.is_legal(point, best.neighbor) {
-                queue.set(point, self.find_legal(point));
-                continue;
-            }
+            let Some((point, best)) = self.next(&mut queue) else { return Stopped::Exhausted };
             let cost = best.cost.sqrt() as f32;
             if cost > options.error {
                 return Stopped::Error;
             }
             done.error = done.error.max(cost);
-            self.look_around([point, best.neighbor], &mut surroundings);
-            self.collapse(point, best.neighbor, &mut done.moved);
+            self.step(&mut queue, point, best.neighbor, &mut done.moved);
             let (error, end) = (done.error, done.moved.len() as u32);
             let triangles = self.topology.triangles() as u32;
             done.collapses.push(Collapse { end, error, distance, triangles });
-            queue.set(point, None);
-            for &(other, is_changed) in &surroundings {
-                // The others' triangles are as they were, so are their costs; what was illegal may be legal now.
-                if is_changed || queue.best(other).is_none_or(|best| best.is_second) {
-                    queue.set(other, self.find(other));
+        }
+    }
+
+    fn queue(&mut self) -> Queue {
+        Queue::new((0..self.points.len() as u32).map(|point| self.find(point)).collect())
+    }
+
+    /// The cheapest legal collapse.
+    fn next(&mut self, queue: &mut Queue) -> Option<(u32, Best)> {
+        loop {
+            let (point, best) = queue.pop()?;
+            if self.is_legal(point, best.neighbor) {
+                return Some((point, best));
+            }
+            queue.set(point, self.find_legal(point));
+        }
+    }
+
+    /// Collapses, and finds out what those around had best become now.
+    fn step(&mut self, queue: &mut Queue, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
+        let mut surroundings = std::mem::take(&mut self.surroundings);
+        self.look_around([point, neighbor], &mut surroundings);
+        self.collapse(point, neighbor, moved);
+        queue.set(point, None);
+        for &(other, is_changed) in &surroundings {
+            let before = queue.best(other).copied();
+            let now = match before {
+                // Its triangles are as they were, so are its costs; what was illegal may be legal now.
+                Some(before) if !is_changed && !before.is_second => continue,
+                Some(before) if other != neighbor && self.is_plain(other, point, &before) => {
+                    self.nearer(other, neighbor, before)
                 }
+                _ => self.find(other),
+            };
+            if now != before {
+                queue.set(other, now);
             }
         }
+        self.surroundings = surroundings;
+    }
+
+    /// Whether what a point had best become is still there, and its other costs are what they were but for that of
+    /// becoming what `gone` became.
+    fn is_plain(&self, point: u32, gone: u32, best: &Best) -> bool {
+        self.quadrics.as_ref().is_some_and(|quadrics| !quadrics.has_attributes())
+            && self.topology.kind(point) == Kind::Interior
+            && self.points.wedges(point).len() == 1
+            && !best.is_second
+            && best.neighbor != gone
+    }
+
+    /// The better of a neighbour and what was best.
+    fn nearer(&self, point: u32, neighbor: u32, best: Best) -> Option<Best> {
+        let is_lower = neighbor < best.neighbor;
+        let most = if is_lower { best.cost.next_up() } else { best.cost };
+        let cost = self.quadrics.as_ref()?.shape_cost(&self.points, [point, neighbor], most);
+        Some(cost.map_or(best, |cost| Best { neighbor, cost, is_second: false }))
     }
 
     /// Who neighbours a point that is about to become another, whether its triangles change, and that other.
@@ -155,7 +203,11 @@ impl Reducer<'_> {
     /// Of a collapse to one of the neighbours last looked at; none where it is not below `most`.
     fn cost(&self, point: u32, neighbor: &Neighbor, most: f64) -> Option<f64> {
         match &self.quadrics {
-            Some(quadrics) => quadrics.cost(&self.points, &self.neighbors, point, neighbor, most),
+            Some(quadrics) => {
+                let shape = quadrics.shape_cost(&self.points, [point, neighbor.point], most)?;
+                let all = shape + quadrics.attribute_cost(&self.points, &self.neighbors, point, neighbor);
+                (all < most).then_some(all)
+            }
             None => melax::cost(&self.topology, &self.points, [point, neighbor.point], most),
         }
     }
@@ -203,5 +255,70 @@ impl Reducer<'_> {
                 moved.push([wedge, heir]);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bumpy cylinder with a seam, and the same bent.
+    fn pipe() -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
+        let (sides, rings) = (9, 8);
+        let (mut places, mut uv, mut indices) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
+        for ring in 0..=rings {
+            for side in 0..=sides {
+                let turn = std::f32::consts::TAU * (side % sides) as f32 / sides as f32;
+                let along = ring as f32 * 0.5;
+                let radius = 1.0 + 0.03 * ((side % sides) * (ring + 2) * 5 % 7) as f32;
+                let [x, z] = [radius * turn.cos(), -radius * turn.sin()];
+                places[0].push([x, along, z]);
+                places[1].push([x + 0.2 * along * along, along, z]);
+                uv.extend([side as f32 / sides as f32, along]);
+            }
+        }
+        for ring in 0..rings {
+            for side in 0..sides {
+                let [a, b] = [0, 1].map(|up| ((ring + up) * (sides + 1) + side) as u32);
+                indices.extend([a, a + 1, b + 1, a, b + 1, b]);
+            }
+        }
+        (places, uv, indices)
+    }
+
+    /// What the queue gives is the cheapest of all legal collapses, as everybody finds them anew.
+    #[test]
+    fn the_cheapest_legal_collapse_is_always_next() {
+        let (places, uv, indices) = pipe();
+        let seconds =
+            [Cost::Quadric, Cost::Melax { check_normals: false }, Cost::Melax { check_normals: true }]
+                .into_iter()
+                .flat_map(|cost| [(cost, 0), (cost, 2)])
+                .map(|(cost, stride)| {
+                    let attributes = if stride == 0 { &[][..] } else { &uv };
+                    let surface = Surface { poses: &places, indices: &indices, attributes, stride };
+                    let points = Points::new(&places);
+                    let topology = Topology::new(&points, &indices);
+                    let mut reducer = Reducer::new(&surface, points, topology, cost, false);
+                    let mut queue = reducer.queue();
+                    let (mut moved, mut seconds, mut steps) = (Vec::new(), 0, 0);
+                    while let Some((point, best)) = reducer.next(&mut queue) {
+                        let all = 0..reducer.points.len() as u32;
+                        let all = all.filter_map(|point| Some((reducer.find_legal(point)?, point)));
+                        let cheapest = all.min_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.1.cmp(&b.1)));
+                        let cheapest = cheapest.map(|(best, point)| (point, best.neighbor, best.cost));
+                        assert_eq!(
+                            cheapest,
+                            Some((point, best.neighbor, best.cost)),
+                            "{cost:?} {stride} {steps}"
+                        );
+                        seconds += usize::from(best.is_second);
+                        steps += 1;
+                        reducer.step(&mut queue, point, best.neighbor, &mut moved);
+                    }
+                    assert!(steps > 40, "{cost:?} {steps}");
+                    seconds
+                });
+        assert!(seconds.sum::<usize>() > 0, "something was illegal at some time");
     }
 }

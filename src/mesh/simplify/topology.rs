@@ -207,7 +207,10 @@ impl Topology {
             let corners = &mut self.corners[triangle as usize];
             if corners.iter().any(|corner| corner.point == neighbor) {
                 for other in corners.map(|corner| corner.point) {
-                    self.around[other as usize].retain(|of| *of != triangle);
+                    let around = &mut self.around[other as usize];
+                    if let Some(at) = around.iter().position(|of| *of == triangle) {
+                        around.swap_remove(at);
+                    }
                 }
                 self.triangles -= 1;
                 continue;
