@@ -10,6 +10,7 @@
 //! - [`animation`]: skeletons and clips, import of glTF, sampling and concatenation, layers, bounds, root motion,
 //!   priorities of bones and keys.
 //! - [`skinning`]: meshes that follow skeletons.
+//! - [`mesh`]: meshes in fewer triangles.
 //! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
 //!   a GPU.
 //! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
@@ -58,6 +59,7 @@ pub mod bench;
 pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod mesh;
 pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;

@@ -5,17 +5,11 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::lod::{MARGIN, middle_of};
+use super::pose::{Pose, mean, moments};
 use super::weights::Influence;
 use crate::InputError;
-use crate::animation::sample::RotationPath;
-use crate::animation::transform::Affine;
 use crate::animation::{Lens, Model};
-use crate::reference::animation::concat::concat;
-use crate::reference::animation::sample::sample;
-use crate::reference::skinning::morph::morph;
-use crate::reference::skinning::palette::palette;
-use crate::reference::skinning::skin::transformed;
-use crate::skinning::{Mesh, Vertex};
+use crate::skinning::Mesh;
 
 /// By how much [`Extent::stray`] is larger than what was found. A vertex whose way from one pose to the next were
 /// straight would be off most at one of the two: the margin is for what bends in between.
@@ -41,30 +35,14 @@ impl Extent {
     /// [`InputError`] for a mesh or clips that the model lacks, none of these, no poses, and a mesh that does not fit
     /// its skin.
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
-        let Some(mesh) = model.meshes.get(mesh) else {
-            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())));
-        };
-        for (field, len) in [("clips.len", clips.len()), ("poses", poses)] {
-            if len == 0 {
-                return Err(InputError::new(field, 0, "must be at least 1, to see what vertices do"));
-            }
-        }
-        if let Some(at) = clips.iter().position(|clip| *clip >= model.clips.len()) {
-            let bound = format!("must be below {}", model.clips.len());
-            return Err(InputError::new(format!("clips[{at}]"), clips[at], bound));
-        }
-        mesh.validate(&model.skins)?;
-        model.skins[mesh.skin].validate(&model.skeleton)?;
-        let moments: Vec<(usize, f32)> = clips
-            .iter()
-            .flat_map(|clip| (0..poses).map(move |at| (*clip, at as f32 / (poses - 1).max(1) as f32)))
-            .collect();
-        let pose = |(clip, share): &(usize, f32)| Pose::new(model, mesh, *clip, *share);
-        let looks = moments.par_iter().map(|moment| pose(moment).look(mesh));
+        let moments = moments(model, mesh, clips, poses)?;
+        let mesh = &model.meshes[mesh];
+        let pose = |moment: &(usize, f32)| Pose::new(model, mesh, *moment);
+        let looks = moments.par_iter().map(|moment| look(&pose(moment), mesh));
         let none = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
         let all = looks.reduce(|| none, Look::with);
         let center = middle_of(all.low, all.high);
-        let distances = moments.par_iter().map(|moment| pose(moment).farthest(mesh, center));
+        let distances = moments.par_iter().map(|moment| farthest(&pose(moment), mesh, center));
         let radius = MARGIN * distances.reduce(|| 0.0, f32::max);
         Ok(Self { center, radius, stray: STRAY_MARGIN * all.stray })
     }
@@ -117,12 +95,6 @@ impl Extent {
     }
 }
 
-/// A mesh at a moment.
-struct Pose {
-    palette: Vec<Affine>,
-    vertices: Vec<Vertex>,
-}
-
 /// What is seen there.
 #[derive(Clone, Copy)]
 struct Look {
@@ -141,47 +113,19 @@ impl Look {
     }
 }
 
-impl Pose {
-    /// `share` of the clip's duration after its start.
-    fn new(model: &Model, mesh: &Mesh, clip: usize, share: f32) -> Self {
-        let time = share * model.clips[clip].duration();
-        let models = concat(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp));
-        Self {
-            palette: palette(&model.skins[mesh.skin], &models),
-            vertices: morph(mesh, &mesh.weights_at(clip, time)),
-        }
+fn look(pose: &Pose, mesh: &Mesh) -> Look {
+    let mut all = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
+    for vertex in 0..mesh.vertices() {
+        let influences = mesh.influences.of(vertex);
+        let places = pose.places(vertex, influences);
+        let place = mean(influences, &places);
+        all = all.with(Look { low: place, high: place, stray: stray(influences, &places) });
     }
-
-    /// Where each of a vertex's bones alone would have it.
-    fn places(&self, vertex: &Vertex, influences: &[Influence]) -> Vec<Vec3> {
-        let place = |influence: &Influence| {
-            Vec3::from(transformed(vertex, &self.palette[influence.bone as usize]).position)
-        };
-        influences.iter().map(place).collect()
-    }
-
-    fn look(&self, mesh: &Mesh) -> Look {
-        let mut all = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
-        for (at, vertex) in self.vertices.iter().enumerate() {
-            let influences = mesh.influences.of(at);
-            let places = self.places(vertex, influences);
-            let place = mean(influences, &places);
-            all = all.with(Look { low: place, high: place, stray: stray(influences, &places) });
-        }
-        all
-    }
-
-    fn farthest(&self, mesh: &Mesh, center: Vec3) -> f32 {
-        let distance = |(at, vertex): (usize, &Vertex)| {
-            let influences = mesh.influences.of(at);
-            mean(influences, &self.places(vertex, influences)).distance(center)
-        };
-        self.vertices.iter().enumerate().map(distance).fold(0.0, f32::max)
-    }
+    all
 }
 
-fn mean(influences: &[Influence], places: &[Vec3]) -> Vec3 {
-    influences.iter().zip(places).map(|(influence, place)| influence.weight * *place).sum()
+fn farthest(pose: &Pose, mesh: &Mesh, center: Vec3) -> f32 {
+    pose.positions(mesh).into_iter().map(|place| place.distance(center)).fold(0.0, f32::max)
 }
 
 /// The largest of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, over i > 1 and all λ. In 1/λ the sum is straight between the values at

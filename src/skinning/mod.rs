@@ -9,6 +9,7 @@ pub mod export;
 pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
+pub mod levels;
 pub mod lod;
 pub mod material;
 pub mod mesh;
@@ -16,11 +17,13 @@ pub mod morph;
 pub mod morph_weights;
 pub mod palette;
 pub mod picture;
+mod pose;
 pub mod select;
 pub mod skin;
 pub mod weights;
 
 pub use extent::Extent;
+pub use levels::MeshLevels;
 pub use material::Material;
 pub use mesh::{Mesh, MeshLevel, reaches};
 pub use morph::{MorphTarget, WeightKeys};

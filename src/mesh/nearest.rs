@@ -1,0 +1,92 @@
+//! Places on triangles.
+
+use glam::Vec3;
+
+/// The place on a triangle that is nearest to a point (Ericson, "Real-Time Collision Detection", section 5.1.5: by the
+/// part of the plane, around corners, edges and the inside, that the point lies over). A triangle may be a line or a
+/// point. For coordinates whose fourth powers are finite, to about 1e-6 of the distance between point and triangle, or
+/// of the triangle's size.
+pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+    let (ab, ac, ap) = (b - a, c - a, point - a);
+    let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
+    if to_b <= 0.0 && to_c <= 0.0 {
+        return a;
+    }
+    let bp = point - b;
+    let (b_to_b, b_to_c) = (ab.dot(bp), ac.dot(bp));
+    if b_to_b >= 0.0 && b_to_c <= b_to_b {
+        return b;
+    }
+    let cp = point - c;
+    let (c_to_b, c_to_c) = (ab.dot(cp), ac.dot(cp));
+    if c_to_c >= 0.0 && c_to_b <= c_to_c {
+        return c;
+    }
+    let over_c = to_b * b_to_c - b_to_b * to_c;
+    if over_c <= 0.0 && to_b >= 0.0 && b_to_b <= 0.0 {
+        return a + ab * part(to_b, -b_to_b);
+    }
+    let over_b = c_to_b * to_c - to_b * c_to_c;
+    if over_b <= 0.0 && to_c >= 0.0 && c_to_c <= 0.0 {
+        return a + ac * part(to_c, -c_to_c);
+    }
+    let over_a = b_to_b * c_to_c - c_to_b * b_to_c;
+    if over_a <= 0.0 && b_to_c >= b_to_b && c_to_b >= c_to_c {
+        return b + (c - b) * part(b_to_c - b_to_b, c_to_b - c_to_c);
+    }
+    let all = over_a + over_b + over_c;
+    a + ab * (over_b / all) + ac * (over_c / all)
+}
+
+/// `one` of both; 0 of nothing.
+fn part(one: f32, other: f32) -> f32 {
+    let all = one + other;
+    if all > 0.0 { one / all } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [Vec3; 3] = [Vec3::ZERO, Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0)];
+
+    #[test]
+    fn every_part_of_the_plane_has_its_place() {
+        let found = |x: f32, y: f32| nearest_on_triangle(Vec3::new(x, y, 2.0), CORNERS).truncate().to_array();
+        assert_eq!(found(-1.0, -1.0), [0.0, 0.0]);
+        assert_eq!(found(6.0, -1.0), [4.0, 0.0]);
+        assert_eq!(found(-1.0, 5.0), [0.0, 3.0]);
+        assert_eq!(found(1.0, -2.0), [1.0, 0.0]);
+        assert_eq!(found(-2.0, 1.0), [0.0, 1.0]);
+        assert_eq!(found(1.0, 1.0), [1.0, 1.0]);
+        // Over the long edge: its middle, and 3:4:5 off it.
+        let [x, y] = found(2.0 + 3.0, 1.5 + 4.0);
+        assert!((x - 2.0).abs() < 1e-6 && (y - 1.5).abs() < 1e-6, "{x} {y}");
+    }
+
+    #[test]
+    fn places_are_nearer_than_any_other() {
+        let steps = || (0..=20).map(|step| step as f32 / 20.0);
+        for x in steps() {
+            for y in steps() {
+                let point = Vec3::new(8.0 * x - 2.0, 7.0 * y - 2.0, x - y);
+                let found = nearest_on_triangle(point, CORNERS).distance(point);
+                let others = steps().flat_map(|u| steps().map(move |v| (u, (1.0 - u) * v)));
+                let least = others
+                    .map(|(u, v)| (CORNERS[1] * u + CORNERS[2] * v).distance(point))
+                    .fold(f32::INFINITY, f32::min);
+                assert!(found <= least + 1e-6 && found > least - 0.2, "{point}: {found} {least}");
+            }
+        }
+    }
+
+    #[test]
+    fn lines_and_points_are_triangles_too() {
+        let point = Vec3::new(1.0, 1.0, 0.0);
+        let line = [Vec3::ZERO, Vec3::X * 2.0, Vec3::X * 4.0];
+        assert_eq!(nearest_on_triangle(point, line), Vec3::X);
+        assert_eq!(nearest_on_triangle(point, [Vec3::Y; 3]), Vec3::Y);
+        let folded = [Vec3::X * 4.0, Vec3::ZERO, Vec3::ZERO];
+        assert_eq!(nearest_on_triangle(point, folded), Vec3::X);
+    }
+}

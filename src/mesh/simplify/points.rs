@@ -1,0 +1,96 @@
+//! Which vertices are copies of one point.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use glam::DVec3;
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+/// Vertices, grouped by their places in all poses. Points are numbered by their first vertices.
+pub struct Points {
+    of: Vec<u32>,
+    starts: Vec<u32>,
+    wedges: Vec<u32>,
+    poses: usize,
+    /// Point by point, each in all poses.
+    places: Vec<[f32; 3]>,
+}
+
+impl Points {
+    pub fn new(poses: &[Vec<[f32; 3]>]) -> Self {
+        let of = weld(poses);
+        let count = of.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut starts = vec![0_u32; count + 1];
+        of.iter().for_each(|point| starts[*point as usize + 1] += 1);
+        for point in 0..count {
+            starts[point + 1] += starts[point];
+        }
+        let mut next = starts.clone();
+        let mut wedges = vec![0; of.len()];
+        for (vertex, point) in of.iter().enumerate() {
+            wedges[next[*point as usize] as usize] = vertex as u32;
+            next[*point as usize] += 1;
+        }
+        let firsts = starts[..count].iter().map(|start| wedges[*start as usize] as usize);
+        let places = firsts.flat_map(|vertex| poses.iter().map(move |pose| pose[vertex])).collect();
+        Self { of, starts, wedges, poses: poses.len(), places }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub fn poses(&self) -> usize {
+        self.poses
+    }
+
+    /// Of a vertex.
+    pub fn of(&self, vertex: u32) -> u32 {
+        self.of[vertex as usize]
+    }
+
+    /// The vertices of a point, ascending.
+    pub fn wedges(&self, point: u32) -> &[u32] {
+        &self.wedges[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
+    }
+
+    pub fn place(&self, point: u32, pose: usize) -> DVec3 {
+        glam::Vec3::from(self.places[point as usize * self.poses + pose]).as_dvec3()
+    }
+
+    /// Of each vertex.
+    pub fn into_of(self) -> Vec<u32> {
+        self.of
+    }
+}
+
+/// Each vertex's point.
+fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
+    // Adding 0 makes one zero of two.
+    let bits = |pose: &Vec<[f32; 3]>, vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());
+    let same = |a: usize, b: usize| poses[1..].iter().all(|pose| bits(pose, a) == bits(pose, b));
+    let vertices = poses[0].len();
+    // The first vertex at a place of the first pose, and after each such vertex the next that differs in another.
+    let mut firsts: HashMap<[u32; 3], u32> = HashMap::with_capacity(vertices);
+    let mut others = vec![NONE; vertices];
+    let mut of = Vec::with_capacity(vertices);
+    let mut count = 0;
+    for vertex in 0..vertices {
+        let mut at = match firsts.entry(bits(&poses[0], vertex)) {
+            Entry::Occupied(first) => *first.get() as usize,
+            Entry::Vacant(first) => *first.insert(vertex as u32) as usize,
+        };
+        while at != vertex && !same(at, vertex) {
+            if others[at] == NONE {
+                others[at] = vertex as u32;
+            }
+            at = others[at] as usize;
+        }
+        of.push(if at == vertex { count } else { of[at] });
+        count += u32::from(at == vertex);
+    }
+    of
+}

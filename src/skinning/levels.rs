@@ -1,0 +1,191 @@
+//! Levels of detail of skinned meshes: the mesh simplified for all that its clips do, and how far each level's surface
+//! is off, measured (A sections 9.3 and 9.4: all poses of the animation count).
+
+use std::iter::successors;
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::mesh::{MOST_LEVELS, Mesh, MeshLevel};
+use super::pose::{Pose, moments};
+use crate::InputError;
+use crate::animation::Model;
+use crate::mesh::simplify::{Options, Simplified, Surface, simplify_within};
+use near::{Near, Sides};
+
+mod near;
+
+/// The most that the finest level may be off, of the mesh's size: the diagonal of its box.
+const FIRST: f32 = 1e-3;
+
+/// How much more each level may be off than the one before. Triangles go with about its inverse.
+const STEP: f32 = std::f32::consts::SQRT_2;
+
+/// A level has at most so many of the triangles of the one before; otherwise it is left out.
+const WORTHWHILE: f64 = 0.9;
+
+/// Poses that the simplifier looks at, besides that of the bind matrices.
+const KEY_POSES: usize = 24;
+
+/// What a normal that is off by 1 counts, of the mesh's size.
+const NORMAL: f32 = 5e-3;
+
+/// By how much [`MeshLevel::error`] is larger than what was found, for what lies between the poses.
+const ERROR_MARGIN: f32 = 1.01;
+
+/// Coarser forms of one of a model's meshes.
+#[derive(Debug, Clone)]
+pub struct MeshLevels {
+    /// For [`Mesh::levels`]: the first is off by a thousandth of the mesh's size, each by 1.4 times as much as the one
+    /// before, and has 0.9 times its triangles at most. None where nothing can be left out.
+    pub levels: Vec<MeshLevel>,
+    near: Vec<Near>,
+}
+
+impl MeshLevels {
+    /// Simplifies a mesh for these clips and the pose that it was bound in, and measures each level in `poses` of each
+    /// clip, evenly spaced from start to end; 60 a second of a clip are many enough. Blended linearly, with the weights
+    /// of morph targets that the clips have.
+    ///
+    /// The error of a level is the largest distance, in all of these poses, from a vertex of the mesh to the level's
+    /// triangles near it, and from the middles of the level's triangles and their edges to the mesh's triangles that
+    /// they stand for; 1 % more, for what lies between.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Extent::new`](super::Extent::new).
+    pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
+        let moments = moments(model, mesh, clips, poses)?;
+        let mesh = &model.meshes[mesh];
+        let keys = key_poses(model, mesh, &moments);
+        let simplified = simplified(mesh, &keys)?;
+        let levels = level_triangles(mesh, &simplified);
+        let keys: Vec<Vec<Vec3>> =
+            keys.into_iter().map(|key| key.into_iter().map(Vec3::from).collect()).collect();
+        let sides: Vec<Sides> = levels
+            .par_iter()
+            .map(|(collapses, indices)| Sides::new(mesh, &simplified, *collapses, indices, &keys))
+            .collect();
+        let errors = moments
+            .par_iter()
+            .map(|moment| {
+                let places = Pose::new(model, mesh, *moment).positions(mesh);
+                sides.iter().map(|sides| sides.error(&places)).collect::<Vec<f32>>()
+            })
+            .reduce(|| vec![0.0; sides.len()], |a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect());
+        let mut most = 0.0_f32;
+        let level = |((_, indices), error): ((usize, Vec<u32>), f32)| {
+            most = most.max(ERROR_MARGIN * error);
+            MeshLevel { indices, error: most }
+        };
+        Ok(Self {
+            levels: levels.into_iter().zip(errors).map(level).collect(),
+            near: sides.into_iter().map(|sides| sides.near).collect(),
+        })
+    }
+
+    /// The place on level `level + 1` of the mesh that is nearest to where a vertex of the mesh should be, among the
+    /// triangles that were nearest in some pose; `place` of a level's vertices says where they are. A vertex that the
+    /// level has is at its own place.
+    ///
+    /// # Panics
+    /// For levels and vertices that there are not.
+    pub fn nearest(&self, level: usize, vertex: usize, wanted: Vec3, place: impl Fn(u32) -> Vec3) -> Vec3 {
+        self.near[level].nearest(vertex, wanted, &place).unwrap_or_else(|| place(vertex as u32))
+    }
+}
+
+/// The pose of the bind matrices, and some of these moments.
+fn key_poses(model: &Model, mesh: &Mesh, moments: &[(usize, f32)]) -> Vec<Vec<[f32; 3]>> {
+    let every = moments.len().div_ceil(KEY_POSES);
+    let posed = moments.par_iter().step_by(every).map(|moment| {
+        let places = Pose::new(model, mesh, *moment).positions(mesh);
+        places.iter().map(Vec3::to_array).collect()
+    });
+    let mut all = vec![mesh.positions.clone()];
+    all.par_extend(posed);
+    all
+}
+
+fn simplified(mesh: &Mesh, poses: &[Vec<[f32; 3]>]) -> Result<Simplified, InputError> {
+    let size = size(mesh);
+    let (normal, texture) = (NORMAL * size, texture_scale(mesh));
+    let attributes: Vec<f32> = (mesh.normals.iter().zip(&mesh.uv))
+        .flat_map(|([x, y, z], [u, v])| [normal * x, normal * y, normal * z, texture * u, texture * v])
+        .collect();
+    let surface = Surface { poses, indices: &mesh.indices, attributes: &attributes, stride: 5 };
+    let distances: Vec<f32> =
+        successors(Some(FIRST * size), |last| Some(STEP * last)).take(MOST_LEVELS - 1).collect();
+    simplify_within(&surface, &Options::default(), &distances)
+}
+
+/// The diagonal of its box.
+fn size(mesh: &Mesh) -> f32 {
+    let places = mesh.positions.iter().map(|place| Vec3::from(*place));
+    let (low, high) =
+        places.fold((Vec3::MAX, Vec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    if mesh.positions.is_empty() { 0.0 } else { low.distance(high) }
+}
+
+/// Units of the model that a unit of texture coordinates covers, on average: so a texture counts by how far it slips over
+/// the surface. 0 where there is none.
+fn texture_scale(mesh: &Mesh) -> f32 {
+    let (mut surface, mut texture) = (0.0_f64, 0.0_f64);
+    for triangle in mesh.indices.chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(mesh.positions[triangle[corner] as usize]));
+        let [d, e, f] = [0, 1, 2].map(|corner| Vec2::from(mesh.uv[triangle[corner] as usize]));
+        surface += f64::from((b - a).cross(c - a).length());
+        texture += f64::from((e - d).perp_dot(f - d).abs());
+    }
+    if texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
+}
+
+/// How many collapses make each level, and its triangles.
+fn level_triangles(mesh: &Mesh, simplified: &Simplified) -> Vec<(usize, Vec<u32>)> {
+    let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
+    distances.dedup();
+    let mut last = mesh.indices.len() / 3;
+    let level = |distance: f32| {
+        let collapses = simplified.collapses_within(distance);
+        let indices = simplified.triangles(&mesh.indices, collapses);
+        let left = indices.len() / 3;
+        if left == 0 || left as f64 > WORTHWHILE * last as f64 {
+            return None;
+        }
+        last = left;
+        Some((collapses, indices))
+    };
+    distances.into_iter().filter_map(level).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ninth of the triangles within a hundredth of its height, and every level as good as it says in moments that nobody
+    /// looked at.
+    #[test]
+    fn creatures_lose_triangles_by_distance() {
+        let model = crate::animation::creature().expect("valid");
+        let mesh = &model.meshes[0];
+        let found = MeshLevels::new(&model, 0, &[0, 2], 16).expect("valid");
+        let mut levelled = model.clone();
+        levelled.meshes[0].levels.clone_from(&found.levels);
+        assert_eq!(levelled.meshes[0].validate(&model.skins), Ok(()));
+        let triangles = |error: f32| {
+            let levels = found.levels.iter().filter(|level| level.error < error);
+            levels.map(|level| level.indices.len()).min().unwrap_or(mesh.indices.len())
+        };
+        assert!(5 * triangles(0.011) < mesh.indices.len() && 9 * triangles(0.018) < mesh.indices.len());
+        for (level, MeshLevel { error, .. }) in found.levels.iter().enumerate() {
+            let mut worst = 0.0_f32;
+            for moment in [(0, 0.123), (0, 0.77), (2, 0.41)] {
+                let places = Pose::new(&model, mesh, moment).positions(mesh);
+                for (vertex, place) in places.iter().enumerate() {
+                    let nearest = found.nearest(level, vertex, *place, |vertex| places[vertex as usize]);
+                    worst = worst.max(nearest.distance(*place));
+                }
+            }
+            assert!(worst <= *error && worst > 0.5 * error, "level {level}: {worst} of {error}");
+        }
+    }
+}

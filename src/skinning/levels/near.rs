@@ -1,0 +1,176 @@
+//! What of a level lies near what of its mesh. Collapses are local: what a vertex became, and the triangles around it,
+//! lie near it in every pose.
+
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+
+use crate::mesh::nearest::nearest_on_triangle;
+use crate::mesh::simplify::Simplified;
+use crate::skinning::mesh::Mesh;
+
+/// So many triangles may be nearest in some pose: those that are in the first.
+const MOST: usize = 8;
+
+/// For things in a row, the triangles near each.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Near {
+    /// Where each one's begin; one more than there are things.
+    starts: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Near {
+    fn of(lists: impl Iterator<Item = Vec<[u32; 3]>>) -> Self {
+        let mut near = Self { starts: vec![0], triangles: Vec::new() };
+        for list in lists {
+            near.triangles.extend(list);
+            near.starts.push(near.triangles.len() as u32);
+        }
+        near
+    }
+
+    /// The place nearest to `wanted` on those near a thing, if there are any.
+    pub(super) fn nearest(&self, thing: usize, wanted: Vec3, place: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
+        let range = self.starts[thing] as usize..self.starts[thing + 1] as usize;
+        let on = |triangle: &[u32; 3]| nearest_on_triangle(wanted, triangle.map(place));
+        let places = self.triangles[range].iter().map(on);
+        places.min_by(|a, b| a.distance_squared(wanted).total_cmp(&b.distance_squared(wanted)))
+    }
+}
+
+/// Both sides of a level: from the mesh to it, and from it to the mesh.
+pub(super) struct Sides {
+    /// For each vertex of the mesh that the level lacks.
+    pub(super) near: Near,
+    /// Places on the level, as parts of the corners of its triangles.
+    samples: Vec<([u32; 3], [f32; 3])>,
+    /// For each of these, triangles of the mesh.
+    behind: Near,
+}
+
+impl Sides {
+    /// `keys` are the poses that decide what is near.
+    pub(super) fn new(
+        mesh: &Mesh,
+        simplified: &Simplified,
+        collapses: usize,
+        level: &[u32],
+        keys: &[Vec<Vec3>],
+    ) -> Self {
+        let heirs = simplified.heirs(collapses);
+        let point = |vertex: u32| simplified.point(vertex);
+        let ring = Around::new(level.iter().map(|vertex| point(*vertex)), mesh.vertices());
+        let used: BTreeSet<u32> = level.iter().copied().collect();
+        let before = |vertex: u32| {
+            let heir = heirs[vertex as usize];
+            // A vertex without triangles has no heir on the level either.
+            if used.contains(&vertex) || !used.contains(&heir) {
+                return Vec::new();
+            }
+            let candidates = ring.two_rings(point(heir), level, &point);
+            let places = |key: &Vec<Vec3>| key[vertex as usize];
+            nearest_in_each(keys, places, candidates)
+        };
+        let near = Near::of((0..mesh.vertices() as u32).map(before));
+
+        // Triangles of the mesh by the points that their corners became.
+        let became =
+            Around::new(mesh.indices.iter().map(|vertex| point(heirs[*vertex as usize])), mesh.vertices());
+        let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
+        let behind = Near::of(samples.iter().map(|(corners, parts)| {
+            let triangles: BTreeSet<u32> =
+                corners.iter().flat_map(|corner| became.of(point(*corner))).copied().collect();
+            let place = |key: &Vec<Vec3>| blend(corners, parts, &|vertex| key[vertex as usize]);
+            let candidates =
+                triangles.into_iter().map(|triangle| corners_of(&mesh.indices, triangle)).collect();
+            nearest_in_each(keys, place, candidates)
+        }));
+        Self { near, samples, behind }
+    }
+
+    /// The largest distance where all vertices of the mesh are at these places.
+    pub(super) fn error(&self, places: &[Vec3]) -> f32 {
+        let place = |vertex: u32| places[vertex as usize];
+        let off = |near: &Near, thing: usize, wanted: Vec3| {
+            near.nearest(thing, wanted, &place).map_or(0.0, |found| found.distance(wanted))
+        };
+        let forth = places.iter().enumerate().map(|(vertex, wanted)| off(&self.near, vertex, *wanted));
+        let back = (self.samples.iter().enumerate())
+            .map(|(at, (corners, parts))| off(&self.behind, at, blend(corners, parts, &place)));
+        forth.chain(back).fold(0.0, f32::max)
+    }
+}
+
+/// The middle of a triangle and those of its edges.
+fn samples_of(triangle: &[u32]) -> [([u32; 3], [f32; 3]); 4] {
+    const THIRD: f32 = 1.0 / 3.0;
+    let corners = [triangle[0], triangle[1], triangle[2]];
+    [[THIRD; 3], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]].map(|parts| (corners, parts))
+}
+
+fn blend(corners: &[u32; 3], parts: &[f32; 3], place: &impl Fn(u32) -> Vec3) -> Vec3 {
+    corners.iter().zip(parts).map(|(corner, part)| *part * place(*corner)).sum()
+}
+
+fn corners_of(indices: &[u32], triangle: u32) -> [u32; 3] {
+    [0, 1, 2].map(|corner| indices[3 * triangle as usize + corner])
+}
+
+/// Of these triangles, those that are nearest in one of the poses.
+fn nearest_in_each(
+    keys: &[Vec<Vec3>],
+    wanted: impl Fn(&Vec<Vec3>) -> Vec3,
+    mut candidates: Vec<[u32; 3]>,
+) -> Vec<[u32; 3]> {
+    let off = |key: &Vec<Vec3>, wanted: Vec3, triangle: &[u32; 3]| {
+        let corners = triangle.map(|vertex| key[vertex as usize]);
+        nearest_on_triangle(wanted, corners).distance_squared(wanted)
+    };
+    let first = wanted(&keys[0]);
+    candidates.sort_by_cached_key(|triangle| off(&keys[0], first, triangle).to_bits());
+    candidates.truncate(MOST);
+    let mut nearest = BTreeSet::new();
+    for key in keys {
+        let wanted = wanted(key);
+        let distances = candidates.iter().map(|triangle| (off(key, wanted, triangle), triangle));
+        nearest.extend(distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, triangle)| *triangle));
+    }
+    nearest.into_iter().collect()
+}
+
+/// The triangles around each point.
+struct Around {
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Around {
+    /// `corners` are points, three a triangle.
+    fn new(corners: impl Iterator<Item = u32> + Clone, points: usize) -> Self {
+        let mut starts = vec![0_u32; points + 1];
+        corners.clone().for_each(|point| starts[point as usize + 1] += 1);
+        for point in 0..points {
+            starts[point + 1] += starts[point];
+        }
+        let mut next = starts.clone();
+        let mut triangles = vec![0; starts[points] as usize];
+        for (corner, point) in corners.enumerate() {
+            triangles[next[point as usize] as usize] = corner as u32 / 3;
+            next[point as usize] += 1;
+        }
+        Self { starts, triangles }
+    }
+
+    fn of(&self, point: u32) -> &[u32] {
+        &self.triangles[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
+    }
+
+    /// The triangles around a point and those around their corners.
+    fn two_rings(&self, point: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<[u32; 3]> {
+        let corners = self.of(point).iter().flat_map(|triangle| corners_of(level, *triangle));
+        let points: BTreeSet<u32> = corners.map(of).collect();
+        let triangles: BTreeSet<u32> = points.iter().flat_map(|point| self.of(*point)).copied().collect();
+        triangles.into_iter().map(|triangle| corners_of(level, triangle)).collect()
+    }
+}

@@ -1,0 +1,133 @@
+//! Topology at every level.
+
+use relievo::mesh::{Cost, Options, Simplified, Stopped, simplify};
+
+use crate::measure::{Topology, area, topology};
+use crate::shapes::{Shape, bare, bumps, cube, ground, sphere, torus};
+
+const COSTS: [Cost; 3] =
+    [Cost::Quadric, Cost::Melax { check_normals: false }, Cost::Melax { check_normals: true }];
+
+/// With texture coordinates and without.
+fn each_way(shape: &Shape, mut check: impl FnMut(&Simplified, Cost)) {
+    for cost in COSTS {
+        let options = Options { cost, ..Options::default() };
+        check(&shape.simplified(&options), cost);
+        check(&simplify(&shape.with_uv(), &options).expect("valid"), cost);
+    }
+}
+
+/// As the mesh has it, at every level; triangles as announced.
+fn keeps_topology(shape: &Shape, expected: Topology) {
+    assert_eq!(topology(shape, &shape.indices), expected);
+    each_way(shape, |simplified, cost| {
+        for collapses in 0..=simplified.collapses().len() {
+            let level = simplified.triangles(&shape.indices, collapses);
+            assert_eq!(topology(shape, &level), expected, "{cost:?} after {collapses}");
+            let left = collapses.checked_sub(1).map(|last| simplified.collapses()[last].triangles as usize);
+            assert_eq!(level.len() / 3, left.unwrap_or(shape.triangles()));
+        }
+    });
+}
+
+#[test]
+fn spheres_stay_closed() {
+    let shape = sphere(16, 10);
+    keeps_topology(&shape, Topology { is_manifold: true, border: 0, euler: 2 });
+    each_way(&shape, |simplified, cost| {
+        let least = if cost == (Cost::Melax { check_normals: true }) { 40 } else { 12 };
+        assert!(simplified.triangles_left() <= least, "{cost:?} {}", simplified.triangles_left());
+        assert_eq!(simplified.stopped(), Stopped::Exhausted);
+    });
+}
+
+#[test]
+fn tori_keep_their_hole() {
+    keeps_topology(&torus(18, 12), Topology { is_manifold: true, border: 0, euler: 0 });
+}
+
+#[test]
+fn charts_stay_together() {
+    let shape = cube(6);
+    keeps_topology(&shape, Topology { is_manifold: true, border: 0, euler: 2 });
+    let chart = |vertex: u32| vertex / 49;
+    each_way(&shape, |simplified, _| {
+        assert_eq!(simplified.triangles_left(), 12);
+        let all = (0..simplified.collapses().len()).flat_map(|at| simplified.moved(at));
+        for [from, to] in all {
+            assert_eq!(chart(*from), chart(*to), "{from} became {to}");
+        }
+        // It is flat, so it is still there.
+        let left = simplified.triangles(&shape.indices, simplified.collapses().len());
+        assert!((area(&shape, 0, &left) - area(&shape, 0, &shape.indices)).abs() < 1e-5);
+        assert_eq!(left.chunks_exact(3).filter(|corners| chart(corners[0]) != chart(corners[1])).count(), 0);
+    });
+}
+
+#[test]
+fn open_meshes_stay_discs() {
+    let shape = ground(12, bumps);
+    each_way(&shape, |simplified, _| {
+        for collapses in 0..=simplified.collapses().len() {
+            let level = topology(&shape, &simplified.triangles(&shape.indices, collapses));
+            assert!(level.is_manifold && level.euler == 1, "{level:?} after {collapses}");
+        }
+    });
+}
+
+#[test]
+fn tetrahedra_have_no_legal_collapse() {
+    let places = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let tetrahedron = bare(places, vec![0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3]);
+    each_way(&tetrahedron, |simplified, _| {
+        assert_eq!((simplified.collapses().len(), simplified.stopped()), (0, Stopped::Exhausted));
+        assert_eq!(simplified.triangles(&tetrahedron.indices, 0), tetrahedron.indices);
+    });
+    // Two with a face in common: an edge of that face has both peaks and its third corner for neighbours. A peak may
+    // become a corner of it, if nothing turns around.
+    let places =
+        vec![[1.0, 0.0, 0.0], [-0.5, 0.0, 0.9], [-0.5, 0.0, -0.9], [0.0, 0.1, 0.0], [0.0, -2.0, 0.0]];
+    let double = bare(places, vec![0, 3, 1, 1, 3, 2, 2, 3, 0, 1, 4, 0, 2, 4, 1, 0, 4, 2]);
+    keeps_topology(&double, Topology { is_manifold: true, border: 0, euler: 2 });
+    let simplified = double.simplified(&Options::default());
+    assert_eq!(simplified.collapses().len(), 1);
+    assert_eq!(simplified.moved(0)[0][0], 3);
+    assert_eq!(simplified.triangles_left(), 4);
+}
+
+#[test]
+fn the_last_triangle_of_a_border_stays() {
+    let places = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    each_way(&bare(places, vec![0, 1, 2]), |simplified, _| {
+        assert_eq!((simplified.triangles_left(), simplified.stopped()), (1, Stopped::Exhausted));
+    });
+}
+
+/// Three sheets that meet in a line, and two that meet in a point.
+#[test]
+fn points_that_are_not_manifold_stay() {
+    let mut fans = ground(6, |_, _| 0.0);
+    for turn in 1..3 {
+        let mut other = fans.clone();
+        other.indices.truncate(6 * 6 * 6);
+        let (sin, cos) = (f64::from(turn) * 2.0).sin_cos();
+        for place in &mut other.poses[0] {
+            *place = [(f64::from(place[0]) * cos) as f32, (f64::from(place[0]) * sin) as f32, place[2]];
+        }
+        other.poses[0].truncate(49);
+        other.uv.truncate(49);
+        fans.append(&other);
+    }
+    let mut tip = ground(6, |_, _| 0.0);
+    tip.poses[0].iter_mut().for_each(|place| place[0] += 1.0);
+    tip.poses[0].iter_mut().for_each(|place| place[2] += 1.0);
+    fans.append(&tip);
+    let line = |vertex: u32| fans.poses[0][vertex as usize][0] == 0.0;
+    let point = |vertex: u32| fans.poses[0][vertex as usize] == [1.0, 0.0, 1.0];
+    each_way(&fans, |simplified, _| {
+        assert!(simplified.triangles_left() < fans.triangles() / 2, "{}", simplified.triangles_left());
+        for [from, _] in (0..simplified.collapses().len()).flat_map(|at| simplified.moved(at)) {
+            assert!(!line(*from) && !point(*from), "{from} went");
+        }
+    });
+}

@@ -1,0 +1,7 @@
+//! Simplified meshes.
+
+mod closed;
+mod input;
+mod measure;
+mod quality;
+mod shapes;
