@@ -24,7 +24,7 @@ pub struct SkinFrame {
     pub select: SelectBuffers,
     /// The clusters of the last [`SkinFrame::record_moved`].
     pub active: ActiveClusters,
-    /// `instance · vertices + place`.
+    /// `instance · vertices + place`. Those of clusters beyond an instance's level of detail are old.
     pub skinned: Buffer<Vertex>,
     palette: Job,
     selection: Job,
@@ -79,21 +79,21 @@ impl SkinFrame {
         Ok(self)
     }
 
-    /// Records the skinning of every vertex of the instances that are seen.
+    /// Records the skinning of every vertex of the instances that are seen, at their level of detail.
     pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder) {
         [&self.palette].into_iter().chain(&self.all).for_each(|job| job.record(encoder));
     }
 
-    /// Records the skinning of instances that are seen: of clusters with a bone that moved or a vertex that targets
-    /// move otherwise than in the frame before, and of all clusters where the reduction changed, as that of what was
-    /// not seen does. The first time that is all that is seen. Frames are counted here
-    /// ([`SelectBuffers::skinned`]): record it once a frame.
+    /// Records the skinning of instances that are seen, at their level of detail: of clusters with a bone that moved or a
+    /// vertex that targets move otherwise than in the frame before, of those beyond the level of the frame before, and of
+    /// all clusters where influences count otherwise, as those of what was not seen do. The first time that is all that is
+    /// seen. Frames are counted here ([`SelectBuffers::skinned`]): record it once a frame.
     pub fn record_moved(&self, encoder: &mut wgpu::CommandEncoder) {
         [&self.palette, &self.selection].into_iter().for_each(|job| job.record(encoder));
         self.some.iter().for_each(|job| job.record(encoder));
     }
 
-    /// The vertices of an instance, in the mesh's own order. Waits for the device.
+    /// The vertices of an instance, in the mesh's own order; old ones beyond its level of detail. Waits for the device.
     ///
     /// # Errors
     /// [`InputError`] for an instance that there is not; [`crate::gpu::GpuError`].

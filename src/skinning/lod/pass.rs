@@ -157,7 +157,49 @@ impl LodJob {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::Options;
     use crate::gpu::layout::layout_test;
+    use crate::skinning::lod::{LevelRanges, NO_FADE, standing};
+    use glam::{Mat4, Vec3};
+
+    /// Lists of levels that a view no longer has are empty; more levels than there are lists are refused.
+    #[test]
+    fn views_may_have_fewer_levels() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let [near, far] = NO_FADE;
+        let view = |distances: &[f32]| LodView {
+            clip_from_world: Mat4::IDENTITY,
+            eye: Vec3::ZERO,
+            near,
+            far,
+            steps: 1,
+            most: 8,
+            center: Vec3::ZERO,
+            radius: 10.0,
+            levels: LevelRanges::new(distances).expect("ascending"),
+        };
+        let places = [0.5, 1.5, 2.5, 3.5].map(|x| standing(Vec3::X * x, 0.0, 1.0));
+        let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
+        let reductions = Buffer::new(&gpu, "reductions", 4).expect("allocated");
+        let drawn = Buffer::new(&gpu, "drawn", list_words(4, 3)).expect("allocated");
+        let arguments = Buffer::new(&gpu, "arguments", 15).expect("allocated");
+        let pass = LodPass::new(&gpu).expect("compiled");
+        let prepare = |view: &LodView| pass.prepare(&gpu, view, &placements, &reductions, &drawn, &arguments);
+        let lod = prepare(&view(&[1.0, 2.0])).expect("prepared");
+        let seen = || {
+            gpu.run("lod", |encoder| lod.record(encoder)).expect("run");
+            let words = arguments.read_blocking(&gpu).expect("read");
+            [words[1], words[6], words[11]]
+        };
+        assert_eq!(seen(), [1, 1, 2]);
+        for (distances, counts) in [(&[3.0][..], [3, 1, 0]), (&[], [4, 0, 0]), (&[0.0, 3.0], [0, 3, 1])] {
+            lod.set(&gpu, &view(distances)).expect("set");
+            assert_eq!(seen(), counts);
+        }
+        let field = |error: Option<Error>| error.expect("refused").to_string();
+        assert!(field(lod.set(&gpu, &view(&[0.0; 3])).err()).contains("view.levels.len = 3"));
+        assert!(field(prepare(&view(&[0.0; 3])).err()).contains("drawn"));
+    }
 
     layout_test!(lod_params_layout: LodParams = SKINNING_LOD "LodParams");
 }
