@@ -5,11 +5,13 @@ import package::wgsl::skinning::reduction::Reduction;
 struct LodParams {
     // Of the view's volume: unit normals inwards, and distances.
     planes: array<vec4<f32>, 6>,
-    // The eye, and the distance at which fading begins.
+    // The eye, and from where on fading begins.
     eye: vec4<f32>,
+    // A unit vector and 1, or 0 where the view is parallel.
+    ahead: vec4<f32>,
     // A ball around the model in all of its clips: middle and radius.
     ball: vec4<f32>,
-    // The distance from which on vertices are rigid.
+    // From where on vertices are rigid.
     far: f32,
     // Steps of the fade.
     steps: f32,
@@ -52,6 +54,13 @@ fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
     return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
 }
 
+// How far away a place counts, which lies so from the eye: as far as it is, straight ahead; less to the side.
+fn away_at(towards: vec3<f32>) -> f32 {
+    let distance = length(towards);
+    let depth = max(dot(params.ahead.xyz, towards), 0.0);
+    return select(distance, depth * (depth / max(distance, 1.17549435e-38)), params.ahead.w > 0.0);
+}
+
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -75,7 +84,7 @@ fn main(
     }
     var reduction = Reduction(0.0, 0u, 0u);
     if is_seen {
-        let away = length(center - params.eye.xyz);
+        let away = away_at(center - params.eye.xyz);
         let way = clamp((away - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
         var level = 0u;
         while level < params.coarser && away >= params.distances[level >> 2u][level & 3u] {

@@ -31,10 +31,11 @@ pub struct Character<'a> {
     pub moved: Option<&'a Buffer<u32>>,
     /// From the model's space into the world, one an instance.
     pub placements: &'a Buffer<Affine>,
-    /// World units from the eye up to which every influence counts, and from which on vertices follow one bone.
+    /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::away`]
+    /// counts them.
     pub fade: [f32; 2],
-    /// World units from the eye from which on levels 1, 2 … of the meshes are used, not descending; of a mesh that has
-    /// fewer, its last. Without, all are drawn whole.
+    /// From which on levels 1, 2 … of the meshes are used, likewise, not descending; of a mesh that has fewer, its last.
+    /// Without, all are drawn whole.
     pub levels: &'a [f32],
     /// How influences are blended.
     pub blend: Blend,

@@ -48,50 +48,42 @@ impl Extent {
     }
 
     /// Where a crowd may begin to fade, and where it may be rigid
-    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no vertex
-    /// inside a `picture` of so many pixels is more than `pixels` off, wherever in it. Placements neither stretch nor
-    /// shrink. 0 pixels allow no fade.
+    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no vertex is
+    /// more than `pixels` off on screen, wherever it is. Placements neither stretch nor shrink. 0 pixels allow no fade.
     ///
-    /// A vertex of an instance whose middle is d away lies no nearer than d − r, r the radius, and if it is seen, no
-    /// further off the axis than the picture's corner, whose cosine is c: at a depth of (d − r)·c at least. There it may
-    /// be off by ε·c·(d − r)·c/(focal + ε·c) for ε pixels ([`Lens::allowed`]). That grows with d − r as λ does from r on,
-    /// and reaches [`Extent::stray`] where λ is 1.
+    /// A point at depth z and distance d that is off by e shows focal·e·(d/z)/(z − e) pixels at most. Let q be what the
+    /// middle of an instance counts as ([`LodView::away`](super::lod::LodView::away)), its depth squared over its
+    /// distance. No point of its ball, of radius r, lies at less than Z = middle's depth − r or further than D = middle's
+    /// distance + r, and a = Z²/D ≥ (q − r)²/(q + r) ≥ q − 3r, since neither depth nor distance is below q. So it shows
+    /// focal·e·(Z/a)/(Z − e) at most, and since Z ≥ a no more than focal·e/(a − e): at most ε pixels where
+    /// a ≥ e·(focal + ε)/ε. This is so from q = 3r + e·(focal + ε)/ε on; and as λ grows evenly from q = 3r on, so may e,
+    /// up to [`Extent::stray`].
     ///
     /// What else is off adds to it: bones that a gate holds back by ε′ pixels, and a fade by ε, together show ε + ε′.
-    pub fn fade_range(&self, lens: &Lens, picture: [u32; 2], pixels: f32) -> [f32; 2] {
-        let far = self.distance(lens, picture, pixels, self.stray);
-        [self.radius, far.max(self.radius.next_up())]
+    pub fn fade_range(&self, lens: &Lens, pixels: f32) -> [f32; 2] {
+        let near = self.beyond(lens, pixels, 0.0);
+        [near, self.beyond(lens, pixels, self.stray).max(near.next_up())]
     }
 
     /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](super::mesh::MeshLevel::error)) may be
-    /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs inside the picture is seen more than
-    /// `pixels` from the mesh's surface, and no point of that from theirs. Placements neither stretch nor shrink. Where
-    /// nothing may be off, levels with an error begin at the end of all numbers.
+    /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs is seen more than `pixels` from the
+    /// mesh's surface, and no point of that from theirs. Placements neither stretch nor shrink. Where nothing may be off,
+    /// levels with an error begin at the end of all numbers.
     ///
-    /// By the formula of [`Extent::fade_range`], with an error in place of the stray: of two points of the two surfaces
-    /// that lie so near each other the one is a vertex that is off, the other its right place. Both are in the ball, as
-    /// the vertices of triangles are. So the distance is r + error·(focal + ε·c)/(ε·c²).
+    /// By the formula of [`Extent::fade_range`], with an error as e: of two points of the two surfaces that lie so near
+    /// each other the one is off, the other its right place. Both are in the ball, as the vertices of triangles are.
     ///
     /// What else is off adds to it, a fade too: within ε pixels a crowd may fade by a share and have levels by the rest.
-    pub fn level_ranges(
-        &self,
-        lens: &Lens,
-        picture: [u32; 2],
-        pixels: f32,
-        errors: impl IntoIterator<Item = f32>,
-    ) -> Vec<f32> {
-        errors.into_iter().map(|error| self.distance(lens, picture, pixels, error)).collect()
+    pub fn level_ranges(&self, lens: &Lens, pixels: f32, errors: impl IntoIterator<Item = f32>) -> Vec<f32> {
+        errors.into_iter().map(|error| self.beyond(lens, pixels, error)).collect()
     }
 
-    /// How far the middle of the ball must be away for what is `off` in it to be so many pixels off: the radius at least,
-    /// and finite.
-    fn distance(&self, lens: &Lens, picture: [u32; 2], pixels: f32, off: f32) -> f32 {
+    /// How far away an instance must count for what is `off` in it to be so many pixels off at most; finite.
+    fn beyond(&self, lens: &Lens, pixels: f32, off: f32) -> f32 {
         let [focal, pixels, radius, off] = [lens.focal_pixels, pixels, self.radius, off].map(f64::from);
-        let [width, height] = picture.map(|edge| f64::from(edge) / 2.0 / focal);
-        let cosine = (1.0 + width * width + height * height).sqrt().recip();
-        let distance = radius + off * (focal + pixels * cosine) / (pixels * cosine * cosine);
+        let away = 3.0 * radius + off * (focal + pixels) / pixels;
         // Nothing is off, or nothing may be.
-        distance.max(radius).min(f64::from(f32::MAX)) as f32
+        away.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
     }
 }
 
@@ -175,13 +167,13 @@ mod tests {
     fn ranges_begin_where_the_model_does() {
         let lens = Lens::new(1080, 1.0, 0.1);
         let extent = Extent { center: Vec3::ZERO, radius: 1.5, stray: 0.02 };
-        let range = |extent: &Extent, pixels| extent.fade_range(&lens, [1920, 1080], pixels);
+        let range = |extent: &Extent, pixels| extent.fade_range(&lens, pixels);
         let [near, far] = range(&extent, 0.5);
-        assert_eq!(near, 1.5);
+        assert_eq!(near, 4.5);
         // Twice the pixels, half the way.
         let nearer = range(&extent, 1.0)[1];
         assert!(((nearer - near) / (far - near) - 0.5).abs() < 1e-3, "{nearer} {far}");
-        assert_eq!(range(&extent, 0.0), [1.5, f32::MAX]);
+        assert_eq!(range(&extent, 0.0), [4.5, f32::MAX]);
         let rigid = Extent { stray: 0.0, ..extent };
         for pixels in [0.0, 1.0] {
             let [near, far] = range(&rigid, pixels);
@@ -191,35 +183,42 @@ mod tests {
 
     #[test]
     fn levels_begin_where_their_errors_are_so_many_pixels() {
-        let (lens, picture) = (Lens::new(1080, 1.0, 0.1), [1920, 1080]);
-        let extent = Extent { center: Vec3::ZERO, radius: 1.5, stray: 0.02 };
-        let ranges =
-            |pixels, errors: &[f32]| extent.level_ranges(&lens, picture, pixels, errors.iter().copied());
+        let lens = Lens::new(1080, 1.0, 0.1);
+        let extent = Extent { center: Vec3::ZERO, radius: 0.5, stray: 0.02 };
+        let ranges = |pixels, errors: &[f32]| extent.level_ranges(&lens, pixels, errors.iter().copied());
         let errors = [0.0, 0.02, 0.02, 0.5];
         let begins = ranges(1.0, &errors);
-        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&lens, picture, 1.0)[1]));
+        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&lens, 1.0)[1]));
         assert!(begins.is_sorted() && LevelRanges::new(&begins).is_ok());
         assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
         assert!(ranges(1.0, &[]).is_empty());
 
-        // Off in every direction, at the places of the ball that are nearest, in the middle and a corner of the picture.
+        // Off in every direction, at the places of the ball that are nearest, straight ahead and far to the side.
         let focal = lens.focal_pixels;
         let screen = |place: Vec3| place.truncate() * (focal / place.z);
-        let corner = Vec3::new(960.0 / focal, 540.0 / focal, 1.0).normalize();
-        for pixels in [0.25, 1.0, 8.0] {
-            let mut largest = 0.0_f32;
-            for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
-                for nearest in [Vec3::Z, corner].map(|towards| (begin - extent.radius) * towards) {
-                    let unit = |at: i32| {
-                        let [a, b] = [0.1 * at as f32, 0.37 * at as f32];
-                        Vec3::new(libm::cosf(a) * libm::cosf(b), libm::sinf(a) * libm::cosf(b), libm::sinf(b))
-                    };
-                    for towards in (0..500).map(unit).filter(|_| error > 0.0) {
-                        largest = largest.max(screen(nearest).distance(screen(nearest + error * towards)));
+        let unit = |at: i32| {
+            let [a, b] = [0.1 * at as f32, 0.37 * at as f32];
+            Vec3::new(libm::cosf(a) * libm::cosf(b), libm::sinf(a) * libm::cosf(b), libm::sinf(b))
+        };
+        for towards in [Vec3::Z, Vec3::new(1.0, 0.6, 1.0).normalize(), Vec3::new(0.0, -3.0, 1.0).normalize()]
+        {
+            for pixels in [0.25, 1.0, 8.0] {
+                let mut largest = 0.0_f32;
+                for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
+                    // As far as counts as much.
+                    let middle = towards * (begin / (towards.z * towards.z));
+                    let ball = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
+                    for (place, off) in
+                        ball.into_iter().flat_map(|p| (0..500).map(move |at| (p, error * unit(at))))
+                    {
+                        largest = largest.max(screen(place).distance(screen(place + off)));
                     }
                 }
+                assert!(
+                    (0.8 * pixels..=1.001 * pixels).contains(&largest),
+                    "{largest} of {pixels}, {towards}"
+                );
             }
-            assert!((0.9 * pixels..=1.001 * pixels).contains(&largest), "{largest} of {pixels}");
         }
     }
 }

@@ -26,9 +26,9 @@ pub struct LodView {
     pub clip_from_world: Mat4,
     /// The eye, world units.
     pub eye: Vec3,
-    /// Every influence counts up to here, world units from the eye.
+    /// Every influence counts up to here, world units as [`LodView::away`] counts them.
     pub near: f32,
-    /// From here on vertices follow one bone.
+    /// From here on vertices follow one bone, likewise.
     pub far: f32,
     /// Steps of the fade; 64 is a good number.
     pub steps: u32,
@@ -42,7 +42,7 @@ pub struct LodView {
     pub levels: LevelRanges,
 }
 
-/// World units from the eye from which on levels 1, 2 … of a mesh are used, in place of finer ones.
+/// World units, as [`LodView::away`] counts them, from which on levels 1, 2 … of a mesh are used, in place of finer ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelRanges {
     distances: [f32; MOST_LEVELS - 1],
@@ -124,6 +124,27 @@ impl LodView {
             .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
     }
 
+    /// How far away a place counts: its distance from the eye where that is straight ahead, less to the side, where a
+    /// perspective makes things larger; 0 beside the eye and behind it. For a place at a depth z and a distance d that is
+    /// z²/d, since what moves there by a small step moves on screen by focal·step·d/z² pixels at most. Of a parallel view
+    /// the distance.
+    pub fn away(&self, place: Vec3) -> f32 {
+        let towards = place - self.eye;
+        let distance = towards.length();
+        match self.ahead() {
+            None => distance,
+            Some(ahead) => {
+                let depth = ahead.dot(towards).max(0.0);
+                depth * (depth / distance.max(f32::MIN_POSITIVE))
+            }
+        }
+    }
+
+    /// A unit vector, where the view is a perspective.
+    pub(crate) fn ahead(&self) -> Option<Vec3> {
+        self.clip_from_world.row(3).truncate().try_normalize()
+    }
+
     /// The planes of the view's volume: unit normals inwards, and distances.
     pub fn planes(&self) -> [Vec4; 6] {
         let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_world.row(row));
@@ -161,6 +182,7 @@ pub fn standing(at: Vec3, turn: f32, scale: f32) -> Affine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::camera;
 
     fn view() -> LodView {
         LodView {
@@ -214,6 +236,20 @@ mod tests {
             [(63, 1), (63, 2), (64, 3), (65, 16)].map(|(count, levels)| list_words(count, levels)),
             [63, 128, 192, 2048]
         );
+    }
+
+    #[test]
+    fn what_lies_aside_counts_as_nearer() {
+        let eye = Vec3::new(1.0, 2.0, 3.0);
+        let look = camera::rh::view::look_at_mat4(eye, eye + Vec3::X, Vec3::Y);
+        let lens = camera::rh::proj::directx::perspective(1.0, 1.5, 0.1, 90.0);
+        let away =
+            |x, y, z| LodView { clip_from_world: lens * look, eye, ..view() }.away(eye + Vec3::new(x, y, z));
+        assert!((away(7.0, 0.0, 0.0) - 7.0).abs() < 1e-5);
+        assert!((away(4.0, 0.0, -3.0) - 16.0 / 5.0).abs() < 1e-5);
+        assert_eq!([away(0.0, 0.0, 0.0), away(0.0, 5.0, 0.0), away(-5.0, 1.0, 0.0)], [0.0; 3]);
+        // The identity is a parallel view.
+        assert_eq!(view().away(Vec3::new(0.0, 3.0, -4.0)), 5.0);
     }
 
     #[test]

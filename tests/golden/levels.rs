@@ -31,7 +31,7 @@ const CLAY: [u8; 3] = [200, 140, 90];
 const SIZE: [u32; 2] = [2 * 176, 2 * 112];
 
 /// Where levels begin, world units: one more than any mesh has.
-const BEGINS: [f32; 4] = [7.0, 11.0, 17.0, 24.0];
+const BEGINS: [f32; 4] = [6.0, 9.0, 14.0, 22.0];
 
 /// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with one.
 fn model() -> Model {

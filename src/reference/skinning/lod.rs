@@ -11,7 +11,7 @@ use crate::skinning::weights::Reduction;
 pub struct Seen {
     /// How far the model's ball reaches into the view's volume; negative where it does not.
     pub depth: f32,
-    /// World units from the eye to the middle of the ball.
+    /// How far away the middle of the ball counts.
     pub away: f32,
     /// The way from the beginning of the fade to its end, 0 to 1, before it is cut into steps.
     pub way: f32,
@@ -31,7 +31,7 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let center = Vec3::from_array(rows.map(|row| row.dot(view.center.extend(1.0))));
     let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
-    let away = center.distance(view.eye);
+    let away = view.away(center);
     let way = (away - view.near) / (view.far - view.near);
     Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), away, way: way.clamp(0.0, 1.0) }
 }

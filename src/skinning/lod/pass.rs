@@ -15,6 +15,7 @@ use crate::{Error, InputError};
 pub(crate) struct LodParams {
     pub planes: [Vec4; 6],
     pub eye: Vec4,
+    pub ahead: Vec4,
     pub ball: Vec4,
     pub far: f32,
     pub steps: f32,
@@ -32,6 +33,7 @@ impl LodParams {
         Self {
             planes: view.planes(),
             eye: view.eye.extend(view.near),
+            ahead: view.ahead().map_or(Vec4::ZERO, |ahead| ahead.extend(1.0)),
             ball: view.center.extend(view.radius),
             far: view.far,
             steps: view.steps as f32,

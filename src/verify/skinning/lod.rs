@@ -118,8 +118,10 @@ fn compared(
         let Seen { depth, away, way } = seen(view, placement);
         let step = way * view.steps as f32;
         let at_step = way > 0.0 && way < 1.0 && (step - step.round()).abs() < TOUCH;
-        let at_level = view.levels.distances().iter().any(|begin| (away - begin).abs() < TOUCH);
-        if depth.abs() < TOUCH || at_step || at_level {
+        // z²/d moves with z twice as far, and with d as far.
+        let at_level = view.levels.distances().iter().any(|begin| (away - begin).abs() < 3.0 * TOUCH);
+        // Who is out of view has neither.
+        if depth.abs() < TOUCH || depth > 0.0 && (at_step || at_level) {
             touching += 1;
             continue;
         }

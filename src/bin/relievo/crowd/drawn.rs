@@ -401,7 +401,7 @@ pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 
     match skinning {
         Skinning::All(_) => None,
         Skinning::Fade(range) => Some([range.min, range.max].map(|units| units * stage.metres_a_unit)),
-        Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.lens, PICTURE, pixels)),
+        Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.lens, pixels)),
     }
 }
 
@@ -411,7 +411,7 @@ pub fn level_begins(stage: &Stage<'_>, triangles: Triangles, mesh: usize) -> Vec
         Triangles::All => Vec::new(),
         Triangles::Bounded(pixels) => {
             let errors = stage.model(triangles).meshes[mesh].levels.iter().map(|level| level.error);
-            stage.extents[mesh].level_ranges(&stage.lens, PICTURE, pixels, errors)
+            stage.extents[mesh].level_ranges(&stage.lens, pixels, errors)
         }
     }
 }
