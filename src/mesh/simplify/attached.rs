@@ -139,3 +139,99 @@ fn middle(points: &Points, ends: &[u32], pose: usize) -> Vec3 {
     let sum: Vec3 = ends.iter().map(|end| points.place(*end, pose).as_vec3()).sum();
     sum / ends.len() as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::simplify::{Options, Simplified, Stopped, Surface, simplify, simplify_within};
+
+    const SIDE: u32 = 18;
+
+    /// A bumpy sheet, flat, and bent.
+    fn sheet() -> (Vec<Vec<[f32; 3]>>, Vec<u32>) {
+        let bump =
+            |x: u32, y: u32| 0.02 * libm::sinf(0.9 * x as f32) + 0.03 * libm::cosf(0.55 * (x + 2 * y) as f32);
+        let flat = |x: u32, y: u32| [x as f32 / 17.0, y as f32 / 17.0, bump(x, y)];
+        let bent = |x: u32, y: u32| {
+            let [turn, height] = [2.0 * x as f32 / 17.0, 0.5 + bump(x, y)];
+            [height * libm::sinf(turn), y as f32 / 17.0, height * libm::cosf(turn)]
+        };
+        let all = || (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
+        let poses = vec![all().map(|(x, y)| flat(x, y)).collect(), all().map(|(x, y)| bent(x, y)).collect()];
+        let corner = |x, y| y * SIDE + x;
+        let quad = |(x, y): (u32, u32)| {
+            let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+            [a, b, c, a, c, d]
+        };
+        (poses, all().filter(|(x, y)| x.max(y) < &(SIDE - 1)).flat_map(quad).collect())
+    }
+
+    /// Corners, middles of edges and of triangles.
+    fn places(pose: &[[f32; 3]], indices: &[u32]) -> Vec<Vec3> {
+        let of = |triangle: &[u32]| {
+            let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(pose[triangle[corner] as usize]));
+            [a, b, c, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0]
+        };
+        indices.chunks_exact(3).flat_map(of).collect()
+    }
+
+    /// How far places of one are from all of the other, at most; both ways, in all poses.
+    fn off(poses: &[Vec<[f32; 3]>], mesh: &[u32], level: &[u32]) -> f32 {
+        let one_way = |pose: &Vec<[f32; 3]>, from: &[u32], to: &[u32]| {
+            let distance = |place: Vec3| {
+                let on = |triangle: &[u32]| {
+                    let corners = [0, 1, 2].map(|corner| Vec3::from(pose[triangle[corner] as usize]));
+                    nearest_on_triangle(place, corners).distance(place)
+                };
+                to.chunks_exact(3).map(on).fold(f32::INFINITY, f32::min)
+            };
+            places(pose, from).into_iter().map(distance).fold(0.0, f32::max)
+        };
+        let ways = poses.iter().flat_map(|pose| [one_way(pose, mesh, level), one_way(pose, level, mesh)]);
+        ways.fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn distances_are_kept_both_ways_in_every_pose() {
+        let (poses, indices) = sheet();
+        let surface = Surface { poses: &poses, indices: &indices, attributes: &[], stride: 0 };
+        let distances = [0.0, 0.008, 0.02, 0.05];
+        let found = simplify_within(&surface, &Options::default(), &distances).expect("valid");
+        assert_eq!(found.stopped(), Stopped::Exhausted);
+        let level = |found: &Simplified, count| found.triangles(&indices, count);
+        let mut last = indices.len();
+        for distance in distances {
+            let triangles = level(&found, found.collapses_near(distance));
+            let worst = off(&poses, &indices, &triangles);
+            assert!(worst <= distance * 1.001 + 1e-6, "{worst} of {distance}");
+            assert!(
+                distance == 0.0 || (triangles.len() < last && worst > 0.5 * distance),
+                "{worst} of {distance}"
+            );
+            last = triangles.len();
+        }
+        assert!(6 * last < indices.len(), "{last} indices left");
+        // Quadrics alone have more triangles left when first they are so far off.
+        let plain = simplify(&surface, &Options::default()).expect("valid");
+        assert!(plain.collapses().iter().all(|collapse| collapse.distance == f32::INFINITY));
+        let within = |count| off(&poses, &indices, &level(&plain, count)) <= 0.02;
+        let far =
+            (0..plain.collapses().len()).step_by(5).find(|count| !within(*count)).expect("far off at last");
+        let near = level(&found, found.collapses_near(0.02)).len();
+        assert!(5 * level(&plain, far).len() > 6 * near, "{} and {near}", level(&plain, far).len());
+    }
+
+    #[test]
+    fn distances_are_checked() {
+        let (poses, indices) = sheet();
+        let surface = Surface { poses: &poses, indices: &indices, attributes: &[], stride: 0 };
+        let refused = |distances: &[f32]| {
+            simplify_within(&surface, &Options::default(), distances).expect_err("refused").field
+        };
+        assert_eq!(refused(&[-1.0]), "distances[0]");
+        assert_eq!(refused(&[0.5, 0.25]), "distances[1]");
+        assert_eq!(refused(&[0.5, f32::NAN]), "distances[1]");
+        let none = simplify_within(&surface, &Options::default(), &[]).expect("valid");
+        assert_eq!((none.collapses().len(), none.stopped()), (0, Stopped::Exhausted));
+    }
+}
