@@ -92,9 +92,9 @@ fn the_limits_are_kept() {
     for error in [2e-3, 5e-3, 1e-2] {
         let some = shape.simplified(&Options { error, ..Options::default() });
         assert_eq!(some.stopped(), Stopped::Error);
-        let within = all.collapses().iter().filter(|collapse| collapse.error <= error).count();
+        let within = all.collapses_within(error);
         assert_eq!(some.collapses(), &all.collapses()[..within]);
-        assert!(some.error() <= error && some.error() > error / 2.0);
+        assert!(some.error() <= error && all.collapses()[within].error > error);
     }
 }
 
