@@ -24,7 +24,8 @@
 //! DeCoro and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take the sum).
 //!
 //! The same input gives the same collapses on every machine: only `+ − × ÷` and square roots, in a fixed order, and
-//! ties go to the lower index. Time grows as n log n in triangles, and in proportion to poses.
+//! ties go to the lower index. Time grows as n log n in triangles, and in proportion to poses. Quadrics take 88 bytes a
+//! point and pose.
 
 mod attributes;
 mod melax;
