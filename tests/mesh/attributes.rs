@@ -3,7 +3,7 @@
 use relievo::mesh::{Cost, Options, Surface, simplify};
 
 use crate::measure::topology;
-use crate::shapes::{Shape, cube, ground, sphere, torus};
+use crate::shapes::{Shape, cube, ground, sheet, sphere, torus};
 
 /// Twice the area of all triangles on the texture.
 fn uv_area(shape: &Shape, indices: &[u32]) -> f64 {
@@ -57,6 +57,21 @@ fn every_wedge_finds_an_heir() {
         }
         assert!(strangers <= poles, "{strangers}");
     }
+}
+
+/// A disc in polar coordinates: its middle has a wedge a sector, each with a texture coordinate of its own.
+#[test]
+fn poles_go_too() {
+    let shape = sheet([12, 3], |column, row| {
+        let turn = std::f64::consts::TAU * (column % 12) as f64 / 12.0;
+        let radius = row as f64;
+        [radius * turn.cos(), radius * turn.sin(), 0.0]
+    });
+    let simplified = shape.simplified(&Options { error: 1e-6, ..Options::default() });
+    assert_eq!(simplified.triangles_left(), 10);
+    let gone =
+        (0..simplified.collapses().len()).map(|at| simplified.moved(at)).find(|moved| moved[0][0] < 13);
+    assert_eq!(gone.map(<[_]>::len), Some(13));
 }
 
 #[test]

@@ -92,9 +92,9 @@ fn the_limits_are_kept() {
     for error in [2e-3, 5e-3, 1e-2] {
         let some = shape.simplified(&Options { error, ..Options::default() });
         assert_eq!(some.stopped(), Stopped::Error);
-        let within = all.collapses().iter().filter(|collapse| collapse.error <= error).count();
+        let within = all.collapses_within(error);
         assert_eq!(some.collapses(), &all.collapses()[..within]);
-        assert!(some.error() <= error && some.error() > error / 2.0);
+        assert!(some.error() <= error && all.collapses()[within].error > error);
     }
 }
 
@@ -139,5 +139,27 @@ fn the_same_mesh_gives_the_same_collapses() {
     for (at, collapse) in again.collapses().iter().enumerate() {
         assert_eq!(again.moved(at), whole.moved(at));
         assert!((collapse.error - whole.collapses()[at].error).abs() <= 1e-5 * collapse.error);
+    }
+}
+
+/// By powers of two, so that nothing is rounded.
+#[test]
+fn size_does_not_matter() {
+    let shape = ground(12, bumps);
+    for cost in [Cost::Quadric, Cost::Melax { check_normals: true }] {
+        let options = Options { cost, ..Options::default() };
+        let whole = shape.simplified(&options);
+        for exponent in [-100, 120] {
+            let scale = 2.0_f32.powi(exponent);
+            let mut other = shape.clone();
+            other.poses[0].as_flattened_mut().iter_mut().for_each(|x| *x *= scale);
+            let scaled = other.simplified(&options);
+            assert_eq!(scaled.collapses().len(), whole.collapses().len());
+            for (at, [a, b]) in
+                scaled.collapses().iter().zip(whole.collapses()).map(|(a, b)| [a, b]).enumerate()
+            {
+                assert_eq!((scaled.moved(at), a.error), (whole.moved(at), b.error * scale), "{exponent}");
+            }
+        }
     }
 }

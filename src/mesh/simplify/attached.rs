@@ -124,8 +124,10 @@ impl Attached {
         best
     }
 
-    /// Takes note of the collapse that was last looked at, before it happens.
-    pub fn collapse(&mut self, topology: &Topology, point: u32) {
+    /// Takes note of a collapse that keeps near, before it happens.
+    pub fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
+        // Others may have been looked at since.
+        self.keeps_near(topology, points, point, neighbor);
         for triangle in topology.around(point) {
             self.gone[*triangle as usize].clear();
         }
