@@ -1,5 +1,6 @@
 //! Several characters in one picture: the built-in creature, and every `.glb` or `.gltf` that is named. Each plays its
-//! first clip; instances are posed, seen, faded, skinned and drawn by the device. Writes `characters.png`.
+//! first clip; instances are posed, seen, faded, skinned and drawn by the device, with as few triangles as it takes for
+//! no surface to be more than half a pixel off. Writes `characters.png`.
 //!
 //! `cargo run --release --example characters -- [FILE …]`
 
@@ -9,18 +10,24 @@ use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{Affine, ClipSet, Instance, Model, creature};
+use relievo::animation::{Affine, ClipSet, Instance, Lens, Model, creature};
 use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
-use relievo::skinning::Blend;
 use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::lod::standing;
 use relievo::skinning::picture::Light;
+use relievo::skinning::{Blend, Extent, add_levels, level_errors};
 use relievo::surface::mips::Mips;
 
 /// Instances of each character.
 const COUNT: usize = 40;
+
+/// The picture.
+const SIZE: [u32; 2] = [960, 540];
+
+/// Radians, vertical.
+const FIELD_OF_VIEW: f32 = 0.8;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Yours: `Gpu::from_wgpu(device, queue)`.
@@ -35,6 +42,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let clay: Albedo = ColorTexture::new(&gpu, &clay, true)?.into();
     let mut crowd = CrowdScene::new(&gpu, COLOR_FORMAT, Light::default())?;
     let mut animations = Vec::new();
+    for model in &mut models {
+        let poses = 60;
+        add_levels(model, &[0], poses)?;
+    }
     for (index, model) in models.iter().enumerate() {
         let clip = model.clips.first().ok_or("a character needs a clip")?;
         let (set, duration) = (ClipSet::new(&[clip])?, clip.duration());
@@ -54,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 moved: None,
                 placements: &placements,
                 fade: [10.0, 40.0],
-                levels: &[],
+                levels: &level_begins(model),
                 blend: Blend::Linear,
                 albedos: &albedos,
             },
@@ -63,11 +74,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     // A frame.
-    let (size, eye) = ([960, 540], Vec3::new(0.0, 4.0, 8.0));
+    let eye = Vec3::new(0.0, 4.0, 8.0);
     let view = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.5, -6.0), Vec3::Y);
-    let lens = camera::rh::proj::directx::perspective(0.8, 960.0 / 540.0, 0.1, 200.0);
+    let lens = camera::rh::proj::directx::perspective(FIELD_OF_VIEW, 960.0 / 540.0, 0.1, 200.0);
     crowd.set_camera(&gpu, lens * view, eye)?;
-    let target = Target::new(&gpu, size)?;
+    let target = Target::new(&gpu, SIZE)?;
     let mut encoder = gpu.encoder("frame");
     for (place, sample, concat) in &animations {
         place.record(&mut encoder);
@@ -83,10 +94,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// From where on levels of detail are half a pixel off.
+fn level_begins(model: &Model) -> Vec<f32> {
+    let (center, radius) = ball_in_clips(model);
+    let scale = scale(radius);
+    let extent = Extent { center, radius: scale * radius, stray: 0.0 };
+    let lens = Lens::new(SIZE[1], FIELD_OF_VIEW, 0.1);
+    extent.level_ranges(&lens, 0.5, level_errors(&model.meshes).into_iter().map(|error| scale * error))
+}
+
+/// Makes a ball three metres large.
+fn scale(radius: f32) -> f32 {
+    1.5 / radius.max(1e-6)
+}
+
 /// In rows away from the eye, every character two metres large, turned every way.
 fn places(model: &Model, index: usize, characters: usize) -> Vec<Affine> {
     let (center, radius) = ball_in_clips(model);
-    let scale = 1.5 / radius.max(1e-6);
+    let scale = scale(radius);
     let place = |at: usize| {
         let (row, column) = (at / 8, (at % 8 * characters + index) as f32);
         let x = (column - 4.0 * characters as f32 + 0.5) * 2.0 / characters as f32;

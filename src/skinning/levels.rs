@@ -12,8 +12,10 @@ use crate::InputError;
 use crate::animation::Model;
 use crate::mesh::simplify::{Options, Simplified, Surface, simplify_within};
 use near::{Near, Sides};
+use welded::Welded;
 
 mod near;
+mod welded;
 
 /// The most that the finest level may be off, of the mesh's size: the diagonal of its box.
 const FIRST: f32 = 1e-3;
@@ -45,7 +47,8 @@ pub struct MeshLevels {
 impl MeshLevels {
     /// Simplifies a mesh for these clips and the pose that it was bound in, and measures each level in `poses` of each
     /// clip, evenly spaced from start to end; 60 a second of a clip are many enough. Blended linearly, with the weights
-    /// of morph targets that the clips have.
+    /// of morph targets that the clips have. Edges that are hard in normals alone do not matter: what is left keeps
+    /// vertices that face as they did.
     ///
     /// The error of a level is the largest distance, in all of these poses, from a vertex of the mesh to the level's
     /// triangles near it, and from the middles of the level's triangles and their edges to the mesh's triangles that
@@ -57,13 +60,14 @@ impl MeshLevels {
         let moments = moments(model, mesh, clips, poses)?;
         let mesh = &model.meshes[mesh];
         let keys = key_poses(model, mesh, &moments);
-        let simplified = simplified(mesh, &keys)?;
-        let levels = level_triangles(mesh, &simplified);
+        let welded = Welded::new(mesh, &keys);
+        let simplified = simplified(mesh, &welded, &keys)?;
+        let levels = found(mesh, &welded, &simplified);
         let keys: Vec<Vec<Vec3>> =
             keys.into_iter().map(|key| key.into_iter().map(Vec3::from).collect()).collect();
         let sides: Vec<Sides> = levels
             .par_iter()
-            .map(|(collapses, indices)| Sides::new(mesh, &simplified, *collapses, indices, &keys))
+            .map(|level| Sides::new(mesh, |vertex| simplified.point(vertex), level, &keys))
             .collect();
         let errors = moments
             .par_iter()
@@ -73,7 +77,7 @@ impl MeshLevels {
             })
             .reduce(|| vec![0.0; sides.len()], |a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect());
         let mut most = 0.0_f32;
-        let level = |((_, indices), error): ((usize, Vec<u32>), f32)| {
+        let level = |(Found { indices, .. }, error): (Found, f32)| {
             most = most.max(ERROR_MARGIN * error);
             MeshLevel { indices, error: most }
         };
@@ -94,6 +98,31 @@ impl MeshLevels {
     }
 }
 
+/// Gives all meshes of a model their levels ([`MeshLevels::new`]), and says what each was found to be.
+///
+/// # Errors
+/// [`InputError`] as [`MeshLevels::new`].
+pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
+    let meshes = 0..model.meshes.len();
+    let all = meshes.map(|mesh| MeshLevels::new(model, mesh, clips, poses));
+    let all = all.collect::<Result<Vec<_>, _>>()?;
+    for (mesh, found) in model.meshes.iter_mut().zip(&all) {
+        mesh.levels.clone_from(&found.levels);
+    }
+    Ok(all)
+}
+
+/// How far a character is off, units of the model, at level 1, 2 … of its meshes, which change together: the largest of
+/// their errors; of a mesh that has fewer levels, that of its last.
+pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
+    let levels = meshes.iter().map(|mesh| mesh.levels.len()).max().unwrap_or(0);
+    let error = |mesh: &Mesh, level: usize| {
+        let last = mesh.levels.len().checked_sub(1)?;
+        Some(mesh.levels[level.min(last)].error)
+    };
+    (0..levels).map(|level| meshes.iter().filter_map(|mesh| error(mesh, level)).fold(0.0, f32::max)).collect()
+}
+
 /// The pose of the bind matrices, and some of these moments.
 fn key_poses(model: &Model, mesh: &Mesh, moments: &[(usize, f32)]) -> Vec<Vec<[f32; 3]>> {
     let every = moments.len().div_ceil(KEY_POSES);
@@ -106,13 +135,14 @@ fn key_poses(model: &Model, mesh: &Mesh, moments: &[(usize, f32)]) -> Vec<Vec<[f
     all
 }
 
-fn simplified(mesh: &Mesh, poses: &[Vec<[f32; 3]>]) -> Result<Simplified, InputError> {
+fn simplified(mesh: &Mesh, welded: &Welded, poses: &[Vec<[f32; 3]>]) -> Result<Simplified, InputError> {
     let size = size(mesh);
     let (normal, texture) = (NORMAL * size, texture_scale(mesh));
-    let attributes: Vec<f32> = (mesh.normals.iter().zip(&mesh.uv))
+    let (normals, indices) = (welded.normals(mesh), welded.indices(mesh));
+    let attributes: Vec<f32> = (normals.iter().zip(&mesh.uv))
         .flat_map(|([x, y, z], [u, v])| [normal * x, normal * y, normal * z, texture * u, texture * v])
         .collect();
-    let surface = Surface { poses, indices: &mesh.indices, attributes: &attributes, stride: 5 };
+    let surface = Surface { poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
         successors(Some(FIRST * size), |last| Some(STEP * last)).take(MOST_LEVELS - 1).collect();
     simplify_within(&surface, &Options::default(), &distances)
@@ -139,20 +169,29 @@ fn texture_scale(mesh: &Mesh) -> f32 {
     if texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
 }
 
-/// How many collapses make each level, and its triangles.
-fn level_triangles(mesh: &Mesh, simplified: &Simplified) -> Vec<(usize, Vec<u32>)> {
+/// A level on its way.
+struct Found {
+    /// What each vertex has become.
+    heirs: Vec<u32>,
+    indices: Vec<u32>,
+}
+
+/// Of vertices of the one before each.
+fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
     let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
     distances.dedup();
-    let mut last = mesh.indices.len() / 3;
+    let mut last = mesh.indices.len();
+    let mut used = vec![true; mesh.vertices()];
     let level = |distance: f32| {
-        let collapses = simplified.collapses_near(distance);
-        let indices = simplified.triangles(&mesh.indices, collapses);
-        let left = indices.len() / 3;
-        if left == 0 || left as f64 > WORTHWHILE * last as f64 {
+        let heirs = welded.heirs(simplified, simplified.collapses_near(distance));
+        let indices = welded.triangles(mesh, simplified, &heirs, &used);
+        if indices.is_empty() || indices.len() as f64 > WORTHWHILE * last as f64 {
             return None;
         }
-        last = left;
-        Some((collapses, indices))
+        last = indices.len();
+        used.fill(false);
+        indices.iter().for_each(|vertex| used[*vertex as usize] = true);
+        Some(Found { heirs, indices })
     };
     distances.into_iter().filter_map(level).collect()
 }
@@ -160,6 +199,7 @@ fn level_triangles(mesh: &Mesh, simplified: &Simplified) -> Vec<(usize, Vec<u32>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::skinning::Influences;
 
     /// A ninth of the triangles within a hundredth of its height, and every level as good as it says in moments that nobody
     /// looked at.
@@ -171,6 +211,13 @@ mod tests {
         let mut levelled = model.clone();
         levelled.meshes[0].levels.clone_from(&found.levels);
         assert_eq!(levelled.meshes[0].validate(&model.skins), Ok(()));
+        let errors: Vec<f32> = found.levels.iter().map(|level| level.error).collect();
+        assert_eq!(level_errors(&levelled.meshes), errors);
+        let mut shorter = levelled.meshes[0].clone();
+        shorter.levels.truncate(2);
+        shorter.levels[1].error = 9.0;
+        let both = level_errors(&[shorter, levelled.meshes[0].clone(), mesh.clone()]);
+        assert_eq!((both.len(), both[0], both[1], both[2]), (errors.len(), errors[0], 9.0, 9.0));
         let triangles = |error: f32| {
             let levels = found.levels.iter().filter(|level| level.error < error);
             levels.map(|level| level.indices.len()).min().unwrap_or(mesh.indices.len())
@@ -190,5 +237,47 @@ mod tests {
             }
             assert!(worst <= *error && worst > 0.5 * error, "level {level}: {worst} of {error}");
         }
+    }
+
+    /// Every triangle with vertices of its own, which face as it does: what is left of it still does.
+    #[test]
+    fn hard_edges_do_not_matter() {
+        let mut model = crate::animation::creature().expect("valid");
+        let smooth = MeshLevels::new(&model, 0, &[0], 9).expect("valid");
+        let mesh = model.meshes[0].clone();
+        let corners: Vec<usize> = mesh.indices.iter().map(|vertex| *vertex as usize).collect();
+        let influences = corners.iter().map(|vertex| mesh.influences.of(*vertex).to_vec());
+        let positions: Vec<_> = corners.iter().map(|vertex| mesh.positions[*vertex]).collect();
+        let indices: Vec<u32> = (0..corners.len() as u32).collect();
+        let hard = Mesh {
+            normals: crate::skinning::mesh::smooth_normals(&positions, &indices),
+            tangents: corners.iter().map(|vertex| mesh.tangents[*vertex]).collect(),
+            uv: corners.iter().map(|vertex| mesh.uv[*vertex]).collect(),
+            influences: Influences::new("w", model.skins[0].bones.len(), influences).expect("valid"),
+            positions,
+            indices,
+            ..mesh
+        };
+        model.meshes[0] = hard;
+        let found = add_levels(&mut model, &[0], 9).expect("valid").remove(0);
+        assert_eq!(model.meshes[0].validate(&model.skins), Ok(()));
+        assert_eq!(found.levels.len(), smooth.levels.len());
+        for (hard, smooth) in found.levels.iter().zip(&smooth.levels) {
+            // Where normals are means of others, other collapses come first.
+            let ratio = hard.indices.len() as f64 / smooth.indices.len() as f64;
+            assert!((0.9..1.1).contains(&ratio), "{ratio}");
+        }
+        let mesh = &model.meshes[0];
+        let face = |triangle: &[u32]| {
+            let [a, b, c] = [0, 1, 2].map(|at| Vec3::from(mesh.positions[triangle[at] as usize]));
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let facing = found.levels[3].indices.chunks_exact(3).flat_map(|triangle| {
+            let face = face(triangle);
+            triangle.iter().map(move |vertex| face.dot(mesh.normals[*vertex as usize].into()))
+        });
+        let all: Vec<f32> = facing.collect();
+        let mean = all.iter().sum::<f32>() / all.len() as f32;
+        assert!(mean > 0.9, "{mean}");
     }
 }

@@ -23,7 +23,7 @@ pub mod skin;
 pub mod weights;
 
 pub use extent::Extent;
-pub use levels::MeshLevels;
+pub use levels::{MeshLevels, add_levels, level_errors};
 pub use material::Material;
 pub use mesh::{Mesh, MeshLevel, reaches};
 pub use morph::{MorphTarget, WeightKeys};

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
+use super::Found;
 use crate::mesh::nearest::nearest_on_triangle;
-use crate::mesh::simplify::Simplified;
 use crate::skinning::mesh::Mesh;
 
 /// So many triangles may be nearest in some pose: those that are in the first.
@@ -50,16 +50,13 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// `keys` are the poses that decide what is near.
+    /// `point` says which of the mesh's vertices are at one place, `keys` are the poses that decide what is near.
     pub(super) fn new(
         mesh: &Mesh,
-        simplified: &Simplified,
-        collapses: usize,
-        level: &[u32],
+        point: impl Fn(u32) -> u32,
+        Found { heirs, indices: level }: &Found,
         keys: &[Vec<Vec3>],
     ) -> Self {
-        let heirs = simplified.heirs(collapses);
-        let point = |vertex: u32| simplified.point(vertex);
         let ring = Around::new(level.iter().map(|vertex| point(*vertex)), mesh.vertices());
         let mut used = vec![false; mesh.vertices()];
         level.iter().for_each(|vertex| used[*vertex as usize] = true);

@@ -6,7 +6,7 @@ use relievo::InputError;
 #[cfg(feature = "gpu")]
 use relievo::{
     animation::Model,
-    skinning::{Mesh, MeshLevels},
+    skinning::{Mesh, MeshLevels, add_levels},
 };
 
 use super::skinning::bounded;
@@ -51,13 +51,8 @@ pub struct Levelled {
 impl Levelled {
     /// For one of a model's clips, looked at in so many poses.
     pub fn new(model: &Model, clip: usize, poses: usize) -> Result<Self, InputError> {
-        let meshes = 0..model.meshes.len();
-        let levels: Vec<_> =
-            meshes.map(|mesh| MeshLevels::new(model, mesh, &[clip], poses)).collect::<Result<_, _>>()?;
         let mut model = model.clone();
-        for (mesh, found) in model.meshes.iter_mut().zip(&levels) {
-            mesh.levels.clone_from(&found.levels);
-        }
+        let levels = add_levels(&mut model, &[clip], poses)?;
         Ok(Self { model, levels })
     }
 }
