@@ -57,7 +57,8 @@ impl Bench {
         let out = self.path("out");
         let run = relievo(&[&["skin", "--model", model, "--out", &out], more].concat());
         assert_eq!(run.code, Some(0), "{}", run.stderr);
-        assert!(run.stdout.is_empty() && run.stderr.is_empty());
+        assert_eq!(run.stdout.is_empty(), !more.contains(&"--within"), "{}", run.stdout);
+        assert!(run.stderr.is_empty());
         let picture = image::open(Path::new(&out).join("skin.png")).expect("a picture").to_rgb8();
         // Something is seen, in the middle of something else.
         let corner = picture.get_pixel(0, 0);
@@ -121,9 +122,28 @@ fn both_backends_agree_and_every_option_matters() {
     assert_eq!(vertices(&["--influences", "fade:1"]), vertices(&["--influences", "truncate:1"]));
 }
 
+/// The vertices stay, with fewer triangles over them the further they may be off.
+#[test]
+fn triangles_are_left_out() {
+    let bench = Bench::new();
+    let found = |more: &[&str]| {
+        let lines = bench.skin("builtin", &[&["--clip", "walk", "--time", "0.3"], more].concat());
+        let (faces, others): (Vec<_>, Vec<_>) = lines.into_iter().partition(|line| line.starts_with("f "));
+        (faces.len(), others)
+    };
+    let (all, places) = found(&[]);
+    assert_eq!(found(&["--within", "0"]), (all, places.clone()));
+    let (near, far) = (found(&["--within", "0.003", "--backend", "cpu"]), found(&["--within", "0.014"]));
+    assert!(near.0 < all * 2 / 3 && far.0 < all / 8, "{all}, {}, {}", near.0, far.0);
+    assert_eq!((near.1.len(), far.1), (places.len(), places));
+}
+
 #[test]
 fn what_cannot_be_skinned_is_refused() {
     let bench = Bench::new();
+    for metres in ["-1", "NaN", "inf"] {
+        bench.refused("builtin", &["--clip", "walk", "--within", metres], "within");
+    }
     let path = |name| bench.path(name);
     for (influences, words) in [
         ("half", "must be full, truncate:K or fade:LAMBDA"),

@@ -13,13 +13,13 @@ use relievo::reference::skinning::texture::Surface;
 use relievo::skinning::export::obj;
 use relievo::skinning::mesh::COORDINATE_LIMIT;
 use relievo::skinning::picture::{Light, framing};
-use relievo::skinning::{Blend, Mesh, Reduction, Vertex};
+use relievo::skinning::{Blend, Mesh, Reduction, Vertex, add_levels};
 use relievo::surface::linear_image::LinearImage;
 use relievo::{Error, InputError};
 
 use crate::Context;
-use crate::output::Staged;
-use crate::pose::{Backend, WrapName, find, on_cpu, open};
+use crate::output::{Staged, say};
+use crate::pose::{Backend, WrapName, find, on_cpu, open, place, poses};
 
 /// Writes the meshes of a model at a moment of a clip: where every vertex is, and a picture.
 ///
@@ -47,6 +47,10 @@ pub struct Skin {
     /// Blends rigid motions rather than matrices: twisted limbs keep their volume.
     #[arg(long)]
     dual_quaternion: bool,
+    /// Leaves triangles out: each mesh is the coarsest of its levels of detail whose surface is never further off than
+    /// this, in any pose of the clip, and says what is left. Vertices stay in the file's order.
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
+    within: Option<f32>,
     /// What computes and draws; both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
@@ -101,6 +105,10 @@ impl Skin {
                 source: InputError::new("meshes", "none", bound),
             });
         }
+        let model = match self.within {
+            None => model,
+            Some(metres) => self.coarse(model, metres)?,
+        };
         let moment = Moment::new(self, &model, reduction)?;
         let (vertices, picture) = match self.backend {
             #[cfg(feature = "gpu")]
@@ -109,6 +117,29 @@ impl Skin {
         };
         let picture = picture.reduced(FINER).encoded();
         Ok(Made { model, vertices, picture })
+    }
+}
+
+impl Skin {
+    /// The model with the triangles of its levels.
+    fn coarse(&self, mut model: Model, metres: f32) -> Result<Model, Error> {
+        if !(metres >= 0.0 && metres.is_finite()) {
+            return Err(InputError::new("within", metres, "must be finite, and not negative").into());
+        }
+        let clip = find(&model, &self.model, &self.clip)?;
+        let (index, poses) = (place(&model, clip), poses(clip));
+        add_levels(&mut model, &[index], poses)?;
+        for mesh in &mut model.meshes {
+            let all = mesh.indices.len() / 3;
+            let level = std::mem::take(&mut mesh.levels).into_iter().rfind(|level| level.error <= metres);
+            let error = level.as_ref().map_or(0.0, |level| level.error);
+            if let Some(level) = level {
+                mesh.indices = level.indices;
+            }
+            let left = mesh.indices.len() / 3;
+            say(format_args!("{}: {left} of {all} triangles, {error} metres off", mesh.name))?;
+        }
+        Ok(model)
     }
 }
 
@@ -146,7 +177,7 @@ impl<'a> Moment<'a> {
     fn new(skin: &Skin, model: &'a Model, reduction: Reduction) -> Result<Self, Error> {
         let clip = find(model, &skin.model, &skin.clip)?;
         let time = skin.wrap.wrap().inside(clip.duration(), skin.time)?;
-        let index = model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default();
+        let index = place(model, clip);
         let blend = if skin.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
         Ok(Self { model, clip: index, time, reduction, blend })
     }

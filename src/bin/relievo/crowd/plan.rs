@@ -9,6 +9,8 @@ use super::gates::{Mode, TICKS};
 use super::skinning::{Drawn, Skinning};
 use super::triangles::Triangles;
 use super::{Crowd, Layout};
+#[cfg(feature = "gpu")]
+use crate::pose::place;
 use crate::pose::{find, open, open_bare};
 use crate::priorities;
 use crate::terrain::Backend;
@@ -100,7 +102,7 @@ impl Plan {
         let model = if drawn.is_some() { open(&a.model)? } else { open_bare(&a.model)? };
         let clip = find(&model, &a.model, &a.clip)?;
         #[cfg(feature = "gpu")]
-        let clip_index = model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default();
+        let clip_index = place(&model, clip);
         let clip = clip.clone();
         let weights = priorities::weights(a.weights.as_deref(), &model.skeleton, &clip, true)?;
         Ok(Self {

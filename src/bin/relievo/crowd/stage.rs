@@ -13,6 +13,8 @@ use super::gates::{Mode, Source};
 use super::plan::Plan;
 #[cfg(feature = "gpu")]
 use super::triangles::{Levelled, Triangles};
+#[cfg(feature = "gpu")]
+use crate::pose::poses;
 
 /// A crowd, its clip, and what all gates need.
 pub struct Stage<'a> {
@@ -73,7 +75,7 @@ impl<'a> Stage<'a> {
             #[cfg(feature = "gpu")]
             levelled: match plan.triangles {
                 Triangles::Bounded(_) if plan.drawn.is_some() => {
-                    Some(Levelled::new(&plan.model, plan.clip_index, poses(plan))?)
+                    Some(Levelled::new(&plan.model, plan.clip_index, poses(&plan.clip))?)
                 }
                 _ => None,
             },
@@ -172,20 +174,10 @@ pub fn moving_bones(table: &GateTable) -> usize {
     table.record(0).1.iter().map(|word| word.count_ones() as usize).sum()
 }
 
-/// Poses of the clip a second that extents look at, and the most.
-#[cfg(feature = "gpu")]
-const POSES: [f32; 2] = [60.0, 1000.0];
-
-#[cfg(feature = "gpu")]
-fn poses(plan: &Plan) -> usize {
-    let [rate, most] = POSES;
-    (rate * plan.clip.duration()).clamp(1.0, most).ceil() as usize + 1
-}
-
 #[cfg(feature = "gpu")]
 fn extents_of(plan: &Plan, meshes: usize) -> Result<Vec<skinning::Extent>, InputError> {
     (0..meshes)
-        .map(|mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses(plan)))
+        .map(|mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses(&plan.clip)))
         .collect()
 }
 

@@ -19,6 +19,11 @@ const ENTRIES: &[Entry] = &[
         arguments: &["--model", "builtin", "--clip", "walk", "--time", "0.3", "--influences", "fade:1"],
     },
     Entry {
+        name: "skin_within",
+        title: "The same with a tenth of its triangles: within 14 millimetres of it in every pose of the walk",
+        arguments: &["--model", "builtin", "--clip", "walk", "--time", "0.3", "--within", "0.014"],
+    },
+    Entry {
         name: "skin_dual",
         title: "It waves, blended by dual quaternions",
         arguments: &["--model", "builtin", "--clip", "wave", "--time", "0.8", "--dual-quaternion"],
