@@ -4,8 +4,8 @@ use glam::Vec3;
 
 /// The place on a triangle that is nearest to a point (Ericson, "Real-Time Collision Detection", section 5.1.5: by the
 /// part of the plane, around corners, edges and the inside, that the point lies over). A triangle may be a line or a
-/// point. For coordinates whose fourth powers are finite, to about 1e-6 of the distance between point and triangle, or
-/// of the triangle's size.
+/// point. For sizes and distances of 1e-8 to 1e9, whose fourth powers are numbers, to about 1e-6 of the larger one;
+/// beyond, some place on the triangle, so that what is measured may be too far, and is never too near.
 pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
@@ -35,13 +35,19 @@ pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
         return b + (c - b) * part(b_to_c - b_to_b, c_to_b - c_to_c);
     }
     let all = over_a + over_b + over_c;
-    a + ab * (over_b / all) + ac * (over_c / all)
+    let [to_b, to_c] = [over_b, over_c].map(|over| share(over, all));
+    a + ab * to_b + ac * to_c.min(1.0 - to_b)
 }
 
-/// `one` of both; 0 of nothing.
+/// `one` of both.
 fn part(one: f32, other: f32) -> f32 {
-    let all = one + other;
-    if all > 0.0 { one / all } else { 0.0 }
+    share(one, one + other)
+}
+
+/// 0 to 1; 0 of nothing, and of what is no number.
+fn share(one: f32, all: f32) -> f32 {
+    let share = one / all;
+    if (0.0..=1.0).contains(&share) { share } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -76,6 +82,21 @@ mod tests {
                     .map(|(u, v)| (CORNERS[1] * u + CORNERS[2] * v).distance(point))
                     .fold(f32::INFINITY, f32::min);
                 assert!(found <= least + 1e-6 && found > least - 0.2, "{point}: {found} {least}");
+            }
+        }
+    }
+
+    /// Too large or too small for their fourth powers.
+    #[test]
+    fn places_are_always_on_the_triangle() {
+        for scale in [1e-30_f32, 1e-18, 1e-11, 1e10, 1e15, 1e18] {
+            for at in 0..100 {
+                let at = at as f32;
+                let [x, y, z] = [1.7, 2.9, 4.3].map(|turn| 6.0 * libm::sinf(turn * at));
+                let found =
+                    nearest_on_triangle(scale * Vec3::new(x, y, z), CORNERS.map(|c| scale * c)) / scale;
+                let is_inside = found.cmpge(Vec3::ZERO).all() && found.x / 4.0 + found.y / 3.0 < 1.0001;
+                assert!(is_inside && found.z == 0.0, "{found} at {scale}");
             }
         }
     }

@@ -161,10 +161,11 @@ fn size(mesh: &Mesh) -> f32 {
 fn texture_scale(mesh: &Mesh) -> f32 {
     let (mut surface, mut texture) = (0.0_f64, 0.0_f64);
     for triangle in mesh.indices.chunks_exact(3) {
-        let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(mesh.positions[triangle[corner] as usize]));
-        let [d, e, f] = [0, 1, 2].map(|corner| Vec2::from(mesh.uv[triangle[corner] as usize]));
-        surface += f64::from((b - a).cross(c - a).length());
-        texture += f64::from((e - d).perp_dot(f - d).abs());
+        let [a, b, c] =
+            [0, 1, 2].map(|corner| Vec3::from(mesh.positions[triangle[corner] as usize]).as_dvec3());
+        let [d, e, f] = [0, 1, 2].map(|corner| Vec2::from(mesh.uv[triangle[corner] as usize]).as_dvec2());
+        surface += (b - a).cross(c - a).length();
+        texture += (e - d).perp_dot(f - d).abs();
     }
     if texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
 }
@@ -199,7 +200,43 @@ fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skinning::Influences;
+    use crate::skinning::{Influence, Influences};
+
+    /// What is measured is what was kept, where the simplifier saw all moments: nothing near is overlooked.
+    #[test]
+    fn errors_are_the_distances_that_were_kept() {
+        let plain = crate::animation::creature().expect("valid");
+        for scale in [1e-6, 1.0, 1e8, 1e15] {
+            let mut model = plain.clone();
+            let mesh = &mut model.meshes[0];
+            mesh.positions.as_flattened_mut().iter_mut().for_each(|x| *x *= scale);
+            // All of it follows one bone, or bones would have to be as large.
+            let follows = (0..mesh.vertices()).map(|_| vec![Influence { bone: 0, weight: 1.0 }]);
+            mesh.influences = Influences::new("w", model.skins[0].bones.len(), follows).expect("valid");
+            let mesh = &model.meshes[0];
+            let keys = key_poses(&model, mesh, &[(0, 0.0)]);
+            let welded = Welded::new(mesh, &keys);
+            let simplified = simplified(mesh, &welded, &keys).expect("valid");
+            let mut distances: Vec<f32> = simplified.collapses().iter().map(|one| one.distance).collect();
+            distances.dedup();
+            let levels = found(mesh, &welded, &simplified);
+            let found = MeshLevels::new(&model, 0, &[0], 1).expect("valid").levels;
+            assert_eq!(levels.len(), found.len());
+            // So large that squares of squares are not numbers: what is measured may be anything larger.
+            if scale > 1e9 {
+                assert!(found.iter().all(|level| level.error.is_finite()));
+                continue;
+            }
+            assert!(levels.len() > 9, "{} at {scale}", levels.len());
+            for (MeshLevel { indices, error }, kept) in found.iter().zip(&levels) {
+                assert_eq!(*indices, kept.indices);
+                let heirs = |distance: f32| welded.heirs(&simplified, simplified.collapses_near(distance));
+                let distance = distances.iter().find(|distance| heirs(**distance) == kept.heirs);
+                let part = error / (ERROR_MARGIN * distance.expect("one of them"));
+                assert!((0.95..=1.001).contains(&part), "{part} at {scale}");
+            }
+        }
+    }
 
     /// A ninth of the triangles within a hundredth of its height, and every level as good as it says in moments that nobody
     /// looked at.

@@ -65,23 +65,31 @@ impl Sides {
                 return Vec::new();
             }
             // None for a vertex without triangles. The heir itself may be a wedge that the level has no triangle of.
-            let candidates = ring.two_rings(point(heirs[vertex as usize]), level, &point);
+            let candidates = ring.two_rings(heirs[vertex as usize], level, &point);
             let places = |key: &Vec<Vec3>| key[vertex as usize];
-            nearest_in_each(keys, places, candidates)
+            nearest_in_each(keys, places, candidates.into_iter())
         };
         let near = Near::of((0..mesh.vertices() as u32).map(before));
 
-        // Triangles of the mesh by the points that their corners became.
-        let became =
-            Around::new(mesh.indices.iter().map(|vertex| point(heirs[*vertex as usize])), mesh.vertices());
+        // Triangles of the mesh, but those without area, by the points that their corners became.
+        let has_area = |triangle: &&[u32]| {
+            let [a, b, c] = [0, 1, 2].map(|corner| point(triangle[corner]));
+            a != b && b != c && c != a
+        };
+        let whole: Vec<u32> = mesh.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
+        let became = Around::new(whole.iter().map(|vertex| point(heirs[*vertex as usize])), mesh.vertices());
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
-        let behind = Near::of(samples.iter().map(|(corners, parts)| {
-            let triangles: BTreeSet<u32> =
-                corners.iter().flat_map(|corner| became.of(point(*corner))).copied().collect();
-            let place = |key: &Vec<Vec3>| blend(corners, parts, &|vertex| key[vertex as usize]);
-            let candidates =
-                triangles.into_iter().map(|triangle| corners_of(&mesh.indices, triangle)).collect();
-            nearest_in_each(keys, place, candidates)
+        let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
+            let mut candidates: Vec<u32> = (ring.beside(triangle, level, &point).into_iter())
+                .flat_map(|point| became.of(point))
+                .copied()
+                .collect();
+            candidates.sort_unstable();
+            candidates.dedup();
+            samples_of(triangle).map(|(corners, parts)| {
+                let place = |key: &Vec<Vec3>| blend(&corners, &parts, &|vertex| key[vertex as usize]);
+                nearest_in_each(keys, place, candidates.iter().map(|at| corners_of(&whole, *at)))
+            })
         }));
         Self { near, samples, behind }
     }
@@ -118,19 +126,24 @@ fn corners_of(indices: &[u32], triangle: u32) -> [u32; 3] {
 fn nearest_in_each(
     keys: &[Vec<Vec3>],
     wanted: impl Fn(&Vec<Vec3>) -> Vec3,
-    mut candidates: Vec<[u32; 3]>,
+    candidates: impl Iterator<Item = [u32; 3]>,
 ) -> Vec<[u32; 3]> {
     let off = |key: &Vec<Vec3>, wanted: Vec3, triangle: &[u32; 3]| {
         let corners = triangle.map(|vertex| key[vertex as usize]);
         nearest_on_triangle(wanted, corners).distance_squared(wanted)
     };
     let first = wanted(&keys[0]);
-    candidates.sort_by_cached_key(|triangle| off(&keys[0], first, triangle).to_bits());
-    candidates.truncate(MOST);
+    let mut candidates: Vec<_> =
+        candidates.map(|triangle| (off(&keys[0], first, &triangle).to_bits(), triangle)).collect();
+    if candidates.len() > MOST {
+        candidates.select_nth_unstable(MOST);
+        candidates.truncate(MOST);
+    }
+    candidates.sort_unstable();
     let mut nearest = BTreeSet::new();
     for key in keys {
         let wanted = wanted(key);
-        let distances = candidates.iter().map(|triangle| (off(key, wanted, triangle), triangle));
+        let distances = candidates.iter().map(|(_, triangle)| (off(key, wanted, triangle), triangle));
         nearest.extend(distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, triangle)| *triangle));
     }
     nearest.into_iter().collect()
@@ -163,10 +176,15 @@ impl Around {
         &self.triangles[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
     }
 
-    /// The triangles around a point and those around their corners.
-    fn two_rings(&self, point: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<[u32; 3]> {
-        let corners = self.of(point).iter().flat_map(|triangle| corners_of(level, *triangle));
-        let points: BTreeSet<u32> = corners.map(of).collect();
+    /// The points of the triangles around some vertices' points.
+    fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> BTreeSet<u32> {
+        let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
+        around.flat_map(|triangle| corners_of(level, *triangle)).map(of).collect()
+    }
+
+    /// The triangles around a vertex's point and those around their corners.
+    fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<[u32; 3]> {
+        let points = self.beside(&[vertex], level, of);
         let triangles: BTreeSet<u32> = points.iter().flat_map(|point| self.of(*point)).copied().collect();
         triangles.into_iter().map(|triangle| corners_of(level, triangle)).collect()
     }
