@@ -22,8 +22,9 @@ pub const MOST_LEVELS: usize = 16;
 pub struct MeshLevel {
     /// Three a triangle, of the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
-    /// Units of the model, not negative: no vertex is further from this level's surface, and no point of it from the
-    /// mesh's, in the poses that were looked at.
+    /// Units of the model, not negative: how far the level's surface and the mesh's are apart, in the poses that were
+    /// looked at. [`MeshLevels`](super::levels::MeshLevels) measures it at places: no vertex of the mesh is further from
+    /// the level, and none of these places on the level from the mesh; what lies between may be.
     pub error: f32,
 }
 

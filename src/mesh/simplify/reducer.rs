@@ -132,8 +132,8 @@ impl<'a> Reducer<'a> {
     }
 
     /// Normals of points have changed, and triangles that places may lie on, so that something that was refused to a
-    /// neighbour of theirs may be legal now. Nothing else becomes legal for points whose own triangles are as they were: their triangles turn as before, and
-    /// who neighbours both ends of an edge can only become more.
+    /// neighbour of theirs may be legal now. Nothing else becomes legal for points whose own triangles are as they were:
+    /// their triangles turn as before, and who neighbours both ends of an edge can only become more.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
         self.collect(changed, &mut around);
