@@ -80,7 +80,8 @@ impl Extent {
 
     /// How far away an instance must count for what is `off` in it to be so many pixels off at most; finite.
     fn beyond(&self, lens: &Lens, pixels: f32, off: f32) -> f32 {
-        let [focal, pixels, radius, off] = [lens.focal_pixels, pixels, self.radius, off].map(f64::from);
+        let [focal, pixels, radius, off] =
+            [lens.focal_pixels, pixels.max(0.0), self.radius, off].map(f64::from);
         let away = 3.0 * radius + off * (focal + pixels) / pixels;
         // Nothing is off, or nothing may be.
         away.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
@@ -173,7 +174,7 @@ mod tests {
         // Twice the pixels, half the way.
         let nearer = range(&extent, 1.0)[1];
         assert!(((nearer - near) / (far - near) - 0.5).abs() < 1e-3, "{nearer} {far}");
-        assert_eq!(range(&extent, 0.0), [4.5, f32::MAX]);
+        assert_eq!([0.0, -1.0].map(|pixels| range(&extent, pixels)), [[4.5, f32::MAX]; 2]);
         let rigid = Extent { stray: 0.0, ..extent };
         for pixels in [0.0, 1.0] {
             let [near, far] = range(&rigid, pixels);

@@ -94,12 +94,12 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///
 /// With --scene, instead: the whole frame at each distance in five ways, which differ in nothing else: "off" (all bones,
 /// influences and triangles), "animation" (the gate), "skinning" (--skinning), "both" of these, and "all" (both, and
-/// --mesh, where it is not full). DIR/scene.json: what report.json says of
-/// the crowd, "vertices", "skinning", "mesh", for each mesh "fade" (units from which on it fades, and from which on it is rigid, or null) and
-/// "stray_metres" (how far the whole fade takes a vertex), "levels" [{"triangles", "vertices", "error_metres", "from"
-/// (units)}], and "distances": "distance", "tall_pixels" (size of the
-/// nearest instance), "mean_omega", for each way the fields above, and "cheaper" {"frame", "compute"}, off divided by
-/// both, and "all_cheaper", by all. scene.png: "frame_nanoseconds" against distance; crowd_<distance>.png: the last way.
+/// --mesh, where it is not full). DIR/scene.json: what report.json says of the crowd, "vertices", "skinning", "mesh", for
+/// each mesh "fade" (units from which on it fades, and from which on it is rigid, or null), "stray_metres" (how far the
+/// whole fade takes a vertex), "levels" [{"triangles", "vertices", "error_metres", "from" (units)}], and "distances":
+/// "distance", "tall_pixels" (size of the nearest instance), "mean_omega", for each way the fields above, and "cheaper"
+/// {"frame", "compute"}, off divided by both, and "all_cheaper", by all. scene.png: "frame_nanoseconds" against distance;
+/// crowd_<distance>.png: the last way.
 ///
 /// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
 /// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
@@ -180,7 +180,7 @@ pub struct Crowd {
     /// bounded:0.5.
     #[arg(long, value_name = "full|truncate:K|fade|bounded:PIXELS")]
     skinning: Option<String>,
-    /// Which triangles meshes have: all; or as few as it takes for no surface to be more than PIXELS off, which add to
+    /// Which triangles meshes have: all; or as few as it takes for no vertex to be more than PIXELS off what is drawn, which add to
     /// those of --skinning and the gate. Default: full, with --scene bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS")]
     mesh: Option<String>,

@@ -10,7 +10,7 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::skinning::mesh::Mesh;
 
 /// So many triangles may be nearest in some pose: those that are in the first.
-const MOST: usize = 8;
+const MOST: usize = 32;
 
 /// For things in a row, the triangles near each.
 #[derive(Debug, Clone, Default)]

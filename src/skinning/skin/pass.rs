@@ -148,8 +148,9 @@ impl SkinPass {
 /// Records a copy of vertices as they are, before the next skinning changes them: last frame's, for motion vectors.
 ///
 /// Instances that were not seen in the frame before have no vertices of that frame: theirs are of the time when they
-/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are, and at which
-/// level the others were: so are vertices beyond it.
+/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are. Vertices beyond
+/// the level that an instance had are of an earlier time too: that level stands there until the next selection, so whoever
+/// needs it copies it here as well.
 ///
 /// # Errors
 /// [`InputError`] for buffers of different lengths.
