@@ -1,5 +1,7 @@
 //! A progress bar on a terminal; nothing elsewhere.
 
+use std::time::Duration;
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar of `total` steps. indicatif draws nothing where standard error is not a terminal.
@@ -8,4 +10,15 @@ pub fn bar(total: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(total).with_message(what.to_owned());
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar
+}
+
+/// Says what is going on, and for how long, while something takes its time in one piece.
+pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let style = ProgressStyle::with_template("{msg:18} {spinner} {elapsed}");
+    let spinner = ProgressBar::new_spinner().with_message(what.to_owned());
+    spinner.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let done = work();
+    spinner.finish_and_clear();
+    done
 }

@@ -20,6 +20,7 @@ use relievo::{Error, InputError};
 use crate::Context;
 use crate::output::{Staged, say};
 use crate::pose::{Backend, WrapName, find, on_cpu, open, place, poses};
+use crate::progress::during;
 
 /// Writes the meshes of a model at a moment of a clip: where every vertex is, and a picture.
 ///
@@ -128,7 +129,7 @@ impl Skin {
         }
         let clip = find(&model, &self.model, &self.clip)?;
         let (index, poses) = (place(&model, clip), poses(clip));
-        add_levels(&mut model, &[index], poses)?;
+        during("simplifying", || add_levels(&mut model, &[index], poses))?;
         for mesh in &mut model.meshes {
             let all = mesh.indices.len() / 3;
             let level = std::mem::take(&mut mesh.levels).into_iter().rfind(|level| level.error <= metres);

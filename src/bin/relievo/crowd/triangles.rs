@@ -10,6 +10,8 @@ use relievo::{
 };
 
 use super::skinning::bounded;
+#[cfg(feature = "gpu")]
+use crate::progress::during;
 
 /// Which triangles of its meshes a crowd has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +54,7 @@ impl Levelled {
     /// For one of a model's clips, looked at in so many poses.
     pub fn new(model: &Model, clip: usize, poses: usize) -> Result<Self, InputError> {
         let mut model = model.clone();
-        let levels = add_levels(&mut model, &[clip], poses)?;
+        let levels = during("simplifying", || add_levels(&mut model, &[clip], poses))?;
         Ok(Self { model, levels })
     }
 }
