@@ -1,6 +1,6 @@
 //! Several characters in one picture: the built-in creature, and every `.glb` or `.gltf` that is named. Each plays its
 //! first clip; instances are posed, seen, faded, skinned and drawn by the device, with as few triangles as it takes for
-//! no surface to be more than half a pixel off. Writes `characters.png`.
+//! no vertex to be more than half a pixel off. Writes `characters.png`.
 //!
 //! `cargo run --release --example characters -- [FILE …]`
 
@@ -76,7 +76,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A frame.
     let eye = Vec3::new(0.0, 4.0, 8.0);
     let view = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.5, -6.0), Vec3::Y);
-    let lens = camera::rh::proj::directx::perspective(FIELD_OF_VIEW, 960.0 / 540.0, 0.1, 200.0);
+    let lens =
+        camera::rh::proj::directx::perspective(FIELD_OF_VIEW, SIZE[0] as f32 / SIZE[1] as f32, 0.1, 200.0);
     crowd.set_camera(&gpu, lens * view, eye)?;
     let target = Target::new(&gpu, SIZE)?;
     let mut encoder = gpu.encoder("frame");

@@ -186,6 +186,12 @@ impl Simplified {
         self.points[vertex as usize]
     }
 
+    /// Whether three vertices are of three points.
+    pub(crate) fn are_apart(&self, vertices: [u32; 3]) -> bool {
+        let [a, b, c] = vertices.map(|vertex| self.point(vertex));
+        a != b && b != c && c != a
+    }
+
     /// What each vertex is after so many collapses: itself, or what it became.
     ///
     /// # Panics
@@ -210,8 +216,7 @@ impl Simplified {
         let mut left = Vec::new();
         for triangle in indices.chunks_exact(3) {
             let heirs = [0, 1, 2].map(|corner| heirs[triangle[corner] as usize]);
-            let [a, b, c] = heirs.map(|vertex| self.points[vertex as usize]);
-            if a != b && b != c && c != a {
+            if self.are_apart(heirs) {
                 left.extend(heirs);
             }
         }
@@ -270,6 +275,11 @@ pub fn simplify_within(
     Ok(reducer::reduce(surface, points, topology, options, distances))
 }
 
+/// The point of each vertex, numbered by their first vertices: see [`Simplified::point`].
+pub(crate) fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
+    Points::new(poses).into_of()
+}
+
 fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     let Some(first) = surface.poses.first() else {
         return Err(InputError::new("poses.len", 0, "must be at least 1"));
@@ -288,13 +298,7 @@ fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
         }
         finite(&format!("poses[{pose}]"), places.as_flattened(), 3)?;
     }
-    if !surface.indices.len().is_multiple_of(3) {
-        return Err(InputError::new("indices.len", surface.indices.len(), "must be a multiple of 3"));
-    }
-    if let Some(at) = surface.indices.iter().position(|index| *index as usize >= vertices) {
-        let bound = format!("must be below {vertices}, the number of vertices");
-        return Err(InputError::new(format!("indices[{at}]"), surface.indices[at], bound));
-    }
+    super::check_triangles("indices", surface.indices, vertices)?;
     if vertices.checked_mul(surface.stride) != Some(surface.attributes.len()) {
         let bound = format!("must be {vertices} vertices × {}", surface.stride);
         return Err(InputError::new("attributes.len", surface.attributes.len(), bound));

@@ -71,8 +71,7 @@ impl Clusters {
         let slot_of = bones.slots_of_bones();
         let bands = bands(mesh);
         let order = order(mesh, &bands);
-        let mut place = vec![0; mesh.vertices()];
-        (0..).zip(&order).for_each(|(at, vertex)| place[*vertex as usize] = at);
+        let place = places(&order);
         let vertices = morph(mesh, &[]);
         let mask_words = bones.words();
         let clusters = order.chunks(CLUSTER);
@@ -87,6 +86,11 @@ impl Clusters {
             mask_words,
             order,
         })
+    }
+
+    /// Where each of the mesh's vertices lies.
+    pub fn places(&self) -> Vec<u32> {
+        places(&self.order)
     }
 
     /// How many.
@@ -110,6 +114,12 @@ impl Clusters {
         all.sort_by_key(|(vertex, _)| **vertex);
         all.into_iter().map(|(_, value)| *value).collect()
     }
+}
+
+fn places(order: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; order.len()];
+    (0..).zip(order).for_each(|(place, vertex)| places[*vertex as usize] = place);
+    places
 }
 
 fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {

@@ -67,8 +67,8 @@ impl Extent {
 
     /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](super::mesh::MeshLevel::error)) may be
     /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs is seen more than `pixels` from the
-    /// mesh's surface, and no point of that from theirs, as far as the errors hold at that point. Placements neither stretch nor shrink. Where nothing may be off,
-    /// levels with an error begin at the end of all numbers.
+    /// mesh's surface, and no point of that from theirs, as far as the errors hold at that point. Placements neither
+    /// stretch nor shrink. Where nothing may be off, levels with an error begin at the end of all numbers.
     ///
     /// By the formula of [`Extent::fade_range`], with an error as e: of two points of the two surfaces that lie so near
     /// each other the one is off, the other its right place. Both are in the ball, as the vertices of triangles are.

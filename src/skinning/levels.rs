@@ -66,10 +66,8 @@ impl MeshLevels {
         let levels = found(mesh, &welded, &simplified);
         let keys: Vec<Vec<Vec3>> =
             keys.into_iter().map(|key| key.into_iter().map(Vec3::from).collect()).collect();
-        let sides: Vec<Sides> = levels
-            .par_iter()
-            .map(|level| Sides::new(mesh, |vertex| simplified.point(vertex), level, &keys))
-            .collect();
+        let sides: Vec<Sides> =
+            levels.par_iter().map(|level| Sides::new(mesh, &simplified, level, &keys)).collect();
         let errors = moments
             .par_iter()
             .map(|moment| {

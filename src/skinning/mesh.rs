@@ -5,6 +5,7 @@ use super::morph::{MorphTarget, WeightKeys};
 use super::weights::Influences;
 use crate::InputError;
 use crate::animation::skeleton::Skin;
+use crate::mesh::check_triangles;
 use crate::reference::surface::tangent::tangents;
 use crate::surface::tangent;
 
@@ -117,7 +118,7 @@ impl Mesh {
             let bound = format!("must be below {}, the skin's bones", skin.bones.len());
             return Err(InputError::new("mesh.influences", wrong.bone, bound));
         }
-        triangles("mesh.indices", &self.indices, vertices)?;
+        check_triangles("mesh.indices", &self.indices, vertices)?;
         self.validate_levels()?;
         self.validate_targets()
     }
@@ -138,7 +139,7 @@ impl Mesh {
             if level.indices.is_empty() {
                 return Err(InputError::new(format!("{path}.indices.len"), 0, "must be at least 3"));
             }
-            triangles(&format!("{path}.indices"), &level.indices, self.vertices())?;
+            check_triangles(&format!("{path}.indices"), &level.indices, self.vertices())?;
             if let Some(at) = level.indices.iter().position(|vertex| !finer[*vertex as usize]) {
                 let bound = "must be a vertex of the level before";
                 return Err(InputError::new(format!("{path}.indices[{at}]"), level.indices[at], bound));
@@ -207,19 +208,6 @@ pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), 
         }
     }
     Ok(())
-}
-
-fn triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
-    if !indices.len().is_multiple_of(3) {
-        return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));
-    }
-    match indices.iter().position(|index| *index as usize >= vertices) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be below {vertices}, the number of vertices");
-            Err(InputError::new(format!("{path}[{at}]"), indices[at], bound))
-        }
-    }
 }
 
 /// Normals for vertices that have none: the triangles' normals, weighted by their areas. A vertex without triangles

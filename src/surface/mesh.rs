@@ -46,15 +46,6 @@ impl SurfaceMesh {
     /// # Errors
     /// [`InputError`].
     pub fn validate(&self) -> Result<(), InputError> {
-        if !self.indices.len().is_multiple_of(3) {
-            return Err(InputError::new("indices.len", self.indices.len(), "must be a multiple of 3"));
-        }
-        match self.indices.iter().position(|index| *index as usize >= self.vertices.len()) {
-            Some(at) => {
-                let bound = format!("must be below {}, the number of vertices", self.vertices.len());
-                Err(InputError::new(format!("indices[{at}]"), self.indices[at], bound))
-            }
-            None => Ok(()),
-        }
+        crate::mesh::check_triangles("indices", &self.indices, self.vertices.len())
     }
 }

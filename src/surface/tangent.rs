@@ -24,6 +24,7 @@
 //! should be split there, which [`split_mirrored`] does.
 
 use crate::InputError;
+use crate::mesh::check_triangles;
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -89,7 +90,7 @@ impl Mesh<'_> {
         }
         coordinates("positions", self.positions)?;
         coordinates("uv", self.uv)?;
-        triangles(self.indices, vertices)
+        check_triangles("indices", self.indices, vertices)
     }
 }
 
@@ -101,20 +102,6 @@ fn coordinates<const N: usize>(field: &str, vectors: &[[f32; N]]) -> Result<(), 
             let (vertex, axis) = (at / N, at % N);
             let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
             Err(InputError::new(format!("{field}[{vertex}][{axis}]"), vectors[vertex][axis], bound))
-        }
-    }
-}
-
-/// Checks the indices of triangles.
-fn triangles(indices: &[u32], vertices: usize) -> Result<(), InputError> {
-    if !indices.len().is_multiple_of(3) {
-        return Err(InputError::new("indices.len", indices.len(), "must be a multiple of 3"));
-    }
-    match indices.iter().position(|index| *index as usize >= vertices) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be below {vertices}, the number of vertices");
-            Err(InputError::new(format!("indices[{at}]"), indices[at], bound))
         }
     }
 }
@@ -170,7 +157,7 @@ pub struct Split {
 /// # Errors
 /// [`InputError`] for indices out of bounds or not a multiple of 3 of them, and for more than 2³² vertices.
 pub fn split_mirrored(uv: &[[f32; 2]], indices: &[u32]) -> Result<Split, InputError> {
-    triangles(indices, uv.len())?;
+    check_triangles("indices", indices, uv.len())?;
     let area = |triangle: &[u32]| {
         let [a, b, c] = [0, 1, 2].map(|corner| uv[triangle[corner] as usize].map(f64::from));
         (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])

@@ -94,23 +94,9 @@ fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
     scene.crowd.reductions.write(gpu, &seen_of(CROWDS[1], 4))?;
-    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
-    let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
-    let all = CROWDS[1] / 4 * RING * RING;
-    let copied = copy_of(gpu, 73 * all / 2)?;
-    let mesh = &scene.model.meshes[0];
-    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
-    let unskinned = morph(mesh, &[]);
-    let contenders = vec![
-        Contender::job(Backend::Gpu, &job),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
-            for _ in 0..CROWDS[1] / 4 {
-                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
-            }
-        }),
-    ];
-    bench.case("4, a quarter of 10k × 100 seen, no list", (all, "vertex"), 292 * all as u64, contenders)
+    let work =
+        Work { instances: CROWDS[1] / 4, vertices: RING * RING, words: 73, reduction: Reduction::FULL };
+    crowd(bench, pass, &scene, "4, a quarter of 10k × 100 seen, no list", &work)
 }
 
 /// A hundred instances at a level of a quarter of the vertices, without a list that leaves out the others' clusters:
@@ -124,11 +110,33 @@ fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let scene = Scene::of(gpu, model, CROWDS[1])?;
     let level = Reduction::level(1)?;
     scene.crowd.reductions.write(gpu, &[level; CROWDS[1]])?;
+    let each = CLUSTER * scene.clusters.level(1).clusters as usize;
+    let work = Work { instances: CROWDS[1], vertices: each, words: 73, reduction: level };
+    crowd(bench, pass, &scene, "4, 10k × 100 at a level of a quarter, no list", &work)
+}
+
+/// What is skinned of a crowd. Which vertices of an instance these are does not matter to the twin.
+struct Work {
+    instances: usize,
+    vertices: usize,
+    /// That are loaded and stored, a vertex.
+    words: usize,
+    reduction: Reduction,
+}
+
+/// A hundred instances without a list: nanoseconds a vertex of those that are skinned.
+fn crowd(
+    bench: &mut Bench<'_>,
+    pass: &SkinPass,
+    scene: &Scene,
+    name: &str,
+    work: &Work,
+) -> Result<(), Error> {
+    let gpu = bench.gpu;
     let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
     let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
-    let each = CLUSTER * scene.clusters.level(1).clusters as usize;
-    let all = CROWDS[1] * each;
-    let copied = copy_of(gpu, 73 * all / 2)?;
+    let all = work.instances * work.vertices;
+    let copied = copy_of(gpu, work.words * all / 2)?;
     let mesh = &scene.model.meshes[0];
     let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
     let unskinned = morph(mesh, &[]);
@@ -136,14 +144,13 @@ fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Twin, || {
-            // As many as in these clusters; which ones does not matter.
-            let some = &unskinned[..each];
-            for _ in 0..CROWDS[1] {
-                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, level)));
+            let some = &unskinned[..work.vertices];
+            for _ in 0..work.instances {
+                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, work.reduction)));
             }
         }),
     ];
-    bench.case("4, 10k × 100 at a level of a quarter, no list", (all, "vertex"), 292 * all as u64, contenders)
+    bench.case(name, (all, "vertex"), (4 * work.words * all) as u64, contenders)
 }
 
 /// A hundred instances at full fade: the weight that decides is read, and one bone.
@@ -152,24 +159,9 @@ fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
     let rigid = Reduction { fade: 1.0, ..Reduction::FULL };
     scene.crowd.reductions.write(gpu, &[rigid; CROWDS[1]])?;
-    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
-    let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
-    let all = CROWDS[1] * RING * RING;
     // A vertex, a bone and a weight in, the bone's rows, a vertex out.
-    let copied = copy_of(gpu, 34 * all / 2)?;
-    let mesh = &scene.model.meshes[0];
-    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
-    let unskinned = morph(mesh, &[]);
-    let contenders = vec![
-        Contender::job(Backend::Gpu, &job),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
-            for _ in 0..CROWDS[1] {
-                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, rigid)));
-            }
-        }),
-    ];
-    bench.case("4 faded to 1, 10k × 100", (all, "vertex"), 136 * all as u64, contenders)
+    let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, reduction: rigid };
+    crowd(bench, pass, &scene, "4 faded to 1, 10k × 100", &work)
 }
 
 /// Instances of which a buffer holds so many bytes a vertex, a divisor of them all.

@@ -180,8 +180,8 @@ pub struct Crowd {
     /// bounded:0.5.
     #[arg(long, value_name = "full|truncate:K|fade|bounded:PIXELS")]
     skinning: Option<String>,
-    /// Which triangles meshes have: all; or as few as it takes for no vertex to be more than PIXELS off what is drawn, which add to
-    /// those of --skinning and the gate. Default: full, with --scene bounded:0.5.
+    /// Which triangles meshes have: all; or as few as it takes for no vertex to be more than PIXELS off what is drawn,
+    /// which add to those of --skinning and the gate. Default: full, with --scene bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS")]
     mesh: Option<String>,
     /// The folder.

@@ -14,7 +14,9 @@ pub struct Attached {
     middles: Middles,
     /// The most that a place may be off, squared.
     most: f32,
-    /// Of the collapse that was last looked at: places and their triangles.
+    /// The collapse that was last looked at, if it keeps near.
+    looked_at: Option<[u32; 2]>,
+    /// Of this: places and their triangles.
     found: Vec<(u32, u32)>,
     /// Likewise: triangles that there would be, those that it changes first, and their corners.
     triangles: Vec<(u32, [u32; 3])>,
@@ -51,7 +53,7 @@ impl Attached {
             }
         }
         let (found, triangles, below) = (Vec::new(), Vec::new(), Vec::new());
-        Self { gone, middles, most: 0.0, found, triangles, changed: 0, below }
+        Self { gone, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
     }
 
     /// Chooses the most that a place may be off from now on.
@@ -62,6 +64,7 @@ impl Attached {
     /// Whether a point may become its neighbour: it, and all places on the triangles that this changes, find a triangle
     /// among those that both have then; and the middles of these and of their edges lie near the mesh.
     pub fn keeps_near(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
+        self.looked_at = None;
         self.triangles.clear();
         self.found.clear();
         self.below.clear();
@@ -83,10 +86,12 @@ impl Attached {
             let Some(triangle) = self.nearest(points, *gone) else { return false };
             self.found.push((*gone, triangle));
         }
-        self.triangles[..self.changed].iter().all(|(_, [to, next, last])| {
+        let is_near = self.triangles[..self.changed].iter().all(|(_, [to, next, last])| {
             let sides: [&[u32]; 3] = [&[*to, *next], &[*last, *to], &[*to, *next, *last]];
             sides.iter().all(|side| self.is_near(points, side))
-        })
+        });
+        self.looked_at = is_near.then_some([point, neighbor]);
+        is_near
     }
 
     /// Whether the middle of some points lies near one and the same triangle of the mesh in all poses.
@@ -127,7 +132,9 @@ impl Attached {
     /// Takes note of a collapse that keeps near, before it happens.
     pub fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         // Others may have been looked at since.
-        self.keeps_near(topology, points, point, neighbor);
+        if self.looked_at.take() != Some([point, neighbor]) {
+            self.keeps_near(topology, points, point, neighbor);
+        }
         for triangle in topology.around(point) {
             self.gone[*triangle as usize].clear();
         }

@@ -7,7 +7,9 @@ use glam::Vec3;
 
 use super::Found;
 use crate::mesh::nearest::nearest_on_triangle;
+use crate::mesh::simplify::Simplified;
 use crate::skinning::mesh::Mesh;
+use crate::surface::tangent::Adjacency;
 
 /// So many triangles may be nearest in some pose: those that are in the first.
 const MOST: usize = 32;
@@ -50,14 +52,19 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// `point` says which of the mesh's vertices are at one place, `keys` are the poses that decide what is near.
+    /// `keys` are the poses that decide what is near.
     pub(super) fn new(
         mesh: &Mesh,
-        point: impl Fn(u32) -> u32,
+        simplified: &Simplified,
         Found { heirs, indices: level }: &Found,
         keys: &[Vec<Vec3>],
     ) -> Self {
-        let ring = Around::new(level.iter().map(|vertex| point(*vertex)), mesh.vertices());
+        let point = |vertex: u32| simplified.point(vertex);
+        let around = |indices: &[u32], heir: &dyn Fn(u32) -> u32| {
+            let corners: Vec<u32> = indices.iter().map(|vertex| point(heir(*vertex))).collect();
+            Around::new(&corners, mesh.vertices())
+        };
+        let ring = around(level, &|vertex| vertex);
         let mut used = vec![false; mesh.vertices()];
         level.iter().for_each(|vertex| used[*vertex as usize] = true);
         let before = |vertex: u32| {
@@ -72,17 +79,13 @@ impl Sides {
         let near = Near::of((0..mesh.vertices() as u32).map(before));
 
         // Triangles of the mesh, but those without area, by the points that their corners became.
-        let has_area = |triangle: &&[u32]| {
-            let [a, b, c] = [0, 1, 2].map(|corner| point(triangle[corner]));
-            a != b && b != c && c != a
-        };
+        let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let whole: Vec<u32> = mesh.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
-        let became = Around::new(whole.iter().map(|vertex| point(heirs[*vertex as usize])), mesh.vertices());
+        let became = around(&whole, &|vertex| heirs[vertex as usize]);
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
         let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
             let mut candidates: Vec<u32> = (ring.beside(triangle, level, &point).into_iter())
                 .flat_map(|point| became.of(point))
-                .copied()
                 .collect();
             candidates.sort_unstable();
             candidates.dedup();
@@ -150,42 +153,28 @@ fn nearest_in_each(
 }
 
 /// The triangles around each point.
-struct Around {
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
-}
+struct Around(Adjacency);
 
 impl Around {
     /// `corners` are points, three a triangle.
-    fn new(corners: impl Iterator<Item = u32> + Clone, points: usize) -> Self {
-        let mut starts = vec![0_u32; points + 1];
-        corners.clone().for_each(|point| starts[point as usize + 1] += 1);
-        for point in 0..points {
-            starts[point + 1] += starts[point];
-        }
-        let mut next = starts.clone();
-        let mut triangles = vec![0; starts[points] as usize];
-        for (corner, point) in corners.enumerate() {
-            triangles[next[point as usize] as usize] = corner as u32 / 3;
-            next[point as usize] += 1;
-        }
-        Self { starts, triangles }
+    fn new(corners: &[u32], points: usize) -> Self {
+        Self(Adjacency::new(points, corners))
     }
 
-    fn of(&self, point: u32) -> &[u32] {
-        &self.triangles[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
+    fn of(&self, point: u32) -> impl Iterator<Item = u32> + '_ {
+        self.0.at(point as usize).iter().map(|corner| corner / 3)
     }
 
     /// The points of the triangles around some vertices' points.
     fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> BTreeSet<u32> {
         let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
-        around.flat_map(|triangle| corners_of(level, *triangle)).map(of).collect()
+        around.flat_map(|triangle| corners_of(level, triangle)).map(of).collect()
     }
 
     /// The triangles around a vertex's point and those around their corners.
     fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<[u32; 3]> {
         let points = self.beside(&[vertex], level, of);
-        let triangles: BTreeSet<u32> = points.iter().flat_map(|point| self.of(*point)).copied().collect();
+        let triangles: BTreeSet<u32> = points.iter().flat_map(|point| self.of(*point)).collect();
         triangles.into_iter().map(|triangle| corners_of(level, triangle)).collect()
     }
 }

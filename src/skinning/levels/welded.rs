@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use crate::mesh::simplify::Simplified;
+use crate::mesh::simplify::{Simplified, weld};
 use crate::skinning::mesh::Mesh;
 
 /// Which vertices are one.
@@ -19,15 +19,15 @@ pub(super) struct Welded {
 impl Welded {
     /// Vertices at one place in every pose, with the same texture coordinates.
     pub(super) fn new(mesh: &Mesh, poses: &[Vec<[f32; 3]>]) -> Self {
-        let mut known: HashMap<Vec<u32>, u32> = HashMap::with_capacity(mesh.vertices());
+        let points = weld(poses);
+        let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::with_capacity(mesh.vertices());
         let mut all: HashMap<u32, Vec<u32>> = HashMap::new();
         // Adding 0 makes one zero of two.
-        let bits = |number: &f32| (number + 0.0).to_bits();
+        let bits = |number: f32| (number + 0.0).to_bits();
         let first = (0..mesh.vertices() as u32)
             .map(|vertex| {
                 let at = vertex as usize;
-                let places = poses.iter().flat_map(|pose| &pose[at]);
-                let first = *known.entry(places.chain(&mesh.uv[at]).map(bits).collect()).or_insert(vertex);
+                let first = *known.entry((points[at], mesh.uv[at].map(bits))).or_insert(vertex);
                 all.entry(first).or_default().push(vertex);
                 first
             })
@@ -76,11 +76,9 @@ impl Welded {
             // The first of several.
             others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(heir)
         };
-        let point = |vertex: u32| simplified.point(heirs[vertex as usize]);
         let mut left = Vec::new();
         for triangle in mesh.indices.chunks_exact(3) {
-            let [a, b, c] = [0, 1, 2].map(|at| point(triangle[at]));
-            if a != b && b != c && c != a {
+            if simplified.are_apart([0, 1, 2].map(|at| heirs[triangle[at] as usize])) {
                 left.extend(triangle.iter().map(|vertex| corner(*vertex)));
             }
         }

@@ -390,9 +390,7 @@ impl<'a> World<'a> {
             &drawn,
             &scene.arguments,
         )?;
-        let mut places = vec![0; skin.clusters.order.len()];
-        (0..).zip(&skin.clusters.order).for_each(|(place, vertex)| places[*vertex as usize] = place);
-        Ok(Drawable { skin, places, lod, weights, scene })
+        Ok(Drawable { places: skin.clusters.places(), skin, lod, weights, scene })
     }
 }
 

@@ -74,10 +74,10 @@ impl<'a> Stage<'a> {
             extents: extents_of(plan, meshes.len())?,
             #[cfg(feature = "gpu")]
             levelled: match plan.triangles {
-                Triangles::Bounded(_) if plan.drawn.is_some() => {
+                Triangles::Bounded(_) => {
                     Some(Levelled::new(&plan.model, plan.clip_index, poses(&plan.clip))?)
                 }
-                _ => None,
+                Triangles::All => None,
             },
             middle: ((low[1] + high[1]) / 2.0) as f32,
             plan,
