@@ -1,9 +1,9 @@
 //! The same heights from the CPU and from the GPU: `cargo run --example heights`.
 
 use relievo::gpu::{Gpu, Options};
-use relievo::reference::terrain::field::field;
 use relievo::terrain::config::Config;
 use relievo::terrain::export::sha256;
+use relievo::terrain::field::field;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
 

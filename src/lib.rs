@@ -41,7 +41,7 @@
 //! # An example
 //!
 //! ```
-//! use relievo::reference::terrain::field::field;
+//! use relievo::terrain::field::field;
 //! use relievo::terrain::{config::Config, export::sha256, recipe::Recipe};
 //!
 //! // B's own JSON, on the CPU. `relievo::terrain::generator::Generator` gives the same bits on a GPU.
@@ -59,8 +59,10 @@ pub mod bench;
 pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+#[cfg(feature = "gpu")]
+pub mod harness;
+pub mod hash;
 pub mod mesh;
-pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod render;
 pub mod skinning;

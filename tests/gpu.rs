@@ -16,13 +16,13 @@ use relievo::animation::{ClipSet, RotationPath, Wrap};
 use relievo::gpu::{
     Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION, Options, Step, TimedBy, Timer, adapters,
 };
-use relievo::reference::terrain::height::height;
 use relievo::terrain::config::{Config, Offset};
 use relievo::terrain::features::Features;
 use relievo::terrain::fields::Fields;
+use relievo::terrain::height::reference::height;
 use relievo::terrain::height::{HeightBatch, HeightPass, Window};
 use relievo::terrain::thermal::{Thermal, ThermalPass};
-use relievo::verify::terrain::random_heights;
+use relievo::terrain::verify::random_heights;
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
 fn foreign() -> (wgpu::Device, wgpu::Queue) {

@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use harness::gpu_of_bindings;
 use relievo::gpu::Gpu;
-use relievo::reference::terrain::field::field;
 use relievo::terrain::config::{Border, Config};
 use relievo::terrain::despike::Despike;
 use relievo::terrain::features::{FeatureFile, FeatureIndex, FeatureMode, Features};
+use relievo::terrain::field::field;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;

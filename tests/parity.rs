@@ -5,12 +5,13 @@
 mod harness;
 
 use relievo::gpu::Buffer;
+use relievo::harness::CaseResult;
+use relievo::harness::compare::{absolute, exact, levels, relative, ulps};
+use relievo::harness::poison::{POISON, Poisoned};
 use relievo::surface::Hit;
+use relievo::surface::relief::verify::hits;
 use relievo::terrain::morph::{Morph, MorphPass};
-use relievo::verify::compare::{absolute, exact, levels, relative, ulps};
-use relievo::verify::poison::{POISON, Poisoned};
-use relievo::verify::surface::relief::hits;
-use relievo::verify::{self, CaseResult};
+use relievo::verify;
 
 #[test]
 fn kernels_equal_their_twins() {

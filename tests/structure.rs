@@ -8,7 +8,8 @@ mod harness;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use relievo::bench::{self, Backend};
+use relievo::bench;
+use relievo::harness::Backend;
 use relievo::verify;
 
 use relievo::gpu::shaders::{ALL, Binding, BindingKind, Stage};

@@ -68,10 +68,10 @@ fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
 mod tests {
     use super::*;
     use crate::animation::clip::Part as TrackPart;
+    use crate::animation::concat::reference::concat;
     use crate::animation::sample::RotationPath;
+    use crate::animation::sample::reference::sample;
     use crate::animation::transform::Affine;
-    use crate::reference::animation::concat::concat;
-    use crate::reference::animation::sample::sample;
 
     fn model() -> Model {
         creature().expect("valid")

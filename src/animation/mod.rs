@@ -1,6 +1,8 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
 //! to 14); crowds of them on the device, with layers, bounds, and root motion for the host.
 
+#[cfg(feature = "gpu")]
+pub mod bench;
 pub mod bounds;
 pub mod budget;
 #[cfg(feature = "gpu")]
@@ -10,7 +12,6 @@ pub mod clip_set;
 pub mod compact;
 pub mod concat;
 pub mod creature;
-#[cfg(feature = "gpu")]
 pub mod crowd;
 pub mod decide;
 #[cfg(feature = "gpu")]
@@ -29,6 +30,8 @@ pub mod root_motion;
 pub mod sample;
 pub mod skeleton;
 pub mod transform;
+#[cfg(feature = "gpu")]
+pub mod verify;
 
 pub use bounds::Bounds;
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};

@@ -254,7 +254,7 @@ pub fn whole_reaches(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32
 /// The root of the sum of squares over points, `reaches` from each bone at or below, of how far they move: at rest, on
 /// average over directions.
 pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
-    let models = crate::reference::animation::concat::concat(skeleton, &skeleton.rest());
+    let models = crate::animation::concat::reference::concat(skeleton, &skeleton.rest());
     let origin = |bone: usize| glam::DVec3::from_array(models[bone].map(|row| f64::from(row[3])));
     // Of each bone: points, and squares of their distances.
     let mut sums = vec![[0.0; 3]; models.len()];

@@ -28,8 +28,8 @@ use super::sample::RotationPath;
 use super::skeleton::Skeleton;
 use super::transform::Transform;
 use crate::InputError;
-use crate::reference::animation::concat::concat;
-use crate::reference::animation::sample::sample_bone;
+use crate::animation::concat::reference::concat;
+use crate::animation::sample::reference::sample_bone;
 
 /// Largest values below this count as none: radians, factors, and shares of the model's size.
 pub const NOISE: f64 = 1e-6;

@@ -26,8 +26,8 @@ use super::sample::Wrap;
 use super::skeleton::Skeleton;
 use super::transform::Transform;
 use crate::InputError;
-use crate::reference::animation::place::place;
-use crate::reference::animation::sample::vector_at;
+use crate::animation::place::reference::place;
+use crate::animation::sample::reference::vector_at;
 
 mod extract;
 mod rigid;
@@ -150,7 +150,7 @@ fn check_times(from: f64, to: f64) -> Result<(), InputError> {
 }
 
 /// [`RootMotion::delta`] of a whole crowd, without allocation: of one layer of it. Deltas of clips that are blended blend
-/// by the same weights ([`blend`](crate::reference::animation::sample::blend)). `motions` has one entry a clip of the set: `None` where
+/// by the same weights ([`blend`](crate::animation::sample::reference::blend)). `motions` has one entry a clip of the set: `None` where
 /// nothing was taken out, which does not move.
 ///
 /// # Errors

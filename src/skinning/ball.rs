@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use super::mesh::reaches;
 use crate::animation::Model;
+use crate::animation::bounds::reference::bounds;
+use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
-use crate::reference::animation::bounds::bounds;
-use crate::reference::animation::concat::concat;
-use crate::reference::animation::sample::sample;
+use crate::animation::sample::reference::sample;
 
 /// Moments of each clip that are looked at.
 const MOMENTS: u32 = 32;
@@ -58,9 +58,9 @@ fn followed(model: &Model) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::skinning::morph::morph;
-    use crate::reference::skinning::palette::palette_for;
-    use crate::reference::skinning::skin::skin;
+    use crate::skinning::morph::reference::morph;
+    use crate::skinning::palette::reference::palette_for;
+    use crate::skinning::skin::reference::skin;
     use crate::skinning::{Blend, Reduction};
 
     #[test]

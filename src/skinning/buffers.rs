@@ -10,7 +10,7 @@ use super::skin::{Blend, Vertex};
 use super::weights::Reduction;
 use crate::animation::Model;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
-use crate::reference::skinning::palette::rows;
+use crate::skinning::palette::reference::rows;
 use crate::{Error, InputError};
 
 /// A mesh on the device, and the skin that it follows. Vertices lie in clusters: see [`Clusters::order`].

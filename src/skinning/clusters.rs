@@ -7,7 +7,7 @@ use super::skin::Vertex;
 use crate::InputError;
 use crate::animation::concat::Order;
 use crate::animation::skeleton::{Skeleton, Skin};
-use crate::reference::skinning::morph::morph;
+use crate::skinning::morph::reference::morph;
 
 /// Vertices of a cluster.
 pub const CLUSTER: usize = 64;

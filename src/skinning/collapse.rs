@@ -8,11 +8,11 @@
 use glam::{DMat4, DVec3};
 
 use crate::InputError;
+use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
+use crate::animation::sample::reference::sample;
 use crate::animation::transform::Affine;
 use crate::animation::{Model, Skeleton, Skin, Transform};
-use crate::reference::animation::concat::concat;
-use crate::reference::animation::sample::sample;
 
 /// A model of fewer bones.
 #[derive(Debug, Clone, PartialEq)]
@@ -257,10 +257,10 @@ fn followers(model: &Model) -> (Vec<Vec<Follower>>, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::skinning::morph::morph;
-    use crate::reference::skinning::palette::palette;
-    use crate::reference::skinning::skin::skin;
+    use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::Palette;
+    use crate::skinning::palette::reference::palette;
+    use crate::skinning::skin::reference::skin;
     use crate::skinning::weights::Reduction;
 
     fn model() -> Model {

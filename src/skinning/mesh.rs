@@ -6,8 +6,8 @@ use super::weights::Influences;
 use crate::InputError;
 use crate::animation::skeleton::Skin;
 use crate::mesh::check_triangles;
-use crate::reference::surface::tangent::tangents;
 use crate::surface::tangent;
+use crate::surface::tangent::reference::tangents;
 
 /// The most vertices of a mesh.
 pub const MOST_VERTICES: usize = 1 << 24;

@@ -2,6 +2,8 @@
 
 pub mod ball;
 #[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod clusters;
 pub mod collapse;
@@ -20,6 +22,8 @@ pub mod picture;
 mod pose;
 pub mod select;
 pub mod skin;
+#[cfg(feature = "gpu")]
+pub mod verify;
 pub mod weights;
 
 pub use extent::Extent;

@@ -5,13 +5,13 @@ use glam::Vec3;
 use super::{Influence, Mesh, Vertex};
 use crate::InputError;
 use crate::animation::Model;
+use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
+use crate::animation::sample::reference::sample;
 use crate::animation::transform::Affine;
-use crate::reference::animation::concat::concat;
-use crate::reference::animation::sample::sample;
-use crate::reference::skinning::morph::morph;
-use crate::reference::skinning::palette::palette;
-use crate::reference::skinning::skin::transformed;
+use crate::skinning::morph::reference::morph;
+use crate::skinning::palette::reference::palette;
+use crate::skinning::skin::reference::transformed;
 
 /// A mesh at a moment.
 pub(super) struct Pose {

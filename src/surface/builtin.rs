@@ -3,7 +3,7 @@
 //!
 //! Each is a square tile that repeats without a seam under [`Address::Wrap`](super::Address::Wrap), of any size,
 //! and the same bits on every machine: only `+ − × ÷`, square roots and comparisons are used, which IEEE 754
-//! defines to the last bit, and randomness is counter-based ([`crate::reference::hash`]).
+//! defines to the last bit, and randomness is counter-based ([`crate::hash`]).
 //!
 //! | map | what it shows |
 //! |---|---|

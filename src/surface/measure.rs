@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::reference::surface::exact::exact;
+use crate::surface::exact::exact;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{Hit, Outcome, Ray};
 

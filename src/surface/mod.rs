@@ -1,8 +1,11 @@
 //! Surface mapping: every ray-height method over one result, the maps that accelerate them, and tangent frames
 //! (B sections 3.1 and 4.2).
 
+#[cfg(feature = "gpu")]
+pub mod bench;
 pub mod builtin;
 pub mod cone_map;
+pub mod exact;
 pub mod height_pyramid;
 pub mod linear_image;
 pub mod map;
@@ -10,10 +13,13 @@ pub mod material;
 pub mod measure;
 pub mod mesh;
 pub mod mips;
+pub mod picture;
 pub mod relief;
 pub mod tangent;
 #[cfg(feature = "gpu")]
 pub mod texture;
+#[cfg(feature = "gpu")]
+pub mod verify;
 pub mod view;
 
 pub use builtin::BuiltInMap;

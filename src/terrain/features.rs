@@ -8,10 +8,10 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::reference::terrain::pad::pad;
 use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE};
 use crate::terrain::height::Window;
 use crate::terrain::json::{from_json_object, read_text};
+use crate::terrain::pad::reference::pad;
 use crate::terrain::pad::surrounds;
 use crate::{Error, InputError};
 

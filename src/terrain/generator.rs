@@ -1,5 +1,5 @@
 //! Whole fields on the device: the kernels in the order of a recipe. The GPU side of
-//! [`crate::reference::terrain::field`].
+//! [`crate::terrain::field`].
 //!
 //! At no time do its buffers hold more than two `i32` for a sample of the enlarged windows, results included: each stage
 //! drops what the next does not read. An index of features holds two bits a sample and level beside that.

@@ -5,11 +5,11 @@ use std::path::Path;
 use image::imageops::FilterType;
 
 use crate::Error;
-use crate::reference::terrain::wrap::wrap;
 use crate::srgb;
 use crate::terrain::blend::{BuiltIn, MapZone, Zone, ZoneTexture};
 use crate::terrain::config::{Border, Config};
 use crate::terrain::features::Features;
+use crate::terrain::wrap::reference::wrap;
 
 /// Texels along an edge of a zone texture. Files are resized to it.
 pub const TEXTURE_SIZE: u32 = 256;

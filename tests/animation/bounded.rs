@@ -2,12 +2,12 @@
 
 use relievo::animation::Choice;
 use relievo::animation::clip::{BoneKeys, Interpolation, Keys};
+use relievo::animation::crowd::reference::Crowd;
 use relievo::animation::sample::{RotationPath, Wrap};
+use relievo::animation::verify::Draw;
 use relievo::animation::{
     Affine, Bone, Clip, ClipSet, Frame, Gate, GateTable, Instance, Order, Skeleton, Transform,
 };
-use relievo::reference::animation::crowd::Crowd;
-use relievo::verify::animation::Draw;
 
 fn skeleton(parents: &[Option<u32>]) -> Skeleton {
     let bone =

@@ -1,12 +1,12 @@
 //! The bounds' twin against the exact box in double precision.
 
 use relievo::animation::bounds::bone_reaches;
+use relievo::animation::bounds::reference::bounds;
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::transform::AFFINE_IDENTITY;
 use relievo::animation::{Affine, Bone, Bounds, Skeleton, Transform, creature};
-use relievo::reference::animation::bounds::bounds;
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
 
 use crate::player::unit;
 use crate::sampling::noise;

@@ -3,18 +3,18 @@
 use relievo::Error;
 use relievo::animation::bounds::{BoundsPass, Share, bone_reaches};
 use relievo::animation::chosen::ChosenBones;
+use relievo::animation::concat::reference::concat;
 use relievo::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::layers::{MOST_LAYERS, all_instances};
 use relievo::animation::place::PlacePass;
+use relievo::animation::place::reference::places;
+use relievo::animation::sample::reference::sample_layers;
 use relievo::animation::sample::{RotationPath, SAMPLE_BOUND, SamplePass, Wrap};
 use relievo::animation::{Affine, ClipSet, Instance, Layer, Model, Transform, creature};
 use relievo::gpu::{Buffer, Gpu};
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::place::places;
-use relievo::reference::animation::sample::sample_layers;
-use relievo::verify::compare::absolute;
-use relievo::verify::poison::Poisoned;
+use relievo::harness::compare::absolute;
+use relievo::harness::poison::Poisoned;
 
 use crate::harness::gpu;
 

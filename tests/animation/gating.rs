@@ -1,17 +1,17 @@
 //! Gates: what they promise, on random clips and on the creature's.
 
 use relievo::animation::Choice;
+use relievo::animation::budget::reference::rank_of;
+use relievo::animation::compact::reference::Work;
+use relievo::animation::crowd::reference::Crowd;
+use relievo::animation::gate::reference::{gate, is_skipped, share_of};
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::Affine;
+use relievo::animation::verify::{Draw, random_clips, random_skeleton};
 use relievo::animation::{
     Clip, ClipSet, Frame, Gate, GateTable, Instance, Lod, Order, Skeleton, creature, lod::OMEGA_ONE,
 };
-use relievo::reference::animation::budget::rank_of;
-use relievo::reference::animation::compact::Work;
-use relievo::reference::animation::crowd::Crowd;
-use relievo::reference::animation::gate::{gate, is_skipped, share_of};
-use relievo::verify::animation::{Draw, random_clips, random_skeleton};
 
 /// What a test plays.
 struct Stage {
@@ -164,8 +164,8 @@ fn bones_that_never_move_are_sampled_once() {
     let first = crowd.advance(Choice::Gate(Gate::Off), &frame(0), 0.0);
     let next = crowd.advance(Choice::Gate(Gate::Off), &frame(1), 0.4);
     assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
-    let locals = relievo::reference::animation::sample::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
-    assert_eq!(crowd.models, relievo::reference::animation::concat::concat(&stage.skeleton, &locals));
+    let locals = relievo::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
+    assert_eq!(crowd.models, relievo::animation::concat::reference::concat(&stage.skeleton, &locals));
 }
 
 fn pairs_a_frame(stage: &Stage, table: &GateTable, choice: Choice, lod: Lod, frames: u32) -> Vec<Work> {

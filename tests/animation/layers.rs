@@ -2,10 +2,10 @@
 
 use relievo::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::animation::layers::{all_instances, mask_below};
+use relievo::animation::place::reference::places;
+use relievo::animation::sample::reference::{blend, sample, sample_layers};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::{ClipSet, Instance, Layer, Transform, creature};
-use relievo::reference::animation::place::places;
-use relievo::reference::animation::sample::{blend, sample, sample_layers};
 
 use crate::player::{angle, dot, unit, wide};
 use crate::sampling::{noise, skeleton};

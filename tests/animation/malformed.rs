@@ -250,7 +250,7 @@ fn play(model: &Model) {
     use relievo::animation::sample::RotationPath;
     for clip in &model.clips {
         for time in [0.0, 0.3, clip.duration()] {
-            let pose = relievo::reference::animation::sample::sample(clip, time, RotationPath::Slerp);
+            let pose = relievo::animation::sample::reference::sample(clip, time, RotationPath::Slerp);
             assert!(pose.iter().all(|bone| bone.rotation.iter().all(|x| x.is_finite())));
         }
     }

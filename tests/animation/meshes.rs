@@ -234,9 +234,11 @@ fn full() -> Scene {
 
 /// Whatever is read can be skinned, and stays finite.
 fn skin_all(model: &Model) {
-    use relievo::reference::animation::concat::concat;
-    use relievo::reference::skinning::{morph::morph, palette::palette_for, skin::skin};
+    use relievo::animation::concat::reference::concat;
     use relievo::skinning::clusters::Clusters;
+    use relievo::skinning::morph::reference::morph;
+    use relievo::skinning::palette::reference::palette_for;
+    use relievo::skinning::skin::reference::skin;
     use relievo::skinning::{Blend, Reduction, reaches};
     let models = concat(&model.skeleton, &model.skeleton.rest());
     // Scales may drive places out of range; that is the pose's fault.

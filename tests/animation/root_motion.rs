@@ -3,9 +3,9 @@
 use glam::{DAffine3, DQuat, DVec3};
 use relievo::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::animation::root_motion::{Taken, YAW_BOUND, deltas};
+use relievo::animation::sample::reference::{sample, sample_bone};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::{Bone, Instance, RootMotion, Skeleton, Transform, creature};
-use relievo::reference::animation::sample::{sample, sample_bone};
 
 use crate::sampling::noise;
 

@@ -1,12 +1,12 @@
 //! The sampling twin against glTF's own formulas in double precision.
 
 use relievo::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
+use relievo::animation::place::reference::{inside_clip, place, places};
 use relievo::animation::place::{Instance, Place};
+use relievo::animation::sample::reference::{sample, sample_bone, sample_set_into, slerp};
 use relievo::animation::sample::{RotationPath, SLERP_BOUND, Wrap};
 use relievo::animation::{Bone, ClipSet, Skeleton, Transform};
-use relievo::reference::animation::place::{inside_clip, place, places};
-use relievo::reference::animation::sample::{sample, sample_bone, sample_set_into, slerp};
-use relievo::reference::hash::{LANES, threefry2x32};
+use relievo::hash::{LANES, threefry2x32};
 
 use crate::player::{self, wide};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use relievo::reference::surface::exact::exact;
+use relievo::surface::exact::exact;
 use relievo::surface::{Address, HeightMap, Ray};
 use serde_json::Value;
 

@@ -1,12 +1,12 @@
 //! Several characters in one picture, near and far: seen, faded, skinned and drawn together.
 
 use glam::{Vec3, camera};
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::transform::Affine;
 use relievo::animation::{Model, Order, creature};
 use relievo::gpu::{Buffer, Gpu};
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::skinning::Blend;

@@ -1,12 +1,12 @@
 //! A crowd that walks in and out of view: what is not seen is not skinned, and what is seen looks as if all were.
 
 use glam::{Mat4, Vec3, camera};
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::transform::Affine;
 use relievo::animation::{Model, creature};
 use relievo::gpu::{Buffer, Gpu};
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::skinning::frame::SkinFrame;

@@ -2,10 +2,10 @@
 
 use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Gpu;
-use relievo::reference::surface::tangent::tangents;
 use relievo::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use relievo::render::{ColorTexture, Target, target::COLOR_FORMAT};
 use relievo::surface::tangent::Mesh;
+use relievo::surface::tangent::reference::tangents;
 use relievo::surface::{
     Address, BuiltInMap, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
 };

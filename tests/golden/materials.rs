@@ -1,19 +1,19 @@
 //! Materials of glTF: textures, colours, holes and what one sees through; on the device and in the twin.
 
 use image::RgbaImage;
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::transform::{AFFINE_IDENTITY, Affine};
 use relievo::gpu::Buffer;
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
-use relievo::reference::skinning::morph::morph;
-use relievo::reference::skinning::palette::palette_for;
-use relievo::reference::skinning::picture::{Part, Scene};
-use relievo::reference::skinning::skin::skin;
-use relievo::reference::skinning::texture::Surface;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
+use relievo::skinning::morph::reference::morph;
+use relievo::skinning::palette::reference::palette_for;
+use relievo::skinning::picture::reference::{Part, Scene};
+use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, Reduction, Vertex};
 use relievo::surface::linear_image::LinearImage;
 

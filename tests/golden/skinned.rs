@@ -2,12 +2,12 @@
 
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::transform::Affine;
 use relievo::animation::{Bone, Model, Skeleton, Skin, Transform, creature};
 use relievo::gpu::{Buffer, Gpu};
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::skinning::frame::SkinFrame;

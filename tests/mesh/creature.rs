@@ -2,11 +2,14 @@
 
 use std::time::Instant;
 
+use relievo::animation::concat::reference::concat;
 use relievo::animation::creature::creature;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::mesh::{Options, Stopped, Surface, simplify};
-use relievo::reference::animation::{concat::concat, sample::sample};
-use relievo::reference::skinning::{morph::morph, palette::palette_for, skin::skin};
+use relievo::skinning::morph::reference::morph;
+use relievo::skinning::palette::reference::palette_for;
+use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, Reduction};
 use relievo::terrain::export::sha256;
 

@@ -1,10 +1,10 @@
 //! Where vertices, normals and tangents go.
 
 use glam::{Mat4, Vec3};
-use relievo::reference::skinning::morph::morph;
-use relievo::reference::skinning::palette::{dual, palette, palette_for};
-use relievo::reference::skinning::skin::skin;
+use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
+use relievo::skinning::palette::reference::{dual, palette, palette_for};
+use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, Reduction, Vertex};
 
 use crate::shapes::{influences, matrices, model, models, rows};
@@ -21,7 +21,7 @@ fn vertex(position: Vec3, normal: Vec3, tangent: Vec3) -> Vertex {
 fn at_rest_nothing_moves() {
     let model = model();
     let mesh = &model.meshes[0];
-    let rest = relievo::reference::animation::concat::concat(&model.skeleton, &model.skeleton.rest());
+    let rest = relievo::animation::concat::reference::concat(&model.skeleton, &model.skeleton.rest());
     let vertices = morph(mesh, &[]);
     for blend in [Blend::Linear, Blend::DualQuaternion] {
         let palette = palette_for(&model.skins[0], &rest, blend);

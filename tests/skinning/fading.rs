@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 use relievo::animation::Lens;
-use relievo::reference::skinning::morph::morph;
-use relievo::reference::skinning::palette::palette;
-use relievo::reference::skinning::skin::skin;
+use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
+use relievo::skinning::palette::reference::palette;
+use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Extent, Influence, Influences, Reduction, Vertex};
 
 use crate::shapes::{model, models};

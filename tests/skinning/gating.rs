@@ -1,18 +1,18 @@
 //! The promise of the `bounded` gate where it counts: at every vertex, on screen.
 
 use relievo::animation::Choice;
+use relievo::animation::crowd::reference::Crowd;
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::Affine;
 use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Instance, Lens, Model, Order};
-use relievo::reference::animation::crowd::Crowd;
-use relievo::reference::skinning::morph::morph;
-use relievo::reference::skinning::palette::palette_for;
-use relievo::reference::skinning::select::{Now, Skinned, select};
-use relievo::reference::skinning::skin::skin;
 use relievo::skinning::clusters::Clusters;
 use relievo::skinning::mesh::reaches;
+use relievo::skinning::morph::reference::morph;
+use relievo::skinning::palette::reference::palette_for;
+use relievo::skinning::select::reference::{Now, Skinned, select};
 use relievo::skinning::skin::Blend;
 use relievo::skinning::skin::Vertex;
+use relievo::skinning::skin::reference::skin;
 use relievo::skinning::weights::Reduction;
 
 use crate::shapes::model;

@@ -1,10 +1,10 @@
 //! Meshes and poses that the tests share.
 
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::transform::Affine;
 use relievo::animation::{Model, creature};
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
 use relievo::skinning::weights::{Influence, Influences};
 
 pub fn model() -> Model {

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::reference::surface::relief::Surface;
+use relievo::surface::relief::reference::Surface;
 use relievo::surface::{Address, HeightMap, Hit, March, Method, Outcome, Ray};
 
 /// What heights may differ by: positions of up to 400 texels carry 2⁻²³ · 400 < 5e-5 texels of rounding, over slopes of

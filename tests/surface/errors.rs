@@ -1,6 +1,6 @@
 //! Measured error and cost on the built-in maps: what each method promises. Relief depth 0.1, wrap addressing.
 
-use relievo::reference::surface::relief::Surface;
+use relievo::surface::relief::reference::Surface;
 use relievo::surface::{Address, BuiltInMap, HeightMap, March, Measured, Method, Ray, SquareView};
 
 fn rays(angle: f64) -> Vec<Ray> {

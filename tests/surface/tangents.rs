@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::reference::surface::tangent::tangents;
+use relievo::surface::tangent::reference::tangents;
 use relievo::surface::tangent::{Mesh, split_mirrored};
 
 /// The same cases in every run.

@@ -1,13 +1,13 @@
 //! Hashes of whole patches, made by an independent reference in Python (numpy, and point-by-point recursion,
 //! which agreed with each other) from the specification's text alone.
 
-use relievo::reference::terrain::field::{field, generate};
-use relievo::reference::terrain::thermal::thermal;
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
 use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::field::{field, generate};
 use relievo::terrain::height::Window;
 use relievo::terrain::recipe::Recipe;
+use relievo::terrain::thermal::reference::thermal;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 

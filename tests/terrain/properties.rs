@@ -5,21 +5,21 @@ use std::collections::{BTreeMap, HashMap};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::reference::terrain::blend::zone_shares;
-use relievo::reference::terrain::field::{field, generate};
-use relievo::reference::terrain::fixed::mean_of_four;
-use relievo::reference::terrain::morph::morph;
-use relievo::reference::terrain::normals::normals;
-use relievo::reference::terrain::thermal::thermal;
+use relievo::terrain::blend::reference::zone_shares;
 use relievo::terrain::blend::{MapZone, WeightMode};
 use relievo::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset};
 use relievo::terrain::despike::Despike;
 use relievo::terrain::export::cropped;
 use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::field::{field, generate};
+use relievo::terrain::fixed::mean_of_four;
 use relievo::terrain::morph::Morph;
+use relievo::terrain::morph::reference::morph;
 use relievo::terrain::normals::NORMAL_BOUND;
+use relievo::terrain::normals::reference::normals;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;
+use relievo::terrain::thermal::reference::thermal;
 
 /// The same cases in every run.
 fn settings() -> ProptestConfig {

@@ -1,9 +1,9 @@
 //! A batch of `blend` that one binding does not hold is split, and its heights are the same bits.
 
-use relievo::reference::terrain::field::field;
 use relievo::terrain::config::{Border, Config};
 use relievo::terrain::despike::Despike;
 use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::field::field;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;

@@ -4,11 +4,11 @@
 use super::{Differences, Weights};
 use crate::InputError;
 use crate::animation::clip::Clip;
+use crate::animation::concat::reference::{affine, concat, product};
 use crate::animation::sample::RotationPath;
+use crate::animation::sample::reference::{sample, sample_bone};
 use crate::animation::skeleton::Skeleton;
 use crate::animation::transform::{Affine, Transform};
-use crate::reference::animation::concat::{affine, concat, product};
-use crate::reference::animation::sample::{sample, sample_bone};
 
 /// Moments at which a frozen bone is looked at, as shares of the way to the next key.
 const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];

@@ -7,9 +7,9 @@ use crate::InputError;
 use crate::animation::clip::{Clip, Interpolation, Keys, Part, Track};
 use crate::animation::place::Place;
 use crate::animation::sample::RotationPath;
+use crate::animation::sample::reference::{rotation_at, sample_bone};
 use crate::animation::skeleton::Skeleton;
 use crate::animation::transform::Transform;
-use crate::reference::animation::sample::{rotation_at, sample_bone};
 
 /// By how much scales above a yaw may differ, and be sheared.
 const UNEVEN: f64 = 1e-4;

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
-use relievo::bench::{Row, run, table};
+use relievo::bench::run;
+use relievo::harness::{Row, table};
 
 use crate::Context;
 use crate::output::{json, say, write_file};

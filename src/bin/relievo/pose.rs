@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
+use relievo::animation::concat::reference::concat;
+use relievo::animation::sample::reference::sample;
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::column_major;
 use relievo::animation::{Affine, Clip, Model, Transform, creature};
@@ -17,8 +19,6 @@ use relievo::animation::{
 };
 #[cfg(feature = "gpu")]
 use relievo::gpu::Gpu;
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::sample::sample;
 use relievo::{Error, InputError};
 use serde::Serialize;
 

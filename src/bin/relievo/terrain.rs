@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
-use relievo::reference::terrain::blend::blend;
-use relievo::reference::terrain::field::field_with;
+use relievo::terrain::blend::reference::blend;
 use relievo::terrain::blend::{Shading, WeightMode};
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
 use relievo::terrain::export::{HeightImage, HeightRange, cropped, sha256, to_bytes, write_bytes, write_png};
 use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::field::field_with;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::texture::{Texture, map_zones};
 use relievo::terrain::thermal::Thermal;

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
-use relievo::verify::{CaseResult, Report, run};
+use relievo::harness::CaseResult;
+use relievo::verify::{Report, run};
 
 use crate::Context;
 use crate::output::{json, say, write_file};

@@ -1,6 +1,6 @@
 //! Random numbers and tileable value noise.
 
-use crate::reference::hash::{LANES, threefry2x32};
+use crate::hash::{LANES, threefry2x32};
 
 /// Two random numbers in 0..1 for a cell; `key` keeps the uses apart.
 pub fn random(key: u32, cell: [usize; 2]) -> [f64; 2] {

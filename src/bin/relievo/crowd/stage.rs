@@ -3,9 +3,9 @@
 use relievo::InputError;
 #[cfg(feature = "gpu")]
 use relievo::animation::Model;
+use relievo::animation::concat::reference::concat;
+use relievo::animation::gate::reference::scramble;
 use relievo::animation::{ClipSet, GateTable, Instance, Lens, Lod, Order, lod::OMEGA_ONE, sample::Wrap};
-use relievo::reference::animation::concat::concat;
-use relievo::reference::animation::gate::scramble;
 use relievo::skinning;
 
 use super::Layout;

@@ -2,8 +2,8 @@
 
 use image::RgbaImage;
 use relievo::Error;
-use relievo::reference::surface::picture::Scene;
-use relievo::reference::surface::relief::Surface;
+use relievo::surface::picture::Scene;
+use relievo::surface::relief::reference::Surface;
 use relievo::surface::{Address, HeightMap, Hit, March, Method, Ray};
 
 use super::Plan;

@@ -1,0 +1,109 @@
+//! Benchmarks of `kernels/animation/`: crowds of the creature's 153 bones that play a clip with 60 keys for each
+//! part of each bone, every instance at a time of its own.
+
+pub(crate) mod frame;
+pub(crate) mod host;
+pub(crate) mod plain_soa;
+
+use crate::Error;
+use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::animation::clip_set::ClipSet;
+use crate::animation::concat::Order;
+use crate::animation::creature;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::place::reference::places;
+use crate::animation::place::{Instance, Place};
+use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
+use crate::animation::sample::reference::sample;
+use crate::animation::sample::{RotationPath, Wrap};
+use crate::animation::skeleton::Skeleton;
+use crate::baseline::gather::{GatherPass, Reads};
+use crate::gpu::{Gpu, Job};
+use crate::terrain::bench::copy_of;
+
+/// Instances of the cases.
+pub(crate) const CROWDS: [usize; 3] = [100, 1000, 10_000];
+
+/// Keys of each part.
+pub(crate) const KEYS: usize = 60;
+
+/// When they are looked at, in seconds.
+pub(crate) const ELAPSED: f32 = 0.4;
+
+/// A crowd, on the host and the device, and its places.
+pub(crate) struct Scene {
+    pub skeleton: Skeleton,
+    pub clip: Clip,
+    pub set: ClipSet,
+    pub instances: Vec<Instance>,
+    pub places: Vec<Place>,
+    pub clips: ClipBuffers,
+    pub crowd: Crowd,
+}
+
+impl Scene {
+    pub fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
+        let (skeleton, clip, set) = dense_creature()?;
+        let instances = crowd(count);
+        let places = places(&set, &instances, ELAPSED);
+        let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &instances)?);
+        crowd.places.write(gpu, &places)?;
+        Ok(Self { skeleton, clip, set, instances, places, clips, crowd })
+    }
+
+    pub fn pairs(&self) -> usize {
+        self.crowd.pairs()
+    }
+
+    pub(crate) fn order(&self) -> Order {
+        Order::new(&self.skeleton)
+    }
+
+    pub(crate) fn priorities(&self) -> Result<Priorities, Error> {
+        let user = vec![USER_DEFAULT; self.skeleton.len()];
+        Ok(Priorities::new(&self.skeleton, &self.clip, true, &Weights::default(), &user)?)
+    }
+
+    /// A copy of what sampling reads, and of as many words as it writes.
+    pub fn gathered(&self, gpu: &Gpu, reads: Reads) -> Result<Job, Error> {
+        GatherPass::new(gpu, reads)?.prepare(gpu, &self.clips, &self.crowd)
+    }
+
+    /// A copy of the words of concatenation: 10 in, 12 out.
+    pub fn copied(&self, gpu: &Gpu) -> Result<Job, Error> {
+        copy_of(gpu, 11 * self.pairs())
+    }
+}
+
+/// Instances that play the first clip, never two at the same moment: fractions of the golden ratio.
+pub(crate) fn crowd(count: usize) -> Vec<Instance> {
+    let start = |index: usize| (index as f32 * 0.618_034).fract();
+    (0..count).map(|i| Instance::new(0, Wrap::Loop, start(i), 1.0)).collect()
+}
+
+/// The creature, its first clip with keys everywhere, and a set of it.
+pub(crate) fn dense_creature() -> Result<(Skeleton, Clip, ClipSet), Error> {
+    let model = creature()?;
+    let clip = dense(&model.skeleton, &model.clips[0])?;
+    let set = ClipSet::new(&[&clip])?;
+    Ok((model.skeleton, clip, set))
+}
+
+/// The clip with keys on every part of every bone.
+pub(crate) fn dense(skeleton: &Skeleton, clip: &Clip) -> Result<Clip, Error> {
+    let times: Vec<f32> = (0..KEYS).map(|key| clip.duration() * key as f32 / (KEYS - 1) as f32).collect();
+    let poses: Vec<_> = times.iter().map(|time| sample(clip, *time, RotationPath::Slerp)).collect();
+    let bones = (0..skeleton.len()).map(|bone| {
+        let keys = |value: &dyn Fn(usize) -> [f32; 4]| {
+            let values = (0..KEYS).map(value).collect();
+            Some(Keys { times: times.clone(), values, interpolation: Interpolation::Linear })
+        };
+        let vector = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        BoneKeys {
+            translation: keys(&|key| vector(poses[key][bone].translation)),
+            rotation: keys(&|key| poses[key][bone].rotation),
+            scale: keys(&|key| vector(poses[key][bone].scale)),
+        }
+    });
+    Ok(Clip::new("dense", skeleton, &bones.collect::<Vec<_>>(), 0.0)?)
+}

@@ -1,0 +1,89 @@
+//! Parity of `kernels/animation/bounds.wgsl`.
+
+use crate::Error;
+use crate::animation::bounds::reference::bounds;
+use crate::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, Share};
+use crate::animation::crowd::Crowd;
+use crate::animation::transform::Affine;
+use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+
+/// Palettes of every size, sheared and flat and mirrored, around the model's origin and far from it, against the twin,
+/// sides as shares of the instance's largest; and the exact box in double precision lies inside.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (_, set, instances) = random_crowd(case as u32, bones, count)?;
+        let (models, reaches) = random_palettes(case as u32, bones, count);
+        let crowd = Crowd::new(gpu, &set, &instances)?;
+        crowd.models.write(gpu, &models)?;
+        let expected = bounds(&models, &reaches);
+        for share in [Share::Workgroup, Share::Whole] {
+            let output = Poisoned::<Bounds>::new(gpu, count)?;
+            let job = BoundsPass::new(gpu, share)?.prepare(gpu, &crowd, &reaches, &output.buffer)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let name = format!("{bones} bones × {count}, {share:?}");
+            let comparison = output.check(gpu, |actual| {
+                compare::absolute(&shares(actual, &expected), &shares(&expected, &expected), BOUNDS_BOUND)
+            })?;
+            cases.add(name.clone(), comparison);
+            let contained = output.check(gpu, |actual| {
+                let inside = contain(actual, &models, &reaches);
+                compare::exact(&inside, &vec![true; inside.len()])
+            })?;
+            cases.add(format!("{name}, the exact box inside"), contained);
+        }
+    }
+    Ok(())
+}
+
+/// Matrices with rows of very different lengths, some of them 0.
+fn random_palettes(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f32>) {
+    let mut draw = Draw::new(case ^ 0xb0c5);
+    let reaches = (0..bones).map(|bone| if bone % 5 == 3 { 0.0 } else { draw.signed().abs() }).collect();
+    let mut palettes = Vec::with_capacity(bones * count);
+    for _ in 0..count {
+        let size = [1.0, 1e-6, 3e4][draw.word() as usize % 3];
+        let away = [0.0, 1.0, 1e3][draw.word() as usize % 3] * size;
+        palettes.extend((0..bones).map(|_| {
+            [0; 3].map(|_| {
+                let long = size * [0.0, 1e-3, 1.0, 1.0][draw.word() as usize % 4];
+                let [x, y, z] = [0; 3].map(|_| draw.signed() * long);
+                [x, y, z, away + draw.signed() * size]
+            })
+        }));
+    }
+    (palettes, reaches)
+}
+
+/// Sides as shares of the expected box's largest.
+fn shares(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
+    let each = |(found, expected): (&Bounds, &Bounds)| {
+        let sides = |bounds: &Bounds| [bounds.low, bounds.high].concat();
+        let largest = sides(expected).into_iter().fold(f32::MIN_POSITIVE, |a, b| a.max(b.abs()));
+        sides(found).into_iter().map(move |side| side / largest)
+    };
+    boxes.iter().zip(expected).flat_map(each).collect()
+}
+
+/// For each side of each instance, whether every bone's ellipsoid lies inside.
+fn contain(boxes: &[Bounds], models: &[Affine], reaches: &[f32]) -> Vec<bool> {
+    let mut inside = Vec::with_capacity(6 * boxes.len());
+    for (bounds, models) in boxes.iter().zip(models.chunks(reaches.len())) {
+        for axis in 0..3 {
+            let (low, high) = (f64::from(bounds.low[axis]), f64::from(bounds.high[axis]));
+            let ends = models.iter().zip(reaches).map(|(model, reach)| {
+                let [x, y, z, centre] = model[axis].map(f64::from);
+                let half = f64::from(*reach) * (x * x + y * y + z * z).sqrt();
+                [centre - half, centre + half]
+            });
+            inside.push(ends.clone().all(|[least, _]| low <= least));
+            inside.push(ends.clone().all(|[_, largest]| high >= largest));
+        }
+    }
+    inside
+}

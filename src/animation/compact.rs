@@ -1,9 +1,0 @@
-//! From bits to lists: the pairs of instance and bone that are sampled, the slots that are concatenated since a bone
-//! above them is sampled, and the arguments of the indirect dispatches that do it. By prefix sums, in the same order on
-//! every device.
-
-#[cfg(feature = "gpu")]
-pub(crate) mod pass;
-
-#[cfg(feature = "gpu")]
-pub use pass::{Active, CompactJob, CompactPass, Stages};

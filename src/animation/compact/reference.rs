@@ -1,0 +1,48 @@
+//! From bits to lists: twin of `kernels/animation/compact.wgsl`.
+
+use crate::animation::concat::Order;
+use crate::animation::gate::reference::{Chosen, bits_of};
+use crate::animation::sample::PAIR_AHEAD;
+
+/// What is to be done in a frame.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Work {
+    /// `instance · bones + bone` of each pair that is sampled, in the order of instances and slots, with [`PAIR_AHEAD`] where
+    /// it is sampled ahead.
+    pub pairs: Vec<u32>,
+    /// A bit for each slot of each instance: those below an active one too.
+    pub dirty: Vec<u32>,
+    /// Instances with an active bone.
+    pub instances: Vec<u32>,
+}
+
+/// The work that active bits mean; `chosen` holds [`Order::words`] words an instance.
+pub fn compact(order: &Order, chosen: &Chosen) -> Work {
+    let Chosen { bits, ahead } = chosen;
+    let bones = order.slots.len() as u32;
+    let mut work = Work { dirty: Vec::with_capacity(bits.len()), ..Work::default() };
+    let each = bits.chunks_exact(order.words()).zip(ahead.chunks_exact(order.words()));
+    for (instance, (words, ahead)) in (0..).zip(each) {
+        let first_pair = work.pairs.len();
+        let mut end = 0;
+        for (word, active) in words.iter().enumerate() {
+            let mut below = 0;
+            for bit in 0..32 {
+                let slot = 32 * word + bit;
+                if active >> bit & 1 != 0 {
+                    end = end.max(slot + order.slots[slot].subtree as usize);
+                }
+                below |= u32::from(slot < end) << bit;
+            }
+            work.dirty.push(below);
+            work.pairs.extend(bits_of(*active).map(|bit| {
+                let pair = instance * bones + order.slots[32 * word + bit].bone;
+                if ahead[word] >> bit & 1 != 0 { pair | PAIR_AHEAD } else { pair }
+            }));
+        }
+        if work.pairs.len() > first_pair {
+            work.instances.push(instance);
+        }
+    }
+    work
+}

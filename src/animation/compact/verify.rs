@@ -1,0 +1,120 @@
+//! Parity of `kernels/animation/compact.wgsl`.
+
+use crate::Error;
+use crate::animation::compact::reference::{Work, compact};
+use crate::animation::compact::{Active, CompactPass, Stages};
+use crate::animation::concat::Order;
+use crate::animation::crowd::Crowd;
+use crate::animation::gate::reference::Chosen;
+use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::harness::Cases;
+use crate::harness::compare::{Comparison, exact};
+use crate::harness::poison::{POISON, Poisoned};
+
+/// No bit, all, every third, single ones, whole instances; half of them ahead; more instances than the sums have threads.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let sizes = SIZES.into_iter().chain([[33, 63], [31, 129], [5, 1000]]);
+    for (case, [bones, count]) in sizes.enumerate() {
+        let (skeleton, set, instances) = random_crowd(case as u32, bones, count)?;
+        let order = Order::new(&skeleton);
+        let crowd = Crowd::new(cases.gpu, &set, &instances)?;
+        let mut draw = Draw::new(case as u32 ^ 0xc0de);
+        for kind in ["none", "all", "a third", "few", "whole instances"] {
+            let bits = random_bits(&mut draw, kind, &order, count);
+            let ahead = bits.iter().map(|word| word & draw.word()).collect();
+            let chosen = Chosen { bits, ahead };
+            let name = format!("{bones} bones × {count}, {kind}");
+            for stages in [Stages::Three, Stages::One] {
+                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &chosen, stages)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Words of bits, none beyond the bones.
+fn random_bits(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Vec<u32> {
+    let words = order.words();
+    let mut bits = vec![0; count * words];
+    for instance in 0..count {
+        let whole = draw.word().is_multiple_of(4);
+        for slot in 0..order.slots.len() {
+            let is_active = match kind {
+                "none" => false,
+                "all" => true,
+                "a third" => draw.word().is_multiple_of(3),
+                "few" => draw.word().is_multiple_of(100),
+                _ => whole,
+            };
+            bits[instance * words + slot / 32] |= u32::from(is_active) << (slot % 32);
+        }
+    }
+    bits
+}
+
+fn add(
+    cases: &mut Cases<'_>,
+    name: &str,
+    order: &Order,
+    crowd: &Crowd,
+    chosen: &Chosen,
+    stages: Stages,
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let mut active = Active::new(gpu, order, crowd)?;
+    active.bits.write(gpu, &chosen.words())?;
+    let dirty = Poisoned::<u32>::new(gpu, chosen.bits.len())?;
+    let pairs = Poisoned::<u32>::new(gpu, crowd.pairs())?;
+    let instances = Poisoned::<u32>::new(gpu, crowd.len())?;
+    active.dirty = dirty.buffer.clone();
+    active.pairs.pairs = pairs.buffer.clone();
+    active.instances = instances.buffer.clone();
+    let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active, stages)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let expected = compact(order, chosen);
+    let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
+    let listed = padded(expected_pairs, crowd.pairs());
+    let shown = padded(expected_instances, crowd.len());
+    cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
+    cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
+    cases.add(format!("{name}: dirty"), dirty.check(gpu, |actual| exact(actual, &expected.dirty))?);
+    cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected)?);
+    Ok(())
+}
+
+/// A list, and poison behind it.
+pub(crate) fn padded(list: &[u32], room: usize) -> Vec<u32> {
+    let mut list = list.to_vec();
+    list.resize(room, POISON);
+    list
+}
+
+/// Workgroups of 64 for each pair, each instance, each level's chains, each place.
+pub(crate) fn dispatches(
+    gpu: &crate::gpu::Gpu,
+    order: &Order,
+    crowd: &Crowd,
+    active: &Active,
+    expected: &Work,
+) -> Result<Comparison, Error> {
+    let groups = |threads: usize, last: usize| {
+        let groups = threads.div_ceil(64) as u32;
+        let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
+        [x, groups.div_ceil(x), 1, last as u32]
+    };
+    let mut all = vec![groups(expected.pairs.len(), expected.pairs.len())];
+    all.push(groups(expected.instances.len(), expected.instances.len()));
+    all.extend(order.levels.windows(2).map(|level| {
+        let chains = (level[1] - level[0]) as usize;
+        groups(chains * expected.instances.len(), chains)
+    }));
+    let places = crowd.places.len() / crowd.len();
+    all.push(groups(places * expected.instances.len(), places));
+    let of_pairs = active.pairs.dispatched.read_blocking(gpu)?;
+    let mut actual = vec![[of_pairs[0], of_pairs[1], of_pairs[2], of_pairs[3]]];
+    actual.extend(active.dispatches.read_blocking(gpu)?);
+    Ok(exact(&actual, &all))
+}

@@ -1,0 +1,71 @@
+//! Concatenation of crowds, whole frames, and what the host adds.
+
+use std::hint::black_box;
+
+use crate::Error;
+use crate::animation::bench::frame::{DeviceFrame, PlainFrame, TwinFrame};
+use crate::animation::bench::plain_soa::PlainSoa;
+use crate::animation::bench::{CROWDS, Scene, host};
+use crate::animation::concat::reference::concat_into;
+use crate::animation::concat::{ConcatPass, Walk};
+use crate::animation::crowd::packed;
+use crate::animation::sample::RotationPath;
+use crate::animation::sample::reference::sample_set;
+use crate::animation::transform::AFFINE_IDENTITY;
+use crate::harness::{Backend, Bench, Contender};
+
+/// All bones of all instances: concatenation, then sampling and concatenation; then a frame's parts on the host's clock.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    for count in CROWDS {
+        let scene = Scene::new(bench.gpu, count)?;
+        alone(bench, &scene)?;
+        both(bench, &scene)?;
+    }
+    host::cases(bench, &Scene::new(bench.gpu, CROWDS[1])?)
+}
+
+fn alone(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let (pairs, bones) = (scene.pairs(), scene.skeleton.len());
+    let locals = sample_set(&scene.set, &scene.instances, &scene.places, RotationPath::Slerp);
+    scene.crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
+    let job = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &scene.skeleton, &scene.crowd)?;
+    let copied = scene.copied(gpu)?;
+    let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
+    let soa = scene.places.iter().map(|place| {
+        let mut locals = plain.locals();
+        plain.sample(*place, &mut locals);
+        locals
+    });
+    let soa: Vec<_> = soa.collect();
+    let mut models = [vec![AFFINE_IDENTITY; pairs], vec![AFFINE_IDENTITY; pairs]];
+    let [of_twin, of_plain] = &mut models;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || concat_into(&scene.skeleton, &locals, black_box(of_twin))),
+        Contender::host(Backend::PlainSoa, || {
+            for (locals, models) in soa.iter().zip(black_box(&mut *of_plain).chunks_mut(bones)) {
+                plain.concat(locals, models);
+            }
+        }),
+    ];
+    bench.case(format!("{} × 153", scene.instances.len()), (pairs, "bone"), 88 * pairs as u64, contenders)
+}
+
+/// A frame: places, sampling and concatenation in one submission. On the host, one instance after another.
+fn both(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
+    let frame = DeviceFrame::new(bench.gpu, scene)?;
+    let (mut twin, mut plain) = (TwinFrame::new(scene), PlainFrame::new(scene)?);
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| frame.record(encoder)),
+        Contender::recorded(Backend::Copy, |encoder| frame.record_copies(encoder)),
+        Contender::host(Backend::Twin, || twin.compute(scene)),
+        Contender::host(Backend::PlainSoa, || plain.compute(scene)),
+    ];
+    let (case, pairs) = (format!("{} × 153, both with sampling", scene.instances.len()), scene.pairs());
+    bench.case(case, (pairs, "bone"), 216 * pairs as u64, contenders)
+}

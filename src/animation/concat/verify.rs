@@ -1,0 +1,135 @@
+//! Parity of `kernels/animation/concat.wgsl`.
+
+use crate::Error;
+use crate::animation::compact::reference::compact;
+use crate::animation::compact::{Active, CompactPass, Stages};
+use crate::animation::concat::reference::{concat, concat_dirty};
+use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Order, Walk};
+use crate::animation::crowd::{Crowd, packed};
+use crate::animation::gate::reference::Chosen;
+use crate::animation::skeleton::Skeleton;
+use crate::animation::transform::{Affine, Transform};
+use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+
+/// Random skeletons of every size and shape, mirrored and uneven scales; a chain and a star. All bones, and those below
+/// active ones alone: the others keep their matrices to the bit.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (skeleton, ..) = random_crowd(case as u32, bones, 1)?;
+        add(cases, case as u32, "random", &skeleton, count)?;
+        add_dirty(cases, case as u32, &skeleton, count)?;
+    }
+    for (name, straight) in [("chain", true), ("star", false)] {
+        let (random, ..) = random_crowd(99, 200, 1)?;
+        let mut bones = random.bones().to_vec();
+        for (index, bone) in (0..).zip(&mut bones) {
+            bone.parent = if straight { u32::checked_sub(index, 1) } else { (index > 0).then_some(0) };
+        }
+        add(cases, 99, name, &Skeleton::of_joints(bones)?, 5)?;
+    }
+    Ok(())
+}
+
+fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count: usize) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let bones = skeleton.len();
+    let (_, set, instances) = random_crowd(case, bones, count)?;
+    let mut crowd = Crowd::new(gpu, &set, &instances)?;
+    let locals = random_locals(case, bones * count)?;
+    crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
+    let expected: Vec<Affine> = locals.chunks(bones).flat_map(|locals| concat(skeleton, locals)).collect();
+    let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
+    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
+    let bound = CONCAT_BOUND * deepest as f32 * largest;
+    for walk in [Walk::Levels, Walk::Whole] {
+        let output = Poisoned::<Affine>::new(gpu, bones * count)?;
+        crowd.models = output.buffer.clone();
+        let job = ConcatPass::new(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let comparison =
+            output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound))?;
+        cases.add(format!("{name}, {bones} bones × {count}, {walk:?}"), comparison);
+    }
+    Ok(())
+}
+
+fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let (bones, order) = (skeleton.len(), Order::new(skeleton));
+    let (_, set, instances) = random_crowd(case, bones, count)?;
+    let [before, locals] = [case + 100, case].map(|case| random_locals(case, bones * count));
+    let (before, locals) = (before?, locals?);
+    let stale: Vec<Affine> = before.chunks(bones).flat_map(|locals| concat(skeleton, locals)).collect();
+    let mut draw = Draw::new(case ^ 0xd127);
+    // A third of the instances have none, a third few, a third all but few.
+    let mut bits = vec![0; count * order.words()];
+    for (instance, words) in bits.chunks_mut(order.words()).enumerate() {
+        for slot in (0..bones).filter(|_| instance % 3 > 0) {
+            let is_active = draw.word().is_multiple_of(50) == (instance % 3 == 1);
+            words[slot / 32] |= u32::from(is_active) << (slot % 32);
+        }
+    }
+    let mut expected = stale.clone();
+    let chosen = Chosen { ahead: vec![0; bits.len()], bits };
+    let work = compact(&order, &chosen);
+    for ((dirty, locals), models) in
+        work.dirty.chunks(order.words()).zip(locals.chunks(bones)).zip(expected.chunks_mut(bones))
+    {
+        concat_dirty(&order, dirty, locals, models);
+    }
+    let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
+    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
+    let is_kept = |pair: usize, actual: &[Affine]| {
+        let slot =
+            order.slots.iter().position(|slot| slot.bone as usize == pair % bones).expect("every bone");
+        let word = work.dirty[pair / bones * order.words() + slot / 32];
+        word >> (slot % 32) & 1 == 1 || actual[pair] == stale[pair]
+    };
+    for walk in [Walk::Levels, Walk::Whole] {
+        let mut crowd = Crowd::new(gpu, &set, &instances)?;
+        crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
+        let output = Poisoned::<Affine>::new(gpu, bones * count)?;
+        output.buffer.write(gpu, &stale)?;
+        crowd.models = output.buffer.clone();
+        let active = Active::new(gpu, &order, &crowd)?;
+        active.bits.write(gpu, &chosen.bits)?;
+        let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active, Stages::Three)?;
+        let job = ConcatPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
+        gpu.run("verify", |encoder| {
+            lists.record(encoder);
+            job.record(encoder);
+        })?;
+        let comparison =
+            output.check(gpu, |actual| match (0..stale.len()).find(|pair| !is_kept(*pair, actual)) {
+                Some(pair) => {
+                    compare::Comparison::failed(stale.len(), format!("pair {pair} is clean, and changed"))
+                }
+                None => compare::absolute(
+                    &flat(actual),
+                    &flat(&expected),
+                    CONCAT_BOUND * deepest as f32 * largest,
+                ),
+            })?;
+        cases.add(format!("dirty, {bones} bones × {count}, {walk:?}"), comparison);
+    }
+    Ok(())
+}
+
+/// Scales near 1, so that long chains stay in range.
+fn random_locals(case: u32, count: usize) -> Result<Vec<Transform>, Error> {
+    let mut draw = Draw::new(case ^ 0x10ca);
+    let mut local = || {
+        let translation = [0; 3].map(|_| draw.signed());
+        let mut scale = [0; 3].map(|_| 1.0 + 0.02 * draw.signed());
+        scale[0] *= if draw.word().is_multiple_of(8) { -1.0 } else { 1.0 };
+        Transform { translation, rotation: draw.rotation(), scale }.checked("local")
+    };
+    Ok((0..count).map(|_| local()).collect::<Result<Vec<_>, _>>()?)
+}

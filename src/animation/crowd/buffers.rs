@@ -1,0 +1,187 @@
+//! What a crowd has on the device: the clips that it plays, and for each instance its places, local transforms and
+//! palette.
+
+use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
+use crate::animation::layers;
+use crate::animation::layers::{Layer, MOST_LAYERS};
+use crate::animation::place::{Instance, Place};
+use crate::animation::transform::{Affine, Transform};
+use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::{Error, InputError};
+
+/// A local transform as kernels keep it: translation and scale x; rotation; scale y and z, and two words that mean
+/// nothing.
+pub type Local = [[f32; 4]; 3];
+
+/// A transform as kernels keep it.
+pub fn packed(transform: &Transform) -> Local {
+    let ([x, y, z], [sx, sy, sz]) = (transform.translation, transform.scale);
+    [[x, y, z, sx], transform.rotation, [sy, sz, 0.0, 0.0]]
+}
+
+/// The transform that kernels keep so.
+pub fn unpacked(local: &Local) -> Transform {
+    let [[x, y, z, sx], rotation, [sy, sz, ..]] = *local;
+    Transform { translation: [x, y, z], rotation, scale: [sx, sy, sz] }
+}
+
+/// A set of clips on the device.
+#[derive(Debug, Clone)]
+pub struct ClipBuffers {
+    /// One a clip.
+    pub clips: Buffer<ClipEntry>,
+    /// Three a bone and clip.
+    pub tracks: Buffer<SetTrack>,
+    /// Clip by clip.
+    pub timelines: Buffer<Timeline>,
+    /// Seconds.
+    pub times: Buffer<f32>,
+    /// Of all tracks.
+    pub values: Buffer<[f32; 4]>,
+    /// Room that an instance needs for its places.
+    pub timelines_a_clip: usize,
+    /// Whether any track is a cubic spline.
+    pub has_splines: bool,
+}
+
+impl ClipBuffers {
+    /// Uploads a set.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, set: &ClipSet) -> Result<Self, GpuError> {
+        Ok(Self {
+            clips: Buffer::from_slice(gpu, "clips", set.clips())?,
+            tracks: Buffer::from_slice(gpu, "tracks", set.tracks())?,
+            timelines: Buffer::from_slice(gpu, "timelines", set.timelines())?,
+            times: Buffer::from_slice(gpu, "times", set.times())?,
+            values: Buffer::from_slice(gpu, "values", set.values())?,
+            timelines_a_clip: set.timelines_a_clip(),
+            has_splines: set.has_splines(),
+        })
+    }
+}
+
+/// Instances of one skeleton on the device. All buffers may be read and bound by the caller.
+#[derive(Debug, Clone)]
+pub struct Crowd {
+    /// What each plays, layer by layer: `layer · len + instance`. May be rewritten, a layer by `write_at` from
+    /// `layer · len` on; clips must stay below the set's number.
+    pub instances: Buffer<Instance>,
+    /// Written by [`crate::animation::place::PlacePass`]: the set's [`ClipSet::timelines_a_clip`] for each of `instances`.
+    pub places: Buffer<Place>,
+    /// How much the layers above the base count, 0..=1: for each of them a weight an instance, `(layer − 1) · len +
+    /// instance`, then for each of them a mask of bones. Weights may be rewritten ([`Crowd::set_weights`]).
+    pub shares: Buffer<f32>,
+    /// Written by [`crate::animation::sample::SamplePass`]: `instance · bones + bone`.
+    pub locals: Buffer<Local>,
+    /// Written by [`crate::animation::concat::ConcatPass`]: `instance · bones + bone`.
+    pub models: Buffer<Affine>,
+    /// What `models` were before, for motion vectors, where it is kept: see [`Crowd::with_previous`].
+    pub previous: Option<Buffer<Affine>>,
+    /// Bones of the skeleton.
+    pub bones: usize,
+    /// Layers, the base included: 1 where each instance plays one clip.
+    pub layers: usize,
+}
+
+impl Crowd {
+    /// Room for instances of a set's clips with layers above them.
+    ///
+    /// # Errors
+    /// [`InputError`] for no instances, ones that play no clip of the set, more than [`MOST_LAYERS`] layers, and
+    /// layers that do not fit ([`Layer::validate`]); [`GpuError`].
+    pub fn layered(gpu: &Gpu, set: &ClipSet, base: &[Instance], layers: &[Layer]) -> Result<Self, Error> {
+        let (count, bones) = (base.len(), set.bones());
+        let pairs = count.saturating_mul(bones);
+        // Shaders count vectors in u32.
+        if base.is_empty() || pairs.saturating_mul(3) > 1 << 31 {
+            let bound = format!("must be at least 1 and at most {}", (1_u64 << 31) / 3 / bones as u64);
+            return Err(InputError::new("instances.len", count, bound).into());
+        }
+        if layers.len() >= MOST_LAYERS {
+            return Err(
+                InputError::new("layers.len", layers.len(), format!("must be below {MOST_LAYERS}")).into()
+            );
+        }
+        base.iter().try_for_each(|instance| instance.validate(set.clips().len()))?;
+        for (at, layer) in layers.iter().enumerate() {
+            layer.validate(&format!("layers[{at}]"), count, set.clips().len(), bones)?;
+        }
+        let instances = layers::all_instances(base, layers);
+        Ok(Self {
+            places: Buffer::new(gpu, "places", (instances.len() + count) * set.timelines_a_clip())?,
+            instances: Buffer::from_slice(gpu, "instances", &instances)?,
+            shares: Buffer::from_slice(gpu, "shares", &all_shares(layers, bones))?,
+            locals: Buffer::new(gpu, "locals", pairs)?,
+            models: Buffer::new(gpu, "models", pairs)?,
+            previous: None,
+            bones,
+            layers: 1 + layers.len(),
+        })
+    }
+
+    /// The same crowd, which keeps its palettes of the frame before in `previous`, 48 bytes a bone. They are zero until
+    /// [`Crowd::record_previous`] has run.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn with_previous(self, gpu: &Gpu) -> Result<Self, GpuError> {
+        let previous = Some(Buffer::new(gpu, "previous models", self.pairs())?);
+        Ok(Self { previous, ..self })
+    }
+
+    /// Records the copy of `models` into `previous`: before concatenation, so that it may change `models` in place and
+    /// in part. In the first frame, and where instances are teleported, after it too, so that nothing seems to move.
+    /// Nothing where `previous` is not kept.
+    pub fn record_previous(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(previous) = &self.previous {
+            encoder.copy_buffer_to_buffer(self.models.raw(), 0, previous.raw(), 0, previous.bytes());
+        }
+    }
+
+    /// Replaces how much a layer counts for each instance; layers above the base are numbered from 1.
+    ///
+    /// # Errors
+    /// [`InputError`] for the base or a layer that the crowd lacks, other than one weight an instance, and weights
+    /// outside 0..=1; [`GpuError`].
+    pub fn set_weights(&self, gpu: &Gpu, layer: usize, weights: &[f32]) -> Result<(), Error> {
+        if !(1..self.layers).contains(&layer) {
+            let bound = format!("must be in 1..{}, a layer above the base", self.layers);
+            return Err(InputError::new("layer", layer, bound).into());
+        }
+        if weights.len() != self.len() {
+            let bound = format!("must be {}, one an instance", self.len());
+            return Err(InputError::new("weights.len", weights.len(), bound).into());
+        }
+        layers::shares("weights", weights)?;
+        Ok(self.shares.write_at(gpu, (layer - 1) * self.len(), weights)?)
+    }
+
+    /// How many instances.
+    pub fn len(&self) -> usize {
+        self.instances.len() / self.layers
+    }
+
+    /// False: a crowd has instances.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bones of all instances.
+    pub fn pairs(&self) -> usize {
+        self.len() * self.bones
+    }
+}
+
+/// Weights, then masks.
+fn all_shares(layers: &[Layer], bones: usize) -> Vec<f32> {
+    let mut shares: Vec<f32> = layers.iter().flat_map(|layer| &layer.weights).copied().collect();
+    for layer in layers {
+        match &layer.mask {
+            Some(mask) => shares.extend(mask),
+            None => shares.resize(shares.len() + bones, 1.0),
+        }
+    }
+    shares
+}

@@ -1,0 +1,82 @@
+//! Crowds of one layer without a device: the twins of a frame, one after another.
+
+use crate::animation::clip_set::ClipSet;
+use crate::animation::compact::reference::{Work, compact};
+use crate::animation::concat::Order;
+use crate::animation::concat::reference::concat_dirty;
+use crate::animation::decide::Choice;
+use crate::animation::decide::reference::Decider;
+use crate::animation::gate::Frame;
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::Lod;
+use crate::animation::place::Instance;
+use crate::animation::place::reference::places;
+use crate::animation::sample::reference::sample_pair;
+use crate::animation::sample::{PAIR_AHEAD, RotationPath};
+use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
+
+/// Instances of one skeleton, and what they keep from frame to frame.
+#[derive(Debug, Clone)]
+pub struct Crowd<'a> {
+    /// The skeleton's order.
+    pub order: &'a Order,
+    /// How rotations are sampled.
+    pub path: RotationPath,
+    /// May be changed between frames.
+    pub instances: Vec<Instance>,
+    /// May be changed between frames; one an instance.
+    pub lods: Vec<Lod>,
+    /// `instance · bones + bone`, in the parents' spaces.
+    pub locals: Vec<Transform>,
+    /// Likewise, in the model's space.
+    pub models: Vec<Affine>,
+    decider: Decider<'a>,
+}
+
+impl<'a> Crowd<'a> {
+    /// A crowd before its first frame.
+    pub fn new(
+        order: &'a Order,
+        set: &'a ClipSet,
+        table: &'a GateTable,
+        path: RotationPath,
+        instances: Vec<Instance>,
+    ) -> Self {
+        let (count, pairs) = (instances.len(), instances.len() * set.bones());
+        Self {
+            order,
+            path,
+            instances,
+            lods: vec![Lod::FULL; count],
+            locals: vec![Transform::IDENTITY; pairs],
+            models: vec![AFFINE_IDENTITY; pairs],
+            decider: Decider::new(set, table, count),
+        }
+    }
+
+    /// Brings the crowd to a time, and says what was done for it.
+    pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
+        let set = self.decider.set;
+        let lead = choice.ahead(frame);
+        let now = places(set, &self.instances, elapsed);
+        // Nothing is sampled there without a lead.
+        let ahead = if lead == 0.0 { Vec::new() } else { places(set, &self.instances, elapsed + lead) };
+        let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed, lead);
+        let bits = self.decider.bits(choice, frame, &self.lods, &phases);
+        let work = compact(self.order, &bits);
+        let (bones, timelines) = (set.bones(), set.timelines_a_clip());
+        for listed in &work.pairs {
+            let pair = (listed & !PAIR_AHEAD) as usize;
+            let (instance, bone) = (pair / bones, pair % bones);
+            let places = if listed & PAIR_AHEAD == 0 { &now } else { &ahead };
+            let places = &places[instance * timelines..];
+            self.locals[pair] = sample_pair(set, &self.instances[instance], places, bone, self.path);
+        }
+        for instance in work.instances.iter().map(|instance| *instance as usize) {
+            let dirty = &work.dirty[instance * self.order.words()..];
+            let own = instance * bones..(instance + 1) * bones;
+            concat_dirty(self.order, dirty, &self.locals[own.clone()], &mut self.models[own]);
+        }
+        work
+    }
+}

@@ -1,0 +1,58 @@
+//! First halves of frames.
+
+use crate::Error;
+use crate::animation::bench::{CROWDS, ELAPSED, Scene};
+use crate::animation::compact::Active;
+use crate::animation::compact::reference::compact;
+use crate::animation::decide::reference::Decider;
+use crate::animation::decide::{Choice, DecidePass, Dispatches};
+use crate::animation::gate::{Frame, Gate, Gating};
+use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::copy_of;
+
+/// Nothing skipped, and everything.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    for (skipped, omega) in [("nothing", OMEGA_ONE), ("everything", 0)] {
+        for count in CROWDS {
+            case(bench, &format!("{count} × 153, {skipped} skipped"), omega, count)?;
+        }
+    }
+    Ok(())
+}
+
+fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, count)?;
+    let (order, choice) = (scene.order(), Choice::Gate(Gate::Uniform));
+    let table = scene.table(Gate::Uniform)?;
+    let gating = Gating::new(gpu, &table, &scene.crowd)?;
+    let active = Active::new(gpu, &order, &scene.crowd)?;
+    let lods = vec![Lod { omega, ..Lod::FULL }; count];
+    gating.lods.write(gpu, &lods)?;
+    let pass = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
+    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating, &active)?;
+    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
+    job.set(gpu, &frame, ELAPSED)?;
+    let mut decider = Decider::new(&scene.set, &table, count);
+    // In the first frame no pose is stored, and nothing can be skipped.
+    gpu.run("first", |encoder| job.record(encoder))?;
+    let mut decide = || {
+        let phases = decider.phases(&scene.instances, &[], &lods, ELAPSED, 0.0);
+        compact(&order, &decider.bits(choice, &frame, &lods, &phases))
+    };
+    decide();
+    let chosen = decide().pairs.len();
+    // 12 words in and 6 out of an instance; bits twice out and once in; a pair and its slot.
+    let words = (18 * count + 3 * active.dirty.len() + 2 * chosen) / 2;
+    let copied = copy_of(gpu, words)?;
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || drop(std::hint::black_box(decide()))),
+    ];
+    bench.case(name.to_owned(), (scene.pairs(), "bone"), 8 * words as u64, contenders)
+}

@@ -1,0 +1,176 @@
+//! Parity of `kernels/animation/decide.wgsl`, and of the kernels that it stands for together.
+
+use crate::Error;
+use crate::animation::clip_set::ClipSet;
+use crate::animation::compact::Active;
+use crate::animation::compact::reference::compact as lists;
+use crate::animation::compact::verify as compact;
+use crate::animation::concat::Order;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::decide::reference::Decider;
+use crate::animation::decide::{Choice, DecidePass, Dispatches};
+use crate::animation::gate::verify::table;
+use crate::animation::gate::{Frame, Gate, Gating};
+use crate::animation::gate_table::GateTable;
+use crate::animation::layers::Layer;
+use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::phase::Phase;
+use crate::animation::phase::verify as phase;
+use crate::animation::place::Instance;
+use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
+use crate::gpu::GpuError;
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+
+/// Every gate, frame after frame, in one dispatch where the device allows it and in several: levels of detail of every
+/// size, some instances hidden, some refreshed, layers above every third crowd. Times are whole 64ths of a second, so
+/// that devices agree on every key; a fraction may be off by 1, and what follows is compared with what the twins make of
+/// the device's own: to the bit.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
+    for (case, [bones, count]) in SIZES.into_iter().chain([[5, 400]]).enumerate() {
+        let case = case as u32;
+        let (skeleton, set, instances) = random_crowd(case, bones, count)?;
+        let clips = random_clips(case, &skeleton, 3)?;
+        let order = Order::new(&skeleton);
+        for mode in modes {
+            let table = table(mode, &skeleton, &set, &clips.iter().collect::<Vec<_>>())?;
+            for dispatches in [Dispatches::One, Dispatches::Each] {
+                let pass = match DecidePass::new(cases.gpu, Choice::Gate(mode), dispatches) {
+                    Err(GpuError::Limit { .. }) => continue,
+                    pass => pass?,
+                };
+                let name = format!("{bones} bones × {count}, {}, {dispatches:?}", mode.name());
+                let play =
+                    Play { case, name, order: &order, set: &set, table: &table, instances: &instances };
+                play.add(cases, &pass, Choice::Gate(mode))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What is played.
+struct Play<'a> {
+    case: u32,
+    name: String,
+    order: &'a Order,
+    set: &'a ClipSet,
+    table: &'a GateTable,
+    instances: &'a [Instance],
+}
+
+/// Buffers that the kernels write.
+struct Outputs {
+    phases: Poisoned<Phase>,
+    bits: Poisoned<u32>,
+    dirty: Poisoned<u32>,
+    pairs: Poisoned<u32>,
+    instances: Poisoned<u32>,
+}
+
+impl Play<'_> {
+    fn add(&self, cases: &mut Cases<'_>, pass: &DecidePass, choice: Choice) -> Result<(), Error> {
+        let (gpu, count) = (cases.gpu, self.instances.len());
+        let mut draw = Draw::new(self.case ^ 0xdec1);
+        let mut instances = self.instances.to_vec();
+        let weights = (0..count).map(|_| (draw.word() % 3) as f32 / 2.0).collect();
+        let layers: Vec<Layer> = match self.case % 3 {
+            0 => vec![Layer::new(instances.clone(), weights)],
+            _ => Vec::new(),
+        };
+        let crowd = Crowd::layered(gpu, self.set, &instances, &layers)?;
+        let clips = ClipBuffers::new(gpu, self.set)?;
+        let mut gating = Gating::new(gpu, self.table, &crowd)?;
+        let mut active = Active::new(gpu, self.order, &crowd)?;
+        let outputs = self.poison(cases, &crowd, &mut gating, &mut active)?;
+        let mut decider = Decider::new(self.set, self.table, count);
+        let job = pass.prepare(gpu, &clips, &crowd, &gating, &active)?;
+        for (number, elapsed) in [0.0, 0.25, 0.5, 300.0].into_iter().enumerate() {
+            let lods = random_lods(&mut draw, count, number == 0);
+            gating.lods.write(gpu, &lods)?;
+            for instance in &mut instances {
+                instance.start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
+                instance.rate = [1.0, -1.0, 0.5][draw.word() as usize % 3];
+            }
+            crowd.instances.write_at(gpu, 0, &instances)?;
+            let ahead = [0.0, 0.25, -0.5, 0.125][number];
+            let frame =
+                Frame { ticks: 70_000 * number as u32, frame_ticks: 1092, frame: number as u32, ahead };
+            job.set(gpu, &frame, elapsed)?;
+            outputs.poison(gpu)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let expected = decider.phases(&instances, &layers, &lods, elapsed, choice.ahead(&frame));
+            let name = |what| format!("{}, frame {number}: {what}", self.name);
+            let same = |actual: &[Phase]| exact(&phase::settled(actual, &expected), &expected);
+            cases.add(name("phases"), outputs.phases.check(gpu, same)?);
+            let actual = gating.phases.read_blocking(gpu)?;
+            let chosen = decider.bits(choice, &frame, &lods, &actual[..count]);
+            let bits = chosen.words();
+            cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
+            let work = lists(self.order, &chosen);
+            let pairs = compact::padded(&work.pairs, crowd.pairs());
+            let listed = compact::padded(&work.instances, count);
+            cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs))?);
+            cases.add(name("instances"), outputs.instances.check(gpu, |actual| exact(actual, &listed))?);
+            cases.add(name("dirty"), outputs.dirty.check(gpu, |actual| exact(actual, &work.dirty))?);
+            cases.add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work)?);
+        }
+        let kept = exact(&gating.history.read_blocking(gpu)?, &decider.history);
+        cases.add(format!("{}: history", self.name), kept);
+        let kept = exact(&gating.sampled.read_blocking(gpu)?, &decider.sampled);
+        cases.add(format!("{}: sums of motion", self.name), kept);
+        Ok(())
+    }
+
+    fn poison(
+        &self,
+        cases: &Cases<'_>,
+        crowd: &Crowd,
+        gating: &mut Gating,
+        active: &mut Active,
+    ) -> Result<Outputs, Error> {
+        let (gpu, words) = (cases.gpu, active.dirty.len());
+        let outputs = Outputs {
+            phases: Poisoned::new(gpu, crowd.len())?,
+            bits: Poisoned::new(gpu, 2 * words)?,
+            dirty: Poisoned::new(gpu, words)?,
+            pairs: Poisoned::new(gpu, crowd.pairs())?,
+            instances: Poisoned::new(gpu, crowd.len())?,
+        };
+        gating.phases = outputs.phases.buffer.clone();
+        active.bits = outputs.bits.buffer.clone();
+        active.dirty = outputs.dirty.buffer.clone();
+        active.pairs.pairs = outputs.pairs.buffer.clone();
+        active.instances = outputs.instances.buffer.clone();
+        Ok(outputs)
+    }
+}
+
+impl Outputs {
+    fn poison(&self, gpu: &crate::gpu::Gpu) -> Result<(), GpuError> {
+        self.phases.poison(gpu)?;
+        [&self.bits, &self.dirty, &self.pairs, &self.instances]
+            .iter()
+            .try_for_each(|output| output.poison(gpu))
+    }
+}
+
+fn random_lods(draw: &mut Draw, count: usize, is_first: bool) -> Vec<Lod> {
+    let lod = |_| Lod {
+        omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
+        allowed: draw.word() >> (draw.word() % 32),
+        flags: match draw.word() % 8 {
+            _ if is_first => 0,
+            0 => Lod::HIDDEN,
+            1 => Lod::REFRESH,
+            _ => 0,
+        },
+        ..Lod::FULL
+    };
+    (0..count).map(lod).collect()
+}

@@ -1,0 +1,85 @@
+//! Decisions for crowds.
+
+use crate::Error;
+use crate::animation::bench::{CROWDS, Scene};
+use crate::animation::compact::Active;
+use crate::animation::gate::reference::gate;
+use crate::animation::gate::{Frame, Gate, GatePass, Gating};
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::phase::{Phase, Verdict};
+use crate::animation::sample::RotationPath;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::copy_of;
+
+/// Each mode at half detail, where it looks at every bone.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    for mode in [Gate::Uniform, Gate::Random, Gate::SkipPeriod { period: 65536 }, Gate::Bounded] {
+        for count in CROWDS {
+            case(bench, mode, count)?;
+        }
+    }
+    Ok(())
+}
+
+fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, count)?;
+    let table = scene.table(mode)?;
+    let gating = Gating::new(gpu, &table, &scene.crowd)?;
+    let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
+    let lods = vec![Lod { omega: OMEGA_ONE / 2, allowed: 1 << 16, ..Lod::FULL }; count];
+    let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
+    let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
+    let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
+    gating.lods.write(gpu, &lods)?;
+    gating.phases.write(gpu, &phases)?;
+    let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &gating, &active)?;
+    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
+    job.set(gpu, &frame)?;
+    // Bits out; of each bone half a word of priorities, or four of motion in and one out.
+    let pairs = scene.pairs();
+    let words = match mode {
+        Gate::Bounded => 5 * pairs / 2,
+        Gate::SkipPeriod { .. } => pairs / 4,
+        _ => 4 * count,
+    };
+    let copied = copy_of(gpu, words.max(1))?;
+    // Bones missed something every time.
+    let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| {
+            if mode == Gate::Bounded {
+                encoder.copy_buffer_to_buffer(before.raw(), 0, gating.sampled.raw(), 0, before.bytes());
+            }
+            job.record(encoder);
+        }),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            sampled.fill(0);
+            drop(std::hint::black_box(gate(&table, mode, &frame, &lods, &phases, &mut sampled)));
+        }),
+    ];
+    bench.case(format!("{count} × 153, {}", mode.name()), (pairs, "bone"), 8 * words as u64, contenders)
+}
+
+impl Scene {
+    /// A mode's table of the scene's clip.
+    pub(crate) fn table(&self, mode: Gate) -> Result<GateTable, Error> {
+        let (order, clips) = (self.order(), [&self.clip]);
+        Ok(match mode {
+            Gate::SkipPeriod { .. } => {
+                GateTable::of_priorities(&order, &self.set, &clips, &[self.priorities()?])?
+            }
+            Gate::Bounded => {
+                let reaches = vec![0.1; self.skeleton.len()];
+                GateTable::of_bounds(&self.skeleton, &self.set, &clips, &reaches, RotationPath::Slerp)?
+            }
+            _ => GateTable::of_movers(&order, &self.set, &clips)?,
+        })
+    }
+}

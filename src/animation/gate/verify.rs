@@ -1,0 +1,140 @@
+//! Parity of `kernels/animation/gate.wgsl`.
+
+use crate::Error;
+use crate::animation::clip::Clip;
+use crate::animation::clip_set::ClipSet;
+use crate::animation::compact::Active;
+use crate::animation::concat::Order;
+use crate::animation::crowd::Crowd;
+use crate::animation::gate::reference::gate;
+use crate::animation::gate::{Frame, Gate, GatePass, Gating};
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::phase::{Phase, Verdict};
+use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
+use crate::animation::sample::RotationPath;
+use crate::animation::skeleton::Skeleton;
+use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+
+/// Every mode, frame after frame, with whole numbers of every size: Ω from 0 to 1, phases at both ends of rows, ticks before and after they begin again, all verdicts. Equal integers decide alike: to the bit.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let case = case as u32;
+        let (skeleton, set, instances) = random_crowd(case, bones, count)?;
+        let clips = random_clips(case, &skeleton, 3)?;
+        let crowd = Crowd::new(cases.gpu, &set, &instances)?;
+        for mode in modes {
+            let table = table(mode, &skeleton, &set, &clips.iter().collect::<Vec<_>>())?;
+            add(cases, case, mode, &Order::new(&skeleton), &set, &crowd, &table)?;
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn table(
+    mode: Gate,
+    skeleton: &Skeleton,
+    set: &ClipSet,
+    clips: &[&Clip],
+) -> Result<GateTable, Error> {
+    let order = Order::new(skeleton);
+    let weights = Weights::default();
+    let user = vec![USER_DEFAULT; skeleton.len()];
+    Ok(match mode {
+        Gate::SkipPeriod { .. } => {
+            let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
+            let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+            GateTable::of_priorities(&order, set, clips, &priorities)?
+        }
+        Gate::Bounded => {
+            GateTable::of_bounds(skeleton, set, clips, &vec![0.5; skeleton.len()], RotationPath::Slerp)?
+        }
+        _ => GateTable::of_movers(&order, set, clips)?,
+    })
+}
+
+fn add(
+    cases: &mut Cases<'_>,
+    case: u32,
+    mode: Gate,
+    order: &Order,
+    set: &ClipSet,
+    crowd: &Crowd,
+    table: &GateTable,
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let count = crowd.len();
+    let mut gating = Gating::new(gpu, table, crowd)?;
+    let mut active = Active::new(gpu, order, crowd)?;
+    let output = Poisoned::<u32>::new(gpu, 2 * count * table.words())?;
+    active.bits = output.buffer.clone();
+    let sums = Poisoned::<u32>::new(gpu, crowd.pairs())?;
+    gating.sampled = sums.buffer.clone();
+    let pass = GatePass::new(gpu, mode)?;
+    let job = pass.prepare(gpu, crowd, &gating, &active)?;
+    let mut draw = Draw::new(case ^ 0x9a7e);
+    let mut sampled = vec![0; crowd.pairs()];
+    sums.buffer.write(gpu, &sampled)?;
+    for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
+        let (lods, phases) = random_state(&mut draw, set, count, number == 0);
+        gating.lods.write(gpu, &lods)?;
+        gating.phases.write(gpu, &phases)?;
+        let frame = Frame {
+            ticks,
+            frame_ticks: 1092,
+            frame: u32::MAX - 1 + number as u32 * u32::from(number < 2),
+            ahead: 0.0,
+        };
+        job.set(gpu, &frame)?;
+        output.poison(gpu)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let expected = gate(table, mode, &frame, &lods, &phases, &mut sampled).words();
+        let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
+        cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
+    }
+    let name = format!("{} bones × {count}, {}, sums of motion", crowd.bones, mode.name());
+    cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled))?);
+    Ok(())
+}
+
+/// Levels and phases of a frame; all forced at first.
+pub(crate) fn random_state(
+    draw: &mut Draw,
+    set: &ClipSet,
+    count: usize,
+    is_first: bool,
+) -> (Vec<Lod>, Vec<Phase>) {
+    let lod = |draw: &mut Draw| Lod {
+        omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
+        allowed: draw.word() >> (draw.word() % 32),
+        ..Lod::FULL
+    };
+    let phase = |draw: &mut Draw| {
+        let clip = draw.word() % set.clips().len() as u32;
+        let entry = &set.clips()[clip as usize];
+        let row = entry.first_row + draw.word() % (set.rows(entry) - 1);
+        let fraction = [0, draw.word() % 65536, 65535, 65536][draw.word() as usize % 4];
+        let verdict = match draw.word() % 8 {
+            _ if is_first => Verdict::Forced,
+            0 => Verdict::Hidden,
+            1 => Verdict::Forced,
+            2 => Verdict::Blended,
+            _ => Verdict::Free,
+        };
+        let phase = Phase::new(row, fraction, verdict, clip);
+        let ahead_row = entry.first_row + draw.word() % (set.rows(entry) - 1);
+        match draw.word() % 3 {
+            0 => phase,
+            // A little ahead, and anywhere.
+            1 => Phase { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..phase },
+            _ => Phase { ahead_row, ahead_fraction: draw.word() % 65537, ..phase },
+        }
+    };
+    (0..count).map(|_| (lod(draw), phase(draw))).unzip()
+}

@@ -1,0 +1,43 @@
+//! Phases of crowds.
+
+use crate::Error;
+use crate::animation::bench::{CROWDS, Scene};
+use crate::animation::gate::Gating;
+use crate::animation::gate_table::GateTable;
+use crate::animation::lod::Lod;
+use crate::animation::phase::PhasePass;
+use crate::animation::phase::reference::phases;
+use crate::animation::place::reference::places;
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::copy_of;
+
+/// Every instance of a crowd.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = PhasePass::new(gpu)?;
+    for count in CROWDS {
+        let scene = Scene::new(gpu, count)?;
+        let table = GateTable::of_movers(&scene.order(), &scene.set, &[&scene.clip])?;
+        let gating = Gating::new(gpu, &table, &scene.crowd)?;
+        let found = places(&scene.set, &scene.instances, 0.4);
+        scene.crowd.places.write(gpu, &found)?;
+        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating)?;
+        job.set(gpu, 0.4, 0.0)?;
+        // 12 words in, 6 out.
+        let copied = copy_of(gpu, 9 * count)?;
+        let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 4]; count]);
+        let contenders = vec![
+            Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Twin, || {
+                let found = phases(&scene.set, &scene.instances, &[], &lods, 0.4, 0.0, &mut history);
+                drop(std::hint::black_box(found));
+            }),
+        ];
+        bench.case(format!("{count} instances"), (count, "instance"), 72 * count as u64, contenders)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! Where instances stand on the timeline that all bones of their clip share, in whole numbers: what gates decide by.
+//! Comes before `animation/gate`. Whether an instance has to be sampled in full is found here
+//! too: at its first frame, after it was hidden, when its clip changed, when the host asks for it
+//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
+//! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+pub(crate) mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::{PhaseJob, PhasePass};
+
+/// In an instance's history: layers lay above its clip.
+pub const BLENDED: u32 = 1 << 31;
+
+/// What asks for a pose besides the time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Verdict {
+    /// Nothing: the gate decides.
+    Free = 0,
+    /// Nobody sees it: nothing is sampled.
+    Hidden = 1,
+    /// Its stored pose means nothing: everything is sampled.
+    Forced = 2,
+    /// Layers lie above its clip: gates that decide by motion sample everything, others decide on every bone.
+    Blended = 3,
+}
+
+impl Verdict {
+    /// Whether gates that decide by motion sample everything.
+    pub fn forces_motion(self) -> bool {
+        matches!(self, Self::Forced | Self::Blended)
+    }
+}
+
+/// Where an instance stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Phase {
+    /// Row of the gate's table: the clip's first, and the key before.
+    pub row: u32,
+    /// In the lower 20 bits the way to the next row, 0 to 65536; above them the [`Verdict`].
+    pub fraction_and_verdict: u32,
+    /// The clip.
+    pub clip: u32,
+    /// The row where it will stand when bones may be sampled ahead of their time; else as above.
+    pub ahead_row: u32,
+    /// The way to the row after it, 0 to 65536.
+    pub ahead_fraction: u32,
+}
+
+impl Phase {
+    /// A phase from its parts; nothing may be sampled ahead.
+    pub fn new(row: u32, fraction: u32, verdict: Verdict, clip: u32) -> Self {
+        let fraction_and_verdict = (verdict as u32) << 20 | fraction;
+        Self { row, fraction_and_verdict, clip, ahead_row: row, ahead_fraction: fraction }
+    }
+
+    /// Whether bones may be sampled ahead.
+    pub fn is_ahead(&self) -> bool {
+        (self.ahead_row, self.ahead_fraction) != (self.row, self.fraction())
+    }
+
+    /// The way to the next row, 0 to 65536.
+    pub fn fraction(&self) -> u32 {
+        self.fraction_and_verdict & 0xf_ffff
+    }
+
+    /// What asks for a pose besides the time.
+    pub fn verdict(&self) -> Verdict {
+        match self.fraction_and_verdict >> 20 {
+            0 => Verdict::Free,
+            1 => Verdict::Hidden,
+            2 => Verdict::Forced,
+            _ => Verdict::Blended,
+        }
+    }
+}

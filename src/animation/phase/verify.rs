@@ -1,0 +1,89 @@
+//! Parity of `kernels/animation/phase.wgsl`.
+
+use crate::Error;
+use crate::animation::concat::Order;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate::Gating;
+use crate::animation::gate_table::GateTable;
+use crate::animation::layers::Layer;
+use crate::animation::lod::Lod;
+use crate::animation::phase::reference::phases;
+use crate::animation::phase::{Phase, PhasePass};
+use crate::animation::place::Instance;
+use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+
+/// Frame after frame: the first, some hidden and some refreshed, others' clips and layers changed, and a leap
+/// of many turns. Times are whole 64ths of a second and clips too, so that all devices agree on every
+/// key; on a fraction they may differ by 1, from rounding of its division.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = PhasePass::new(gpu)?;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let mut draw = Draw::new(case as u32 ^ 0xfa5e);
+        let (skeleton, set, mut instances) = random_crowd(case as u32, bones, count)?;
+        // Every third case has layers.
+        let layer = |draw: &mut Draw| {
+            Layer::new(instances.clone(), (0..count).map(|_| (draw.word() % 3) as f32 / 2.0).collect())
+        };
+        let mut layers: Vec<Layer> = (0..case % 3).map(|_| layer(&mut draw)).collect();
+        let crowd = Crowd::layered(gpu, &set, &instances, &layers)?;
+        let clips = ClipBuffers::new(gpu, &set)?;
+        let clips_of = crate::animation::verify::random_clips(case as u32, &skeleton, 3)?;
+        let table = GateTable::of_movers(&Order::new(&skeleton), &set, &clips_of.iter().collect::<Vec<_>>())?;
+        let mut gating = Gating::new(gpu, &table, &crowd)?;
+        let output = Poisoned::<Phase>::new(gpu, count)?;
+        gating.phases = output.buffer.clone();
+        let mut history = vec![[0; 4]; count];
+        for (frame, elapsed) in [0.0, 0.25, 0.5, 300.0, 300.25].into_iter().enumerate() {
+            let choose = |draw: &mut Draw| match draw.word() % 8 {
+                0 => Lod::HIDDEN,
+                1 => Lod::REFRESH,
+                _ => 0,
+            };
+            let lods: Vec<Lod> = (0..count)
+                .map(|_| Lod { flags: if frame == 0 { 0 } else { choose(&mut draw) }, ..Lod::FULL })
+                .collect();
+            for instance in &mut instances {
+                let start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
+                let clip = if draw.word().is_multiple_of(8) { draw.word() % 3 } else { instance.clip };
+                *instance =
+                    Instance { clip, start, rate: [1.0, -1.0, 0.5][draw.word() as usize % 3], ..*instance };
+            }
+            for (at, layer) in layers.iter_mut().enumerate() {
+                layer.weights.iter_mut().for_each(|weight| *weight = (draw.word() % 4 / 3) as f32);
+                crowd.set_weights(gpu, at + 1, &layer.weights)?;
+            }
+            crowd.instances.write_at(gpu, 0, &instances)?;
+            gating.lods.write(gpu, &lods)?;
+            output.poison(gpu)?;
+            let job = pass.prepare(gpu, &clips, &crowd, &gating)?;
+            let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];
+            job.set(gpu, elapsed, ahead)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let expected = phases(&set, &instances, &layers, &lods, elapsed, ahead, &mut history);
+            let comparison =
+                output.check(gpu, |actual| compare::exact(&settled(actual, &expected), &expected))?;
+            cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
+        }
+        let kept = compare::exact(&gating.history.read_blocking(gpu)?, &history);
+        cases.add(format!("{bones} bones × {count}, history"), kept);
+    }
+    Ok(())
+}
+
+/// The phases, those whose fractions are 1 beside the expected ones replaced by them.
+pub(crate) fn settled(actual: &[Phase], expected: &[Phase]) -> Vec<Phase> {
+    let settle = |(actual, expected): (&Phase, &Phase)| {
+        let is_near = actual.fraction().abs_diff(expected.fraction()) <= 1
+            && actual.ahead_fraction.abs_diff(expected.ahead_fraction) <= 1;
+        let Phase { fraction_and_verdict, ahead_fraction, .. } = *expected;
+        let same = Phase { fraction_and_verdict, ahead_fraction, ..*actual };
+        if is_near && actual.verdict() == expected.verdict() { same } else { *actual }
+    };
+    actual.iter().zip(expected).map(settle).collect()
+}

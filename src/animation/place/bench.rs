@@ -1,0 +1,36 @@
+//! Where instances stand in their clips.
+
+use std::hint::black_box;
+
+use crate::Error;
+use crate::animation::bench::{CROWDS, ELAPSED, Scene};
+use crate::animation::place::reference::places_into;
+use crate::animation::place::{Place, PlacePass};
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::copy_of;
+
+/// One timeline an instance: all tracks share it.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = PlacePass::new(gpu)?;
+    for count in CROWDS {
+        let scene = Scene::new(gpu, count)?;
+        let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
+        job.set(gpu, ELAPSED)?;
+        // An instance and four times in, a place out: 10 words.
+        let copied = copy_of(gpu, 5 * count)?;
+        let mut places = vec![Place::default(); count];
+        let contenders = vec![
+            Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Twin, || {
+                places_into(&scene.set, &scene.instances, ELAPSED, black_box(&mut places));
+            }),
+        ];
+        bench.case(format!("{count} instances"), (count, "instance"), 40 * count as u64, contenders)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! Parity of `kernels/animation/place.wgsl`.
+
+use crate::Error;
+use crate::animation::compact::Active;
+use crate::animation::concat::Order;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate::Gating;
+use crate::animation::gate_table::GateTable;
+use crate::animation::layers::{Layer, all_instances};
+use crate::animation::place::reference::{inside_clip, places};
+use crate::animation::place::{Instance, PLACE_BOUND, Place, PlacePass};
+use crate::animation::sample::Wrap;
+use crate::animation::verify::edges::{ELAPSED, edges};
+use crate::animation::verify::{SIZES, random_clips, random_crowd, random_instances};
+use crate::harness::compare::Comparison;
+use crate::harness::poison::{POISON, Poisoned};
+use crate::harness::{Cases, compare};
+
+/// Every kind of timeline, loops, clamps, reverse play, clips without length, at the start and later. Room for
+/// timelines that a clip lacks stays untouched.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = PlacePass::new(gpu)?;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (_, set, instances) = random_crowd(case as u32, bones, count)?;
+        let clips = ClipBuffers::new(gpu, &set)?;
+        for elapsed in [0.0, 1.375, -3.0] {
+            let mut crowd = Crowd::new(gpu, &set, &instances)?;
+            let rooms = crowd.places.len();
+            let output = Poisoned::<Place>::new(gpu, rooms)?;
+            crowd.places = output.buffer.clone();
+            let job = pass.prepare(gpu, &clips, &crowd)?;
+            job.set(gpu, elapsed)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let mut expected = places(&set, &instances, elapsed);
+            let used = expected.len();
+            // Nothing is looked up ahead.
+            expected.resize(rooms, Place::default());
+            let room = set.timelines_a_clip();
+            let is_used = |at: usize| {
+                at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
+            };
+            let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
+            cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
+        }
+    }
+    at_edges(cases, &pass)?;
+    nowhere(cases, &pass)?;
+    of_a_list(cases, &pass)
+}
+
+/// Instances of a list, with their layers, at the times that gates saw, and where they will stand ahead; the places of
+/// others stay untouched.
+fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (skeleton, set, base) = random_crowd(case as u32, bones, count)?;
+        let layer = Layer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
+        let layers = vec![layer; case % 3];
+        let mut crowd = Crowd::layered(gpu, &set, &base, &layers)?;
+        let rooms = crowd.places.len();
+        let output = Poisoned::<Place>::new(gpu, rooms)?;
+        crowd.places = output.buffer.clone();
+        let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
+        let model_clips = random_clips(case as u32, &skeleton, 3)?;
+        let table = GateTable::of_movers(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
+        let gating = Gating::new(gpu, &table, &crowd)?;
+        let active = Active::new(gpu, &order, &crowd)?;
+        // Every third, and what the gate saw is not what the clock says.
+        let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
+        active.instances.write(gpu, &listed)?;
+        let room = set.timelines_a_clip();
+        let threads = listed.len() * room * (2 + layers.len());
+        let mut dispatches = active.dispatches.read_blocking(gpu)?;
+        dispatches[0][3] = listed.len() as u32;
+        *dispatches.last_mut().expect("two") = [threads.div_ceil(64) as u32, 1, 1, 0];
+        active.dispatches.write(gpu, &dispatches)?;
+        let seen: Vec<f32> = base
+            .iter()
+            .map(|instance| inside_clip(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25))
+            .collect();
+        // Every second listed instance will be elsewhere when it is sampled ahead.
+        let ahead: Vec<f32> = (seen.iter().enumerate())
+            .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
+            .collect();
+        let history = seen.iter().zip(&ahead).map(|(now, later)| [1, 0, now.to_bits(), later.to_bits()]);
+        gating.history.write(gpu, &history.collect::<Vec<_>>())?;
+        let job = pass.prepare_active(gpu, &clips, &crowd, &gating, &active)?;
+        job.set(gpu, 0.5)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let all = all_instances(&base, &layers);
+        let mut expected = places(&set, &all, 0.5);
+        let first_ahead = expected.len();
+        expected.resize(rooms, Place::default());
+        for instance in listed.iter().map(|at| *at as usize) {
+            for (first, time) in [(0, seen[instance]), (first_ahead, ahead[instance])] {
+                let seen = Instance::new(base[instance].clip, Wrap::Clamp, time, 0.0);
+                expected[first + instance * room..][..room].copy_from_slice(&places(&set, &[seen], 0.0));
+            }
+        }
+        let is_used = |at: usize| {
+            let instance = at / room % count;
+            let playing = if at < first_ahead { &all[at / room] } else { &base[instance] };
+            let is_looked_up = at < first_ahead || seen[instance] != ahead[instance];
+            let is_listed = instance.is_multiple_of(3) && is_looked_up;
+            is_listed && at % room < set.clips()[playing.clip as usize].timelines as usize
+        };
+        let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
+        let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
+        cases.add(name, comparison);
+    }
+    Ok(())
+}
+
+/// Places that are used, and poison elsewhere.
+fn compare_places(actual: &[Place], expected: &[Place], is_used: impl Fn(usize) -> bool) -> Comparison {
+    // Untouched rooms compare as −1.
+    let phase = |place: &Place| match place.key == POISON {
+        true if place.fraction.to_bits() == POISON => -1.0,
+        _ => place.key as f32 + place.fraction,
+    };
+    let expected: Vec<f32> = (expected.iter().enumerate())
+        .map(|(at, place)| if is_used(at) { phase(place) } else { -1.0 })
+        .collect();
+    let actual: Vec<f32> = actual.iter().map(phase).collect();
+    compare::absolute(&actual, &expected, PLACE_BOUND)
+}
+
+/// Times that loops cannot tell, up to infinity, are the clip's start; a clamped one is its end. The bounds of instances
+/// are far below: the device's buffer says otherwise.
+fn nowhere(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+    let (gpu, edges) = (cases.gpu, edges()?);
+    let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
+    let play = |wrap: Wrap| far.map(|(start, rate)| Instance::new(0, wrap, start, rate));
+    let instances: Vec<_> = [play(Wrap::Loop), play(Wrap::Clamp)].concat();
+    let still = vec![Instance::new(0, Wrap::Loop, 0.0, 0.0); instances.len()];
+    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &still)?);
+    crowd.instances.write(gpu, &instances)?;
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, 1e9)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let (at_start, at_end) =
+        (Instance::new(0, Wrap::Clamp, 0.0, 0.0), Instance::new(0, Wrap::Clamp, 1.0, 0.0));
+    let of = |instance: &Instance| match (instance.wrap(), instance.start < 0.0 || instance.rate < 0.0) {
+        (Wrap::Clamp, false) => at_end,
+        // 1e9 s at rate 1 outweigh the start.
+        (Wrap::Clamp, true) if instance.rate > 0.0 => at_end,
+        _ => at_start,
+    };
+    let known = places(&edges.set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
+    let twins = places(&edges.set, &instances, 1e9);
+    let phases = |places: &[Place]| places.iter().map(|place| place.key as f32 + place.fraction).collect();
+    let [actual, twins, known]: [Vec<f32>; 3] =
+        [&crowd.places.read_blocking(gpu)?[..twins.len()], &twins, &known].map(phases);
+    let (actual, known) = ([actual, twins].concat(), known.repeat(2));
+    cases.add("nowhere in the clip", compare::absolute(&actual, &known, PLACE_BOUND));
+    Ok(())
+}
+
+/// Places that are known without a twin.
+fn at_edges(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+    let (gpu, edges) = (cases.gpu, edges()?);
+    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &edges.instances)?);
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, ELAPSED)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let found = crowd.places.read_blocking(gpu)?;
+    let phase = |place: &Place| place.key as f32 + place.fraction;
+    let (mut actual, mut expected) = (Vec::new(), Vec::new());
+    for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.places()) {
+        actual.extend(found[..known.len()].iter().map(phase));
+        expected.extend(known.iter().map(phase));
+    }
+    cases.add("edges", compare::absolute(&actual, &expected, PLACE_BOUND));
+    Ok(())
+}

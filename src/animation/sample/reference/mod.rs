@@ -1,0 +1,243 @@
+//! Sampling of clips: twin of `kernels/animation/sample.wgsl`.
+
+use crate::animation::clip::{Clip, Interpolation, Part, Track};
+use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
+use crate::animation::layers::{Layer, all_instances};
+use crate::animation::place::reference::place;
+use crate::animation::place::{Instance, Place};
+use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V};
+use crate::animation::transform::Transform;
+
+mod arcs;
+
+use arcs::Arcs;
+
+/// A spline of rotations that passes this close to zero keeps the key before: nothing has a direction there.
+const VANISHING: f32 = 1e-12;
+
+/// Every bone's transform, in its parent's space, at a time inside the clip.
+pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
+    (0..clip.bones()).map(|bone| sample_bone(clip, bone, time, path)).collect()
+}
+
+/// One bone's transform.
+pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> Transform {
+    let of = |part| {
+        let track: &Track = clip.track(bone, part);
+        let values = &clip.values()[track.first_value as usize..];
+        (values, track.interpolation(), place(clip.times_of(track), time))
+    };
+    let vector = |part| {
+        let (values, interpolation, place) = of(part);
+        let [x, y, z, _] = vector_at(values, interpolation, place);
+        [x, y, z]
+    };
+    let (values, interpolation, place) = of(Part::Rotation);
+    let rotation = rotation_at(values, interpolation, place, path);
+    Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
+}
+
+pub(crate) fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
+    let key = place.key as usize;
+    match interpolation {
+        Interpolation::CubicSpline => spline(values, place),
+        Interpolation::Linear if place.fraction > 0.0 => lerp(values[key], values[key + 1], place.fraction),
+        _ => values[key],
+    }
+}
+
+pub(crate) fn rotation_at(
+    values: &[[f32; 4]],
+    interpolation: Interpolation,
+    place: Place,
+    path: RotationPath,
+) -> [f32; 4] {
+    let key = place.key as usize;
+    match interpolation {
+        Interpolation::CubicSpline => {
+            let between = spline(values, place);
+            normalized(if dot(between, between) < VANISHING { values[3 * key + 1] } else { between })
+        }
+        Interpolation::Linear if place.fraction > 0.0 => match path {
+            RotationPath::Slerp => slerp(values[key], values[key + 1], place.fraction),
+            RotationPath::Nlerp => normalized(lerp(values[key], values[key + 1], place.fraction)),
+        },
+        _ => values[key],
+    }
+}
+
+/// glTF's spline: values and tangents, three a key.
+fn spline(values: &[[f32; 4]], place: Place) -> [f32; 4] {
+    let (at, t) = (3 * place.key as usize, place.fraction);
+    let start = values[at + 1];
+    if t <= 0.0 {
+        return start;
+    }
+    let (leaving, arriving, end) = (values[at + 2], values[at + 3], values[at + 4]);
+    let (square, cube) = (t * t, t * t * t);
+    let of_end = 3.0 * square - 2.0 * cube;
+    let of_start = 1.0 - of_end;
+    let of_leaving = cube - 2.0 * square + t;
+    let of_arriving = cube - square;
+    std::array::from_fn(|i| {
+        of_start * start[i] + of_leaving * leaving[i] + of_end * end[i] + of_arriving * arriving[i]
+    })
+}
+
+fn lerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+fn dot(a: [f32; 4], b: [f32; 4]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
+
+fn normalized(q: [f32; 4]) -> [f32; 4] {
+    let scale = 1.0 / dot(q, q).sqrt();
+    q.map(|component| component * scale)
+}
+
+/// The rotation `t` of the way from `a` to `b`, both unit, with `dot(a, b) ≥ 0` as clips store them.
+pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
+    let cosine = dot(a, b);
+    // Halved: from the nearer end towards the unit quaternion in the middle, (a + b)·inverse.
+    let inverse = 1.0 / (2.0 + 2.0 * cosine).sqrt();
+    let less_one = (1.0 + cosine) * inverse - 1.0;
+    let (nearer, farther) = if t < 0.5 { (a, b) } else { (b, a) };
+    let way = if t < 0.5 { 2.0 * t } else { 2.0 - 2.0 * t };
+    let of_middle = slerp_weight(way, less_one) * inverse;
+    let of_nearer = slerp_weight(1.0 - way, less_one) + of_middle;
+    std::array::from_fn(|i| nearer[i] * of_nearer + farther[i] * of_middle)
+}
+
+/// `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
+fn slerp_weight(t: f32, less_one: f32) -> f32 {
+    let square = t * t;
+    let terms = SLERP_U.iter().zip(SLERP_V).rev();
+    t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * square - v) * less_one * sum)
+}
+
+/// Every bone's transform of every instance, at their places: what the kernel computes of a whole crowd.
+///
+/// # Panics
+/// With fewer places than the set needs.
+pub fn sample_set(
+    set: &ClipSet,
+    instances: &[Instance],
+    places: &[Place],
+    path: RotationPath,
+) -> Vec<Transform> {
+    let mut transforms = vec![Transform::IDENTITY; instances.len() * set.bones()];
+    sample_set_into(set, instances, places, path, &mut transforms);
+    transforms
+}
+
+/// [`sample_set`] without allocation, for one frame after another.
+///
+/// # Panics
+/// With fewer places or transforms than the instances need.
+pub fn sample_set_into(
+    set: &ClipSet,
+    instances: &[Instance],
+    places: &[Place],
+    path: RotationPath,
+    transforms: &mut [Transform],
+) {
+    let (bones, room) = (set.bones(), set.timelines_a_clip());
+    for (index, instance) in instances.iter().enumerate() {
+        let tracks = &set.tracks()[3 * bones * instance.clip as usize..][..3 * bones];
+        let places = &places[index * room..][..room];
+        let transforms = &mut transforms[index * bones..][..bones];
+        let mut arcs = Arcs::default();
+        for (bone, tracks) in tracks.chunks_exact(3).enumerate() {
+            let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
+                let (values, interpolation, place) = find(set, track, places);
+                let [x, y, z, _] = vector_at(values, interpolation, place);
+                [x, y, z]
+            });
+            transforms[bone].translation = translation;
+            transforms[bone].scale = scale;
+            let (values, interpolation, place) = find(set, tracks[1], places);
+            let is_between = interpolation == Interpolation::Linear && place.fraction > 0.0;
+            if is_between && path == RotationPath::Slerp {
+                let key = place.key as usize;
+                arcs.push(bone, [values[key], values[key + 1]], place.fraction, transforms);
+            } else {
+                transforms[bone].rotation = rotation_at(values, interpolation, place, path);
+            }
+        }
+        arcs.finish(transforms);
+    }
+}
+
+/// One bone's transform of one instance, at the instance's places.
+///
+/// # Panics
+/// With fewer places than the clip needs.
+pub fn sample_pair(
+    set: &ClipSet,
+    instance: &Instance,
+    places: &[Place],
+    bone: usize,
+    path: RotationPath,
+) -> Transform {
+    let tracks = &set.tracks()[3 * (set.bones() * instance.clip as usize + bone)..][..3];
+    let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
+        let (values, interpolation, place) = find(set, track, places);
+        let [x, y, z, _] = vector_at(values, interpolation, place);
+        [x, y, z]
+    });
+    let (values, interpolation, place) = find(set, tracks[1], places);
+    Transform { translation, rotation: rotation_at(values, interpolation, place, path), scale }
+}
+
+/// Every bone's transform of every instance with its layers, at the places of [`all_instances`]: what the kernel
+/// computes of a layered crowd.
+///
+/// # Panics
+/// With fewer places than the set needs, and with layers that do not fit.
+pub fn sample_layers(
+    set: &ClipSet,
+    base: &[Instance],
+    layers: &[Layer],
+    places: &[Place],
+    path: RotationPath,
+) -> Vec<Transform> {
+    let all = sample_set(set, &all_instances(base, layers), places, path);
+    let (below, above) = all.split_at(base.len() * set.bones());
+    let mut poses = below.to_vec();
+    for (layer, over) in layers.iter().zip(above.chunks(below.len())) {
+        for (pair, (pose, over)) in poses.iter_mut().zip(over).enumerate() {
+            let share = layer.share(pair / set.bones(), pair % set.bones());
+            if share > 0.0 {
+                *pose = blend(pose, over, share);
+            }
+        }
+    }
+    poses
+}
+
+/// The pose `share` of the way from one to another; rotations on the chord to the nearer of q and −q.
+pub fn blend(below: &Transform, over: &Transform, share: f32) -> Transform {
+    let rest = 1.0 - share;
+    let vector = |below: [f32; 3], over: [f32; 3]| std::array::from_fn(|i| below[i] * rest + over[i] * share);
+    let nearer = if dot(below.rotation, over.rotation) < 0.0 { -share } else { share };
+    let rotation = std::array::from_fn(|i| below.rotation[i] * rest + over.rotation[i] * nearer);
+    Transform {
+        translation: vector(below.translation, over.translation),
+        rotation: normalized(rotation),
+        scale: vector(below.scale, over.scale),
+    }
+}
+
+/// A track's values from its first on, how they are interpolated, and where.
+fn find<'a>(set: &'a ClipSet, track: SetTrack, places: &[Place]) -> (&'a [[f32; 4]], Interpolation, Place) {
+    let first = track.first_value as usize;
+    let code = track.timeline_and_code >> 30;
+    match (track.timeline_and_code & CONSTANT, code) {
+        // The middle of three.
+        (CONSTANT, 2) => (&set.values()[first - 1..], Interpolation::CubicSpline, Place::default()),
+        (CONSTANT, _) => (&set.values()[first..], Interpolation::Step, Place::default()),
+        (timeline, _) => (&set.values()[first..], Interpolation::of_code(code), places[timeline as usize]),
+    }
+}

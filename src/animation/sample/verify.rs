@@ -1,0 +1,213 @@
+//! Parity of `kernels/animation/sample.wgsl`.
+
+use crate::Error;
+use crate::animation::clip_set::ClipSet;
+use crate::animation::crowd::{ClipBuffers, Crowd, Local, packed};
+use crate::animation::layers::{Layer, MOST_LAYERS, all_instances};
+use crate::animation::place::reference::places;
+use crate::animation::place::{Instance, Place};
+use crate::animation::sample::reference::{blend, sample_layers, sample_set};
+use crate::animation::sample::{
+    ActivePairs, LAYER_GROWTH, PAIR_AHEAD, RotationPath, SAMPLE_BOUND, SamplePass,
+};
+use crate::animation::verify::edges::{ELAPSED, edges};
+use crate::animation::verify::{Draw, SIZES, random_crowd, random_instances};
+use crate::baseline::gather::verify::evenly_keyed;
+use crate::gpu::Gpu;
+use crate::harness::poison::{POISON, Poisoned};
+use crate::harness::{Cases, compare};
+
+/// Every interpolation, at the twin's places: every pair, and lists of some pairs, of none and of all. Pairs that are
+/// not listed stay untouched. Crowds of one layer and of several.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (_, set, instances) = random_crowd(case as u32, bones, count)?;
+        for path in [RotationPath::Slerp, RotationPath::Nlerp] {
+            add(cases, format!("{bones} bones × {count}, {path:?}"), &set, &instances, &[], path)?;
+        }
+    }
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (_, set, instances) = random_crowd(case as u32, bones, count)?;
+        let above = [1, 2, MOST_LAYERS - 1][case % 3];
+        let layers = random_layers(case as u32, &set, count, above);
+        let path = [RotationPath::Slerp, RotationPath::Nlerp][case % 2];
+        let name = format!("{bones} bones × {count}, {} layers", 1 + above);
+        add(cases, name, &set, &instances, &layers, path)?;
+    }
+    // Sets without splines have kernels of their own.
+    let set = evenly_keyed(&mut Draw::new(1), 153, 60)?;
+    let instances = random_instances(0, &set, 40);
+    for path in [RotationPath::Slerp, RotationPath::Nlerp] {
+        add(cases, format!("153 bones × 40 without splines, {path:?}"), &set, &instances, &[], path)?;
+    }
+    at_edges(cases)
+}
+
+/// Poses that are known without a twin; and the same under a layer of their like, with the keys of rotations negated.
+fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let edges = edges()?;
+    let poses: Vec<Local> = edges.poses().iter().map(packed).collect();
+    let negated = edges.instances.iter().map(|instance| Instance { clip: instance.clip + 2, ..*instance });
+    let layer = Layer::new(negated.collect(), vec![0.5; edges.instances.len()]);
+    for (name, layers) in [("edges", vec![]), ("edges under their negatives", vec![layer])] {
+        let mut bench = Bench::new(cases.gpu, &edges.set, &edges.instances, &layers, RotationPath::Slerp)?;
+        bench.expected.clone_from(&poses);
+        cases.add(name, bench.all()?);
+    }
+    Ok(())
+}
+
+/// All pairs, and lists.
+fn add(
+    cases: &mut Cases<'_>,
+    name: String,
+    set: &ClipSet,
+    base: &[Instance],
+    layers: &[Layer],
+    path: RotationPath,
+) -> Result<(), Error> {
+    let bench = Bench::new(cases.gpu, set, base, layers, path)?;
+    cases.add(format!("{name}, all"), bench.all()?);
+    let pairs = bench.expected.len() as u32;
+    for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
+        let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
+        cases.add(format!("{name}, {list}"), bench.some(&chosen)?);
+    }
+    Ok(())
+}
+
+/// Layers whose weights and masks are nothing, everything, and all between; every second on all bones.
+fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<Layer> {
+    let mut draw = Draw::new(case ^ 0x1a7e);
+    let mut share = || match draw.word() % 4 {
+        0 => 0.0,
+        1 => 1.0,
+        _ => draw.signed().abs(),
+    };
+    let layer = |at: usize| {
+        let instances = random_instances(case ^ (at as u32 + 1) << 8, set, count);
+        let layer = Layer::new(instances, (0..count).map(|_| share()).collect());
+        if at.is_multiple_of(2) { layer } else { layer.masked((0..set.bones()).map(|_| share()).collect()) }
+    };
+    (0..above).map(layer).collect()
+}
+
+/// Bones that a layer turns by half a turn, give or take `margin`: the nearer of q and −q is a matter of rounding.
+fn torn(
+    set: &ClipSet,
+    base: &[Instance],
+    layers: &[Layer],
+    places: &[Place],
+    path: RotationPath,
+    margin: f32,
+) -> Vec<bool> {
+    let all = sample_set(set, &all_instances(base, layers), places, path);
+    let mut torn = vec![false; base.len() * set.bones()];
+    let (below, above) = all.split_at(torn.len());
+    for (pair, torn) in torn.iter_mut().enumerate() {
+        let mut pose = below[pair];
+        for (layer, over) in layers.iter().zip(above.chunks(below.len())) {
+            let share = layer.share(pair / set.bones(), pair % set.bones());
+            if share > 0.0 {
+                let cosine: f32 = pose.rotation.iter().zip(over[pair].rotation).map(|(a, b)| a * b).sum();
+                *torn |= cosine.abs() < margin;
+                pose = blend(&pose, &over[pair], share);
+            }
+        }
+    }
+    torn
+}
+
+struct Bench<'a> {
+    gpu: &'a Gpu,
+    pass: SamplePass,
+    clips: ClipBuffers,
+    crowd: Crowd,
+    output: Poisoned<Local>,
+    expected: Vec<Local>,
+    /// Where the base stands ahead.
+    ahead: Vec<Local>,
+    torn: Vec<bool>,
+    bound: f32,
+}
+
+impl<'a> Bench<'a> {
+    fn new(
+        gpu: &'a Gpu,
+        set: &ClipSet,
+        base: &[Instance],
+        layers: &[Layer],
+        path: RotationPath,
+    ) -> Result<Self, Error> {
+        let places: Vec<Place> = places(set, &all_instances(base, layers), ELAPSED);
+        let mut crowd = Crowd::layered(gpu, set, base, layers)?;
+        // Layers are sampled where they are.
+        let later = self::places(set, base, ELAPSED + 0.3);
+        let mut places_ahead = places.clone();
+        places_ahead[..later.len()].copy_from_slice(&later);
+        crowd.places.write(gpu, &[places.as_slice(), &later].concat())?;
+        let output = Poisoned::new(gpu, crowd.pairs())?;
+        crowd.locals = output.buffer.clone();
+        let is_layered = !layers.is_empty();
+        let pass = if is_layered { SamplePass::layered(gpu, path)? } else { SamplePass::new(gpu, path)? };
+        let bound = SAMPLE_BOUND * LAYER_GROWTH.powi(layers.len() as i32);
+        let poses = |places: &[Place]| {
+            sample_layers(set, base, layers, places, path).iter().map(packed).collect::<Vec<_>>()
+        };
+        let (clips, expected, ahead) = (ClipBuffers::new(gpu, set)?, poses(&places), poses(&places_ahead));
+        // Both quaternions are off by the bound at most.
+        let [now, later] =
+            [&places, &places_ahead].map(|places| torn(set, base, layers, places, path, 4.0 * bound));
+        let torn = now.iter().zip(later).map(|(now, later)| *now || later).collect();
+        Ok(Self { gpu, pass, clips, crowd, output, expected, ahead, torn, bound })
+    }
+
+    fn all(&self) -> Result<compare::Comparison, Error> {
+        self.output.poison(self.gpu)?;
+        let job = self.pass.prepare(self.gpu, &self.clips, &self.crowd)?;
+        self.gpu.run("verify", |encoder| job.record(encoder))?;
+        self.compare(|pair| Some(&self.expected[pair]))
+    }
+
+    fn some(&self, chosen: &[u32]) -> Result<compare::Comparison, Error> {
+        self.output.poison(self.gpu)?;
+        let active = ActivePairs::new(self.gpu, &self.crowd)?;
+        let is_ahead = |pair: usize| pair % 7 % 2 == 1;
+        let flagged = |pair: &u32| if is_ahead(*pair as usize) { pair | PAIR_AHEAD } else { *pair };
+        active.write(self.gpu, &chosen.iter().map(flagged).collect::<Vec<_>>())?;
+        let job = self.pass.prepare_active(self.gpu, &self.clips, &self.crowd, &active)?;
+        self.gpu.run("verify", |encoder| job.record(encoder))?;
+        let mut is_chosen = vec![false; self.expected.len()];
+        chosen.iter().for_each(|pair| is_chosen[*pair as usize] = true);
+        let of = |pair: usize| if is_ahead(pair) { &self.ahead[pair] } else { &self.expected[pair] };
+        self.compare(|pair| is_chosen[pair].then(|| of(pair)))
+    }
+
+    fn compare<'b>(
+        &'b self,
+        written: impl Fn(usize) -> Option<&'b Local>,
+    ) -> Result<compare::Comparison, Error> {
+        let poison = [[f32::from_bits(POISON); 4]; 3];
+        let expected: Vec<Local> =
+            (0..self.expected.len()).map(|pair| written(pair).copied().unwrap_or(poison)).collect();
+        let largest =
+            self.expected.as_flattened().as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+        let torn = self.torn.iter().filter(|torn| **torn).count();
+        if torn > 1 + self.torn.len() / 50 {
+            let fault = format!("{torn} bones are half a turn apart: nothing is compared");
+            return Ok(compare::Comparison::failed(self.torn.len(), fault));
+        }
+        let comparison = self.output.check(self.gpu, |actual: &[Local]| {
+            let flat = |locals: &[Local]| {
+                let compared = |(local, torn): (&Local, &bool)| if *torn { [[0.0; 4]; 3] } else { *local };
+                let compared: Vec<Local> = locals.iter().zip(&self.torn).map(compared).collect();
+                compared.as_flattened().as_flattened().to_vec()
+            };
+            compare::absolute(&flat(actual), &flat(&expected), self.bound * largest)
+        });
+        Ok(comparison?)
+    }
+}

@@ -1,0 +1,40 @@
+//! How fast the bytes of sampling can be moved; `copy` moves as many, each its own.
+
+use std::hint::black_box;
+
+use crate::Error;
+use crate::animation::bench::{KEYS, Scene};
+use crate::baseline::gather::Reads;
+use crate::baseline::gather::reference::{gather, gather_keys};
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::copy_of;
+
+/// 1000 instances of 153 bones, 60 keys: all that sampling reads, and the keys alone.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, 1000)?;
+    let pairs = scene.pairs();
+    let copied = copy_of(gpu, 16 * pairs)?;
+    let (job, keys) =
+        (scene.gathered(gpu, Reads::Everything)?, scene.gathered(gpu, Reads::Keys(KEYS as u32))?);
+    let mut gathered = vec![[[0; 4]; 3]; pairs];
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            gather(&scene.set, &scene.instances, &scene.places, black_box(&mut gathered));
+        }),
+    ];
+    bench.case("1000 × 153, 60 keys", (pairs, "bone"), 128 * pairs as u64, contenders)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &keys),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            gather_keys(&scene.set, KEYS as u32, &scene.places, black_box(&mut gathered));
+        }),
+    ];
+    bench.case("1000 × 153, keys alone", (pairs, "bone"), 128 * pairs as u64, contenders)
+}

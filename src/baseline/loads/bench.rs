@@ -1,0 +1,36 @@
+//! How fast texels are loaded.
+
+use crate::Error;
+use crate::baseline::copy::CopyPass;
+use crate::baseline::loads::LoadsPass;
+use crate::baseline::loads::reference::loads;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::surface::map::Address;
+use crate::surface::relief::Method;
+use crate::surface::texture::SurfaceTextures;
+use crate::surface::verify::{Shape, random_map};
+
+/// 16 loads a thread of a megatexel.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let map = random_map(1, [1024, 1024], Shape::Noise)?;
+    let textures = SurfaceTextures::new(gpu, &map, Method::Plain, Address::Wrap)?;
+    let sums = Buffer::new(gpu, "sums", 1 << 20)?;
+    let job = LoadsPass::new(gpu)?.prepare(gpu, &textures.heights, [1024, 1024], 16, &sums)?;
+    let (source, destination) =
+        (Buffer::new(gpu, "source", 8 << 20)?, Buffer::new(gpu, "destination", 8 << 20)?);
+    // Half of the bytes read, half written.
+    let copied = CopyPass::new(gpu)?.prepare(gpu, 8 << 20, &source, &destination)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            drop(std::hint::black_box(loads(&map, [1024, 1024], 16)));
+        }),
+    ];
+    bench.case("16 by 1024 × 1024", (16 << 20, "load"), 64 << 20, contenders)
+}

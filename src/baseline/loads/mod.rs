@@ -1,0 +1,77 @@
+//! Texel loads (`kernels/baseline/loads.wgsl`).
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+use encase::ShaderType;
+use glam::UVec2;
+
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
+
+/// `LoadsParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct LoadsParams {
+    pub threads: UVec2,
+    pub loads: u32,
+}
+
+/// Loads texels along rows and adds them up.
+#[derive(Debug, Clone)]
+pub struct LoadsPass {
+    kernel: Kernel,
+}
+
+impl LoadsPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_LOADS, &[])? })
+    }
+
+    /// Prepares `threads` (columns, rows) that load `loads` texels each of a float texture: one sum a thread.
+    ///
+    /// # Errors
+    /// [`InputError`] for too few sums; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        texture: &wgpu::Texture,
+        threads: [u32; 2],
+        loads: u32,
+        sums: &Buffer<f32>,
+    ) -> Result<Job, Error> {
+        if threads[0] as usize * threads[1] as usize > sums.len() {
+            let bound = format!("must fit {} sums", sums.len());
+            return Err(InputError::new("threads", format!("{threads:?}"), bound).into());
+        }
+        let params = LoadsParams { threads: UVec2::from(threads), loads };
+        let uniform = Uniform::new(gpu, "loads", &params)?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let resources = [
+            uniform.raw().as_entire_binding(),
+            wgpu::BindingResource::TextureView(&view),
+            sums.raw().as_entire_binding(),
+        ];
+        let [x, y] = threads.map(|threads| threads.div_ceil(8));
+        let step = Step {
+            kernel: self.kernel.clone(),
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: [x, y, 1],
+        };
+        Ok(Job::new(gpu, "baseline/loads", vec![step])?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(loads_params_layout: LoadsParams = BASELINE_LOADS "LoadsParams");
+}

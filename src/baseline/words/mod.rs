@@ -1,0 +1,72 @@
+//! Random words, drawn and stored (`kernels/baseline/words.wgsl`).
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+use encase::ShaderType;
+use glam::UVec2;
+
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::{Error, InputError};
+
+/// `WordsParams` of the kernel.
+#[derive(Debug, Clone, Copy, ShaderType)]
+pub(crate) struct WordsParams {
+    pub key: UVec2,
+    pub vectors: u32,
+    pub vectors_per_row: u32,
+}
+
+/// Draws the words of counters (x, y), row by row.
+#[derive(Debug, Clone)]
+pub struct WordsPass {
+    kernel: Kernel,
+}
+
+impl WordsPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_WORDS, &[])? })
+    }
+
+    /// Prepares `rows` rows of `width` words, a multiple of four.
+    ///
+    /// # Errors
+    /// [`InputError`] for sizes that do not fit; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        key: [u32; 2],
+        [width, rows]: [u32; 2],
+        words: &Buffer<u32>,
+    ) -> Result<Job, Error> {
+        if width % 4 != 0 || width as usize * rows as usize > words.len() {
+            let bound = format!("must be a multiple of 4 and fit {} words", words.len());
+            return Err(InputError::new("words", format!("{width} × {rows}"), bound).into());
+        }
+        let params =
+            WordsParams { key: UVec2::from(key), vectors: width / 4 * rows, vectors_per_row: width / 4 };
+        let uniform = Uniform::new(gpu, "words", &params)?;
+        let resources = [uniform.raw().as_entire_binding(), words.raw().as_entire_binding()];
+        let step = Step {
+            kernel: self.kernel.clone(),
+            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            workgroups: self.kernel.spread(gpu, params.vectors),
+        };
+        Ok(Job::new(gpu, "baseline/words", vec![step])?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::layout_test;
+
+    layout_test!(words_params_layout: WordsParams = BASELINE_WORDS "WordsParams");
+}

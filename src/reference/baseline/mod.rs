@@ -1,6 +1,0 @@
-//! Twins of `kernels/baseline/`.
-
-pub mod copy;
-pub mod gather;
-pub mod loads;
-pub mod words;

@@ -1,0 +1,58 @@
+//! What is drawn of crowds.
+
+use glam::{Mat4, Vec3, camera};
+
+use crate::Error;
+use crate::animation::transform::Affine;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::skinning::lod::reference::lod;
+use crate::skinning::lod::{LevelRanges, LodPass, LodView, standing};
+use crate::skinning::weights::Reduction;
+use crate::terrain::bench::copy_of;
+
+/// A field of instances, a quarter of them seen.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = LodPass::new(gpu)?;
+    let look: Mat4 = camera::rh::view::look_at_mat4(Vec3::Y, Vec3::new(0.0, 1.0, 1.0), Vec3::Y);
+    let clip_from_world = camera::rh::proj::directx::perspective(1.2, 1.0, 0.1, 1000.0) * look;
+    let view = LodView {
+        clip_from_world,
+        eye: Vec3::Y,
+        near: 10.0,
+        far: 100.0,
+        steps: 64,
+        most: 8,
+        center: Vec3::Y,
+        radius: 1.0,
+        levels: LevelRanges::NONE,
+    };
+    for count in [1000, 100_000] {
+        let place = |index: usize| {
+            let (x, z) = ((index % 400) as f32 - 200.0, (index / 400) as f32 * 2.0 - 250.0);
+            standing(Vec3::new(x, 0.0, z), index as f32, 1.0)
+        };
+        let placements: Vec<Affine> = (0..count).map(place).collect();
+        let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
+        let reductions = Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?;
+        let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 5)?);
+        let job = pass.prepare(gpu, &view, &buffer, &reductions, &drawn, &arguments)?;
+        // A place in; a reduction and a number out.
+        let copied = copy_of(gpu, 16 * count / 2)?;
+        let contenders = vec![
+            Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Twin, || {
+                drop(std::hint::black_box(
+                    placements.iter().map(|place| lod(&view, place)).collect::<Vec<_>>(),
+                ));
+            }),
+        ];
+        bench.case(format!("{count} instances"), (count, "instance"), 64 * count as u64, contenders)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,282 @@
+//! What a crowd is drawn with: which instances are seen, how far the influences of each fade with its distance, and
+//! which level of detail of the mesh it has there.
+//!
+//! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
+//! noticeably. An instance that is not seen is not skinned ([`Reduction::UNSEEN`]); seen again, it is skinned as a whole.
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::InputError;
+use crate::animation::transform::Affine;
+use crate::skinning::mesh::MOST_LEVELS;
+use crate::skinning::weights::{MOST_INFLUENCES, Reduction};
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+#[cfg(feature = "gpu")]
+pub(crate) use pass::{DRAW_WORDS, number_at};
+#[cfg(feature = "gpu")]
+pub use pass::{LodJob, LodPass};
+
+/// Where a crowd is seen from, and how it fades.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LodView {
+    /// From world to clip space, depth 0 to 1.
+    pub clip_from_world: Mat4,
+    /// The eye, world units.
+    pub eye: Vec3,
+    /// Every influence counts up to here, world units as [`LodView::away`] counts them.
+    pub near: f32,
+    /// From here on vertices follow one bone, likewise.
+    pub far: f32,
+    /// Steps of the fade; 64 is a good number.
+    pub steps: u32,
+    /// The most influences of those that are seen, 1 to 8.
+    pub most: u32,
+    /// The middle of a ball around the model in all of its clips.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+    /// Where instances are drawn with levels of detail of their mesh.
+    pub levels: LevelRanges,
+}
+
+/// World units, as [`LodView::away`] counts them, from which on levels 1, 2 … of a mesh are used, in place of finer ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelRanges {
+    distances: [f32; MOST_LEVELS - 1],
+    coarser: usize,
+}
+
+impl LevelRanges {
+    /// Level 0 everywhere: the mesh itself.
+    pub const NONE: Self = Self { distances: [f32::MAX; MOST_LEVELS - 1], coarser: 0 };
+
+    /// Where level 1 begins, level 2 and so on. A level that begins where the next one does is not used.
+    ///
+    /// # Errors
+    /// [`InputError`] for distances that are not finite, or descend, and for [`MOST_LEVELS`] or more of them.
+    pub fn new(distances: &[f32]) -> Result<Self, InputError> {
+        let mut ranges = Self { coarser: distances.len(), ..Self::NONE };
+        let Some(to) = ranges.distances.get_mut(..distances.len()) else {
+            let bound = format!("must be at most {}", MOST_LEVELS - 1);
+            return Err(InputError::new("levels.len", distances.len(), bound));
+        };
+        to.copy_from_slice(distances);
+        let mut least = f32::MIN;
+        for (at, distance) in distances.iter().enumerate() {
+            if !(least..=f32::MAX).contains(distance) {
+                let bound = format!("must be finite, and at least {least}, where the level before begins");
+                return Err(InputError::new(format!("levels[{at}]"), distance, bound));
+            }
+            least = *distance;
+        }
+        Ok(ranges)
+    }
+
+    /// Where level 1 begins, level 2 and so on.
+    pub fn distances(&self) -> &[f32] {
+        &self.distances[..self.coarser]
+    }
+
+    /// The level at a distance.
+    pub fn at(&self, distance: f32) -> u32 {
+        self.distances().iter().take_while(|begin| distance >= **begin).count() as u32
+    }
+}
+
+/// Words from one level's list of drawn instances to the next one's: a multiple of 64, so that each list can be bound.
+pub fn list_stride(instances: usize) -> usize {
+    instances.next_multiple_of(64)
+}
+
+/// Words of the lists of drawn instances of so many levels, 1 to [`MOST_LEVELS`]: [`list_stride`] each, but for a single
+/// one, which needs no more than there are instances.
+pub fn list_words(instances: usize, levels: usize) -> usize {
+    if levels == 1 { instances } else { levels * list_stride(instances) }
+}
+
+/// [`LodView::near`] and [`LodView::far`] of crowds that do not fade.
+pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
+
+impl LodView {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !self.clip_from_world.is_finite() || !self.eye.is_finite() || !self.center.is_finite() {
+            let value = format!("{} {} {}", self.clip_from_world, self.eye, self.center);
+            return Err(InputError::new("view.clip_from_world, eye, center", value, "must be finite"));
+        }
+        if !(self.radius >= 0.0 && self.radius.is_finite()) {
+            return Err(InputError::new("view.radius", self.radius, "must be finite, and not negative"));
+        }
+        if self.steps == 0 || self.steps > 1 << 16 {
+            return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
+        }
+        if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
+            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
+        }
+        Reduction::at_distance(0.0, [self.near, self.far])
+            .map(|_| ())
+            .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
+    }
+
+    /// How far away a place counts: its distance from the eye where that is straight ahead, less to the side, where a
+    /// perspective makes things larger; 0 beside the eye and behind it. For a place at a depth z and a distance d that is
+    /// z²/d, since what moves there by a small step moves on screen by focal·step·d/z² pixels at most. Of a parallel view
+    /// the distance.
+    pub fn away(&self, place: Vec3) -> f32 {
+        let towards = place - self.eye;
+        let distance = towards.length();
+        match self.ahead() {
+            None => distance,
+            Some(ahead) => {
+                let depth = ahead.dot(towards).max(0.0);
+                depth * (depth / distance.max(f32::MIN_POSITIVE))
+            }
+        }
+    }
+
+    /// A unit vector, where the view is a perspective.
+    pub(crate) fn ahead(&self) -> Option<Vec3> {
+        self.clip_from_world.row(3).truncate().try_normalize()
+    }
+
+    /// The planes of the view's volume: unit normals inwards, and distances.
+    pub fn planes(&self) -> [Vec4; 6] {
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_world.row(row));
+        // A plane that lies at infinity cuts nothing off.
+        let unit = |plane: Vec4| match plane.truncate().length() {
+            length if length > 0.0 => plane / length,
+            _ => Vec4::W,
+        };
+        [w + x, w - x, w + y, w - y, z, w - z].map(unit)
+    }
+}
+
+/// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
+/// its clips: [`Extent`](super::extent::Extent).
+pub fn ball(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
+    let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
+    let center = middle_of(low, high);
+    (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
+}
+
+/// Of a ball.
+pub(crate) const MARGIN: f32 = 1.05;
+
+/// The middle of a box, if it has any.
+pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
+    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
+}
+
+/// Where an instance of uniform scale stands: turned about +Y, then moved.
+pub fn standing(at: Vec3, turn: f32, scale: f32) -> Affine {
+    let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
+    [[cosine, 0.0, sine, at.x], [0.0, scale, 0.0, at.y], [-sine, 0.0, cosine, at.z]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::camera;
+
+    fn view() -> LodView {
+        LodView {
+            clip_from_world: Mat4::IDENTITY,
+            eye: Vec3::ZERO,
+            near: 10.0,
+            far: 30.0,
+            steps: 64,
+            most: 8,
+            center: Vec3::ZERO,
+            radius: 1.0,
+            levels: LevelRanges::NONE,
+        }
+    }
+
+    #[test]
+    fn views_are_checked_field_by_field() {
+        assert_eq!(view().validate(), Ok(()));
+        let refused = |view: LodView| view.validate().expect_err("refused").field;
+        assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
+        assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
+        assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
+        assert_eq!(refused(LodView { most: 0, ..view() }), "view.most");
+        assert_eq!(refused(LodView { most: 9, ..view() }), "view.most");
+        assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
+        assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
+    }
+
+    #[test]
+    fn levels_follow_distances() {
+        let ranges = LevelRanges::new(&[-1.0, 5.0, 5.0, 9.0]).expect("ascending");
+        assert_eq!(
+            [-2.0, -1.0, 4.9, 5.0, 9.0, f32::MAX].map(|distance| ranges.at(distance)),
+            [0, 1, 1, 3, 4, 4]
+        );
+        assert_eq!(ranges.distances(), [-1.0, 5.0, 5.0, 9.0]);
+        assert_eq!(LevelRanges::new(&[]), Ok(LevelRanges::NONE));
+        assert_eq!(LevelRanges::NONE.at(f32::MAX), 0);
+        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").field;
+        assert_eq!(refused(&[2.0, 1.0]), "levels[1]");
+        assert_eq!(refused(&[1.0, f32::NAN]), "levels[1]");
+        assert_eq!(refused(&[f32::INFINITY]), "levels[0]");
+        assert_eq!(refused(&[0.0; 16]), "levels.len");
+        assert_eq!(LevelRanges::new(&[f32::MAX; 15]).map(|ranges| ranges.distances().len()), Ok(15));
+    }
+
+    #[test]
+    fn lists_can_be_bound() {
+        assert_eq!([1, 63, 64, 65].map(list_stride), [64, 64, 64, 128]);
+        assert_eq!(
+            [(63, 1), (63, 2), (64, 3), (65, 16)].map(|(count, levels)| list_words(count, levels)),
+            [63, 128, 192, 2048]
+        );
+    }
+
+    #[test]
+    fn what_lies_aside_counts_as_nearer() {
+        let eye = Vec3::new(1.0, 2.0, 3.0);
+        let look = camera::rh::view::look_at_mat4(eye, eye + Vec3::X, Vec3::Y);
+        let lens = camera::rh::proj::directx::perspective(1.0, 1.5, 0.1, 90.0);
+        let away =
+            |x, y, z| LodView { clip_from_world: lens * look, eye, ..view() }.away(eye + Vec3::new(x, y, z));
+        assert!((away(7.0, 0.0, 0.0) - 7.0).abs() < 1e-5);
+        assert!((away(4.0, 0.0, -3.0) - 16.0 / 5.0).abs() < 1e-5);
+        assert_eq!([away(0.0, 0.0, 0.0), away(0.0, 5.0, 0.0), away(-5.0, 1.0, 0.0)], [0.0; 3]);
+        // The identity is a parallel view.
+        assert_eq!(view().away(Vec3::new(0.0, 3.0, -4.0)), 5.0);
+    }
+
+    #[test]
+    fn planes_hold_the_cube_of_clip_space() {
+        let planes = view().planes();
+        let inside = |p: Vec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
+        assert!(inside(Vec3::new(0.9, -0.9, 0.1)) && inside(Vec3::new(0.0, 0.0, 0.9)));
+        for outside in [
+            Vec3::new(1.1, 0.0, 0.5),
+            Vec3::new(0.0, -1.1, 0.5),
+            Vec3::new(0.0, 0.0, -0.1),
+            Vec3::new(0.0, 0.0, 1.1),
+        ] {
+            assert!(!inside(outside), "{outside}");
+        }
+    }
+
+    #[test]
+    fn balls_hold_their_places() {
+        let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
+        let (center, radius) = ball(places.into_iter());
+        assert!(places.iter().all(|place| place.distance(center) <= radius) && radius < 1.5);
+        assert_eq!(ball(std::iter::empty()), (Vec3::ZERO, 0.0));
+    }
+}

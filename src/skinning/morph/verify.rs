@@ -1,0 +1,81 @@
+//! Parity of `kernels/skinning/morph.wgsl`.
+
+use crate::Error;
+use crate::animation::verify::Draw;
+use crate::gpu::Gpu;
+use crate::harness::compare::Comparison;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::clusters::CLUSTER;
+use crate::skinning::morph::reference::morph;
+use crate::skinning::morph::{MORPH_BOUND, MorphPass};
+use crate::skinning::skin::{Blend, Vertex};
+use crate::skinning::verify::{SHAPES, Shape, flat, poisoned, random_model};
+use crate::skinning::weights::Reduction;
+
+/// Vertices that no, one or every target moves; weights of 0, of either sign and above 1; all clusters, none and some.
+/// The fourth of five instances is not seen: its vertices stay, as those of other clusters do, and those beyond the level
+/// of an instance: the second has the coarsest, the third level 1.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let pass = MorphPass::new(cases.gpu)?;
+    for (case, shape) in (0..).zip(SHAPES).filter(|(_, shape)| shape.targets > 0) {
+        for instances in [1, 5] {
+            for (list, every) in [("all", None), ("none", Some(u32::MAX)), ("every third", Some(3))] {
+                let comparison = one(cases.gpu, &pass, (case, shape), instances, every)?;
+                let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
+                cases.add(format!("{name}, {list}"), comparison);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn one(
+    gpu: &Gpu,
+    pass: &MorphPass,
+    (case, shape): (u32, Shape),
+    instances: usize,
+    every: Option<u32>,
+) -> Result<Comparison, Error> {
+    let model = random_model(case, shape)?;
+    let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+    let mut draw = Draw::new(case ^ 0x0f0f);
+    let weight = |at| if at % 4 == 3 { 0.0 } else { 1.5 * draw.signed() };
+    let weights: Vec<f32> = (0..instances * shape.targets).map(weight).collect();
+    let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
+    let output = Poisoned::<Vertex>::new(gpu, crowd.morphed.len())?;
+    crowd.morphed = output.buffer.clone();
+    crowd.weights.write(gpu, &weights)?;
+    if instances > 3 {
+        let (coarsest, coarse) = (Reduction::level(15)?, Reduction::level(1)?);
+        crowd.reductions.write_at(gpu, 1, &[coarsest, coarse, Reduction::UNSEEN])?;
+    }
+    let pairs = (clusters.len() * instances) as u32;
+    let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every.unwrap_or(1) == 0).collect();
+    if every.is_some() {
+        let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
+        active.write(gpu, &chosen)?;
+        let job = pass.prepare_active(gpu, &mesh, &crowd, &active)?;
+        gpu.run("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
+    } else {
+        let job = pass.prepare(gpu, &mesh, &crowd)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+    }
+    let mut expected = Vec::new();
+    for (instance, weights) in weights.chunks(shape.targets).enumerate() {
+        let morphed = morph(&model.meshes[0], weights);
+        expected.extend(clusters.order.iter().enumerate().map(|(place, vertex)| {
+            let pair = place / CLUSTER * instances + instance;
+            let level = clusters.level([0, 15, 1, 0, 0][instance]);
+            let is_kept = instance == 3 || place / CLUSTER >= level.clusters as usize;
+            let is_morphed = !is_kept && chosen.contains(&(pair as u32));
+            if is_morphed { morphed[*vertex as usize] } else { poisoned() }
+        }));
+    }
+    Ok(output
+        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))?)
+}

@@ -1,0 +1,113 @@
+//! The weights of a mesh's morph targets in the clips of a set, laid out for the kernel that finds them for each instance
+//! of a crowd in each frame.
+
+use crate::InputError;
+use crate::animation::clip_set::ClipSet;
+use crate::skinning::Mesh;
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::{MorphWeightsJob, MorphWeightsPass};
+
+/// How far a weight may lie from the twin's, on any device, for values and tangents (per second) of at most 1, keys 1/8 to
+/// 1 s apart, and times up to 16 s.
+///
+/// With ε = 2⁻²⁴ a time carries 3ε of 16 s, in stretches of 1/8 s 2.3e-5 of a stretch; a spline's slope there is at most
+/// 1.5·2 + 2·1 = 5: 1.2e-4. Its arithmetic carries some 40ε.
+pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
+
+/// A clip's keys in a set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct WeightEntry {
+    /// The clip's, in seconds.
+    pub duration: f32,
+    /// Where its key times begin.
+    pub first_time: u32,
+    /// How many, at least 1.
+    pub keys: u32,
+    /// Where its values begin.
+    pub first_value: u32,
+    /// [`Interpolation`](crate::animation::Interpolation).
+    pub interpolation: u32,
+}
+
+/// The weights of a mesh's targets in several clips.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightSet {
+    /// One a clip of the set.
+    pub entries: Vec<WeightEntry>,
+    /// Seconds.
+    pub times: Vec<f32>,
+    /// Key by key one a target, in splines three.
+    pub values: Vec<f32>,
+    /// Morph targets.
+    pub targets: usize,
+}
+
+impl WeightSet {
+    /// The weights of a mesh in a set of clips; `clips` says which of the model's each of them is. A clip that does not
+    /// move the targets has one key, [`Mesh::weights`].
+    ///
+    /// # Errors
+    /// [`InputError`] unless there is a clip of the model for each of the set.
+    pub fn new(mesh: &Mesh, set: &ClipSet, clips: &[usize]) -> Result<Self, InputError> {
+        if clips.len() != set.clips().len() {
+            let bound = format!("must be {}, one a clip of the set", set.clips().len());
+            return Err(InputError::new("clips.len", clips.len(), bound));
+        }
+        let targets = mesh.targets.len();
+        let mut all = Self { entries: Vec::new(), times: Vec::new(), values: Vec::new(), targets };
+        for (of_set, clip) in set.clips().iter().zip(clips) {
+            let keys = mesh.weight_keys.iter().find(|(of, _)| of == clip).map(|(_, keys)| keys);
+            let (times, values, code) = keys.map_or((&[0.0][..], &mesh.weights[..], 0), |keys| keys.parts());
+            all.entries.push(WeightEntry {
+                duration: of_set.duration,
+                first_time: all.times.len() as u32,
+                keys: times.len() as u32,
+                first_value: all.values.len() as u32,
+                interpolation: code,
+            });
+            all.times.extend(times);
+            all.values.extend(values);
+        }
+        Ok(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::Interpolation;
+    use crate::skinning::MorphTarget;
+    use crate::skinning::morph::WeightKeys;
+
+    #[test]
+    fn sets_have_keys_for_every_clip() {
+        let mut model = crate::animation::creature().expect("valid");
+        let mesh = &mut model.meshes[0];
+        mesh.targets = vec![MorphTarget::default(); 2];
+        mesh.weights = vec![0.25, 0.5];
+        let keys = WeightKeys::new(["t", "v"], vec![0.0, 1.0], vec![1.0; 12], Interpolation::CubicSpline, 2);
+        mesh.weight_keys = vec![(2, keys.expect("valid"))];
+        let set = ClipSet::new(&[&model.clips[0], &model.clips[2]]).expect("one skeleton");
+        let weights = WeightSet::new(&model.meshes[0], &set, &[0, 2]).expect("fits");
+        let keys = |entry: &WeightEntry| {
+            (entry.first_time, entry.keys, entry.first_value, entry.interpolation, entry.duration)
+        };
+        let [walk, wave] = [0, 2].map(|clip: usize| model.clips[clip].duration());
+        let found: Vec<_> = weights.entries.iter().map(keys).collect();
+        assert_eq!(found, [(0, 1, 0, 0, walk), (1, 2, 2, 2, wave)]);
+        assert_eq!((&weights.times[..], weights.values.len()), (&[0.0, 0.0, 1.0][..], 14));
+        let refused = WeightSet::new(&model.meshes[0], &set, &[0]).expect_err("refused");
+        assert_eq!((&*refused.field, &*refused.bound), ("clips.len", "must be 2, one a clip of the set"));
+    }
+}

@@ -1,0 +1,28 @@
+//! Weights of morph targets: twin of `kernels/skinning/morph_weights.wgsl`.
+
+use crate::animation::clip_set::ClipSet;
+use crate::animation::place::Instance;
+use crate::animation::place::reference::inside_clip;
+use crate::skinning::{Mesh, Reduction};
+
+/// The weights of a mesh's targets where instances stand in the clips of a set, instance by instance; those of instances
+/// that are not seen stay. `clips` says which of the model's each of the set is.
+///
+/// # Panics
+/// For lists of other lengths, and instances of no clip of the set.
+pub fn morph_weights(
+    mesh: &Mesh,
+    (set, clips): (&ClipSet, &[usize]),
+    instances: &[Instance],
+    reductions: &[Reduction],
+    elapsed: f32,
+    weights: &mut [f32],
+) {
+    let targets = mesh.targets.len().max(1);
+    let rooms = weights.chunks_exact_mut(targets).zip(instances).zip(reductions);
+    for ((weights, instance), _) in rooms.filter(|(_, reduction)| reduction.most > 0) {
+        let duration = set.clips()[instance.clip as usize].duration;
+        let time = inside_clip(instance.wrap(), duration, instance.start + instance.rate * elapsed);
+        weights.copy_from_slice(&mesh.weights_at(clips[instance.clip as usize], time));
+    }
+}

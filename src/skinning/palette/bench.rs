@@ -1,0 +1,45 @@
+//! Palettes of crowds.
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::skinning::bench::{BONES, CROWDS, Scene};
+use crate::skinning::palette::PalettePass;
+use crate::skinning::palette::reference::palette;
+use crate::skinning::verify::random_matrices;
+use crate::terrain::bench::copy_of;
+
+/// For linear blending.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = PalettePass::new(gpu)?;
+    for instances in CROWDS {
+        let scene = Scene::new(gpu, 1, 0, instances)?;
+        let matrices = random_matrices(1, 2 * BONES, instances);
+        let models = Buffer::from_slice(gpu, "models", &matrices)?;
+        let job = pass.prepare(gpu, &scene.mesh, &models, &scene.crowd)?;
+        let pairs = BONES * instances;
+        // Two matrices and a number in, a matrix out.
+        let copied = copy_of(gpu, 37 * pairs / 2)?;
+        let twin = || {
+            for models in matrices.chunks(2 * BONES) {
+                drop(std::hint::black_box(palette(&scene.model.skins[0], models)));
+            }
+        };
+        let contenders = vec![
+            Contender::job(Backend::Gpu, &job),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Twin, twin),
+        ];
+        bench.case(
+            format!("{BONES} bones × {instances}"),
+            (pairs, "bone"),
+            148 * pairs as u64,
+            contenders,
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,111 @@
+//! Palettes: twin of `kernels/skinning/palette.wgsl`.
+
+use crate::animation::concat::reference::product;
+use crate::animation::skeleton::Skin;
+use crate::animation::transform::Affine;
+use crate::skinning::palette::{DualBone, Palette};
+use crate::skinning::skin::Blend;
+
+/// What takes vertices from where they were bound to the model's space: one matrix a bone of the skin.
+///
+/// # Panics
+/// For a skin that does not fit the skeleton of `models`.
+pub fn palette(skin: &Skin, models: &[Affine]) -> Vec<Affine> {
+    let bones = skin.bones.iter().zip(&skin.inverse_binds);
+    bones.map(|(bone, bind)| product(&models[*bone as usize], &rows(bind))).collect()
+}
+
+/// The palette of a kind of blending.
+pub fn palette_for(skin: &Skin, models: &[Affine], blend: Blend) -> Palette {
+    let linear = palette(skin, models);
+    match blend {
+        Blend::Linear => Palette::Linear(linear),
+        Blend::DualQuaternion => Palette::Dual(linear.iter().map(dual).collect()),
+    }
+}
+
+/// The first three rows of a column-major matrix.
+pub fn rows(matrix: &[f32; 16]) -> Affine {
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[4 * column + row]))
+}
+
+/// A matrix taken apart into a stretch and a rigid motion after it.
+pub fn dual(matrix: &Affine) -> DualBone {
+    let column = |at: usize| [matrix[0][at], matrix[1][at], matrix[2][at]];
+    let [a, b, c] = [0, 1, 2].map(column);
+    // What has no direction gets one that leaves the others alone.
+    let x = unit_or(a, [1.0, 0.0, 0.0]);
+    let along = dot(x, b);
+    let rest = [b[0] - along * x[0], b[1] - along * x[1], b[2] - along * x[2]];
+    let y = unit_or(rest, upright(x));
+    let z = cross(x, y);
+    let real = quaternion(x, y, z);
+    let translation = column(3);
+    DualBone {
+        real,
+        dual: half_product(translation, real),
+        diagonal: [dot(x, a), dot(y, b), dot(z, c), 0.0],
+        above: [along, dot(x, c), dot(y, c), 0.0],
+    }
+}
+
+/// A vector of length 1, or the other one where it has no direction.
+pub fn unit_or(vector: [f32; 3], other: [f32; 3]) -> [f32; 3] {
+    let size = vector[0].abs().max(vector[1].abs()).max(vector[2].abs());
+    // What is smaller than this, devices may flush to zero.
+    if size < 1e-30 {
+        return other;
+    }
+    let scaled = vector.map(|component| component / size);
+    let inverse = 1.0 / dot(scaled, scaled).sqrt();
+    scaled.map(|component| component * inverse)
+}
+
+/// A unit vector at a right angle to a unit vector: Duff et al. 2017.
+fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let side = if z < 0.0 { -1.0 } else { 1.0 };
+    let a = -1.0 / (side + z);
+    [1.0 + side * x * x * a, side * x * y * a, -side * x]
+}
+
+/// The unit quaternion of a rotation's columns, of whichever sign. Its largest component is at least ½, and found
+/// without a cancelling sum.
+fn quaternion(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [f32; 4] {
+    let squares = [
+        1.0 + x[0] - y[1] - z[2],
+        1.0 - x[0] + y[1] - z[2],
+        1.0 - x[0] - y[1] + z[2],
+        1.0 + x[0] + y[1] + z[2],
+    ];
+    let [xy, yz, zx] = [x[1] + y[0], y[2] + z[1], z[0] + x[2]];
+    let [wx, wy, wz] = [y[2] - z[1], z[0] - x[2], x[1] - y[0]];
+    let q = if squares[3] >= 1.0 {
+        [wx, wy, wz, squares[3]]
+    } else if squares[0] >= squares[1] && squares[0] >= squares[2] {
+        [squares[0], xy, zx, wx]
+    } else if squares[1] >= squares[2] {
+        [xy, squares[1], yz, wy]
+    } else {
+        [zx, yz, squares[2], wz]
+    };
+    let inverse = 1.0 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+    q.map(|component| component * inverse)
+}
+
+/// Half of the product of a vector and a quaternion.
+fn half_product([x, y, z]: [f32; 3], q: [f32; 4]) -> [f32; 4] {
+    [
+        0.5 * (x * q[3] + y * q[2] - z * q[1]),
+        0.5 * (y * q[3] + z * q[0] - x * q[2]),
+        0.5 * (z * q[3] + x * q[1] - y * q[0]),
+        -0.5 * (x * q[0] + y * q[1] + z * q[2]),
+    ]
+}
+
+pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

@@ -1,0 +1,68 @@
+//! Parity of `kernels/skinning/palette.wgsl`.
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::skinning::palette::reference::palette_for;
+use crate::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
+use crate::skinning::skin::Blend;
+use crate::skinning::verify::{SHAPES, poisoned, random_matrices, random_model};
+use crate::skinning::weights::Reduction;
+
+/// Random skins of some of a skeleton's bones, mirrored and stretched, for both kinds of blending. A quaternion may be
+/// the other one of the same rotation, its dual part with it. The second instance is not seen: its palette stays.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = PalettePass::new(gpu)?;
+    for (case, shape) in (0..).zip(SHAPES) {
+        let model = random_model(case, shape)?;
+        let skin = &model.skins[0];
+        for (instances, blend) in [(3, Blend::Linear), (7, Blend::DualQuaternion)] {
+            let matrices = random_matrices(case, shape.bones, instances);
+            let models = Buffer::from_slice(gpu, "models", &matrices)?;
+            let (mesh, _) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+            let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
+            let output = Poisoned::<[f32; 4]>::new(gpu, crowd.palette.len())?;
+            crowd.palette = output.buffer.clone();
+            crowd.reductions.write_at(gpu, 1, &[Reduction::UNSEEN])?;
+            let job = pass.prepare(gpu, &mesh, &models, &crowd)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let mut expected: Vec<[f32; 4]> = matrices
+                .chunks(shape.bones)
+                .flat_map(|models| match palette_for(skin, models, blend) {
+                    Palette::Linear(bones) => bones.as_flattened().to_vec(),
+                    Palette::Dual(bones) => bytemuck::cast_slice(&bones).to_vec(),
+                })
+                .collect();
+            let largest = expected.as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+            let each = expected.len() / instances;
+            expected[each..2 * each].fill(poisoned());
+            let comparison = output.check(gpu, |actual: &[[f32; 4]]| {
+                let actual =
+                    if blend == Blend::Linear { actual.to_vec() } else { same_side(actual, &expected) };
+                compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
+            })?;
+            cases.add(
+                format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones),
+                comparison,
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Turns quaternions to the side of the expected ones.
+fn same_side(actual: &[[f32; 4]], expected: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let bones = actual.chunks_exact(4).zip(expected.chunks_exact(4));
+    let turned = |(actual, expected): (&[[f32; 4]], &[[f32; 4]])| {
+        let dot: f32 = actual[0].iter().zip(expected[0]).map(|(a, b)| a * b).sum();
+        let side = if dot < 0.0 { -1.0 } else { 1.0 };
+        [actual[0].map(|x| side * x), actual[1].map(|x| side * x), actual[2], actual[3]]
+    };
+    bones.flat_map(turned).collect()
+}

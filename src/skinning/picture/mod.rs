@@ -1,0 +1,74 @@
+//! How a picture of skinned meshes is lit and framed.
+
+pub mod reference;
+pub mod texture;
+
+use glam::{Mat4, Vec2, Vec3, camera};
+
+use super::skin::Vertex;
+use crate::InputError;
+
+/// A directional light, in linear light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Towards the light, of any length but 0.
+    pub direction: Vec3,
+    /// What faces away from it still gets, 0 to 1.
+    pub ambient: f32,
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self { direction: Vec3::new(-0.4, 0.8, 0.6), ambient: 0.12 }
+    }
+}
+
+impl Light {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if self.direction.try_normalize().is_none() {
+            let value = self.direction.to_string();
+            return Err(InputError::new("light.direction", value, "must be finite and not 0"));
+        }
+        if !(0.0..=1.0).contains(&self.ambient) {
+            return Err(InputError::new("light.ambient", self.ambient, "must be in 0..=1"));
+        }
+        Ok(())
+    }
+}
+
+/// From the model's space to clip space: all of these vertices in the middle of a square picture, seen from +Z, a little
+/// from the left and above.
+pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
+    let places = vertices.map(|vertex| Vec3::from(vertex.position));
+    let wide = around(places.clone());
+    let seen = places.map(|place| wide.project_point3(place).truncate());
+    let (low, high) =
+        seen.fold((Vec2::MAX, Vec2::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    if !low.cmple(high).all() {
+        return wide;
+    }
+    // What is seen moves to the middle, and fills nine tenths.
+    let zoom = 1.8 / (high - low).max_element().max(1e-3);
+    let middle = low.midpoint(high) * zoom;
+    let crop = Mat4::from_translation(-middle.extend(0.0)) * Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
+    crop * wide
+}
+
+/// A camera that sees a ball around the places.
+fn around(places: impl Iterator<Item = Vec3>) -> Mat4 {
+    let (low, high) =
+        places.fold((Vec3::MAX, Vec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    let (low, high) = if low.cmple(high).all() { (low, high) } else { (Vec3::ZERO, Vec3::ONE) };
+    let center = low.midpoint(high);
+    let radius = ((high - low).length() / 2.0).max(1e-6 * center.length()).max(1e-12);
+    let field_of_view: f32 = 0.5;
+    let distance = radius / (field_of_view / 2.0).sin();
+    let eye = center + distance * Vec3::new(-0.45, 0.2, 1.0).normalize();
+    let view = camera::rh::view::look_at_mat4(eye, center, Vec3::Y);
+    let near = distance - 1.01 * radius;
+    camera::rh::proj::directx::perspective(field_of_view, 1.0, near, distance + 1.01 * radius) * view
+}

@@ -1,0 +1,47 @@
+//! Selection of clusters.
+
+use crate::Error;
+use crate::harness::{Backend, Bench, Contender};
+use crate::skinning::bench::{CROWDS, Scene, seen_of};
+use crate::skinning::buffers::ActiveClusters;
+use crate::skinning::select::reference::{Now, Skinned, select};
+use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
+use crate::terrain::bench::copy_of;
+
+/// One bone in eight moves; of all instances, or of a quarter that is seen.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = SelectPass::new(gpu)?;
+    for (instances, seen) in CROWDS.map(|count| (count, 1)).into_iter().chain([(CROWDS[2], 4)]) {
+        let scene = Scene::new(gpu, 4, 0, instances)?;
+        let buffers = SelectBuffers::new(gpu, &scene.mesh, &scene.crowd)?;
+        let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
+        let moved = vec![0x0101_0101; instances * scene.mesh.mask_words];
+        buffers.moved.write(gpu, &moved)?;
+        let reductions = seen_of(instances, seen);
+        scene.crowd.reductions.write(gpu, &reductions)?;
+        let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, &buffers, &active)?;
+        let pairs = scene.clusters.len() * instances;
+        let last: Vec<Skinned> =
+            reductions.iter().map(|now| Skinned { reduction: *now, ..Skinned::nothing(0) }).collect();
+        let words = scene.mesh.mask_words;
+        // A reduction and what is remembered in, and of what is seen a mask and a set of bones.
+        let read = 2 + SKINNED_WORDS + 2 * words / seen;
+        let copied = copy_of(gpu, read * pairs / 2)?;
+        let contenders = vec![
+            Contender::job(Backend::Gpu, &job),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Twin, || {
+                let now = Now { moved: &moved, reductions: &reductions, weights: &[] };
+                drop(std::hint::black_box(select(&scene.clusters, &now, &last)));
+            }),
+        ];
+        let name = if seen == 1 { "" } else { ", a quarter seen" };
+        let case = format!("157 clusters × {instances}{name}");
+        bench.case(case, (pairs, "cluster"), 4 * (read * pairs) as u64, contenders)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! Parity of `kernels/skinning/select.wgsl`.
+
+use crate::animation::Model;
+use crate::animation::verify::Draw;
+use crate::harness::compare::Comparison;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+use crate::skinning::MorphTarget;
+use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::clusters::{CLUSTER, Clusters};
+use crate::skinning::morph::MorphDelta;
+use crate::skinning::select::reference::{Now, Skinned, remember, select};
+use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
+use crate::skinning::skin::Blend;
+use crate::skinning::verify::{SHAPES, Shape, random_model, random_reductions};
+use crate::skinning::weights::Reduction;
+use crate::{Error, InputError};
+
+/// Frames in a row; of 64 bones how many move; whether reductions and weights are other ones.
+const FRAMES: [(&str, u32, bool); 10] = [
+    ("the first", 8, true),
+    ("others seen and faded", 2, true),
+    ("bones alone", 5, false),
+    ("nothing", 0, false),
+    ("all unseen", 5, false),
+    ("all back", 0, false),
+    ("nothing again", 0, false),
+    ("other levels", 0, false),
+    ("other levels again", 1, false),
+    ("all whole", 0, false),
+];
+
+/// What decides in a frame.
+struct Frame {
+    moved: Vec<u32>,
+    reductions: Vec<Reduction>,
+    weights: Vec<f32>,
+}
+
+impl Frame {
+    fn now(&self) -> Now<'_> {
+        Now { moved: &self.moved, reductions: &self.reductions, weights: &self.weights }
+    }
+
+    /// The frame after this one.
+    fn next(&self, draw: &mut Draw, case: u32, (name, share, is_other): (&str, u32, bool)) -> Self {
+        let word =
+            |_: &u32| (0..32).fold(0_u32, |word, bit| word | u32::from(draw.word() % 64 < share) << bit);
+        let moved = self.moved.iter().map(word).collect();
+        let instances = self.reductions.len();
+        let reductions = match name {
+            "all unseen" => vec![Reduction::UNSEEN; instances],
+            "all back" | "all whole" => vec![Reduction::FULL; instances],
+            "other levels" | "other levels again" => {
+                let level = |old: &Reduction| Reduction { level: draw.word() % 5, ..*old };
+                self.reductions.iter().map(level).collect()
+            }
+            _ if is_other => random_reductions(case + share, instances),
+            _ => self.reductions.clone(),
+        };
+        // Every third one changes, and all of them while nobody is seen.
+        let weight = |(at, old): (usize, &f32)| {
+            if is_other && at % 3 == 0 || name == "all unseen" { draw.signed() } else { *old }
+        };
+        let weights = self.weights.iter().enumerate().map(weight).collect();
+        Self { moved, reductions, weights }
+    }
+}
+
+/// No bone, some and all; reductions that change and such as do not; instances that leave the view and come back; levels
+/// that get coarser and finer; weights of targets that move some of the clusters. Lists are compared sorted, with their
+/// number, the workgroups behind them, and what is remembered.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = SelectPass::new(gpu)?;
+    for (case, shape) in (0..).zip(SHAPES) {
+        let model = model(case, shape)?;
+        let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+        let instances = 1 + 29 * (case as usize % 3);
+        let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
+        let mut buffers = SelectBuffers::new(gpu, &mesh, &crowd)?;
+        let words = instances * (SKINNED_WORDS + shape.targets);
+        let remembered = Poisoned::<u32>::new(gpu, words)?;
+        remembered.buffer.write(gpu, &vec![0; words])?;
+        buffers.skinned = remembered.buffer.clone();
+        let mut active = ActiveClusters::new(gpu, &mesh, &crowd)?;
+        let output = Poisoned::<u32>::new(gpu, clusters.len() * instances)?;
+        active.pairs = output.buffer.clone();
+        let job = pass.prepare(gpu, &mesh, &crowd, &buffers, &active)?;
+        let mut last = vec![Skinned::nothing(shape.targets); instances];
+        let mut draw = Draw::new(case ^ 0xb17);
+        let mut frame = Frame {
+            moved: vec![0; instances * clusters.mask_words],
+            reductions: vec![Reduction::UNSEEN; instances],
+            weights: vec![0.0; instances * shape.targets],
+        };
+        for given in FRAMES {
+            frame = frame.next(&mut draw, case, given);
+            crowd.reductions.write(gpu, &frame.reductions)?;
+            crowd.weights.write(gpu, &frame.weights)?;
+            buffers.moved.write(gpu, &frame.moved)?;
+            output.poison(gpu)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let expected = select(&clusters, &frame.now(), &last);
+            remember(&frame.now(), &mut last);
+            let dispatched = active.dispatched.read_blocking(gpu)?;
+            let name = format!("{} clusters × {instances}, {}", clusters.len(), given.0);
+            cases.add(name, output.check(gpu, |actual| listed(actual, &dispatched, &expected))?);
+            let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
+            cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last)))?);
+        }
+    }
+    Ok(())
+}
+
+fn listed(actual: &[u32], dispatched: &[u32], expected: &[u32]) -> Comparison {
+    let count = expected.len() as u32;
+    let mut all = actual[..actual.len().min(expected.len())].to_vec();
+    all.sort_unstable();
+    all.extend(dispatched);
+    let x = count.clamp(1, 65_535);
+    compare::exact(&all, &[expected, &[x, count.div_ceil(x), 1, count, 0]].concat())
+}
+
+fn words_of(last: &[Skinned]) -> Vec<u32> {
+    let words = |last: &Skinned| {
+        let Reduction { fade, most, level } = last.reduction;
+        let weights = last.weights.iter().map(|weight| weight.to_bits());
+        [fade.to_bits(), most, level, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
+    };
+    last.iter().flat_map(words).collect()
+}
+
+/// A random model whose targets move vertices of every second cluster alone.
+fn model(case: u32, shape: Shape) -> Result<Model, InputError> {
+    let mut model = random_model(case, shape)?;
+    let order = Clusters::new(&model.meshes[0], &model.skins, &model.skeleton)?.order;
+    for target in &mut model.meshes[0].targets {
+        let is_kept = |vertex: &u32| {
+            order
+                .iter()
+                .position(|other| other == vertex)
+                .is_some_and(|place| (place / CLUSTER).is_multiple_of(2))
+        };
+        let (vertices, deltas): (Vec<u32>, Vec<MorphDelta>) =
+            target.vertices.iter().zip(&target.deltas).filter(|(vertex, _)| is_kept(vertex)).unzip();
+        *target = MorphTarget { vertices, deltas };
+    }
+    Ok(model)
+}

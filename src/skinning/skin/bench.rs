@@ -1,0 +1,183 @@
+//! Skinning of crowds.
+
+use crate::Error;
+use crate::gpu::{Buffer, Gpu, Job};
+use crate::harness::{Backend, Bench, Contender};
+use crate::skinning::bench::{CROWDS, RING, Scene, seen_of, tube};
+use crate::skinning::buffers::ActiveClusters;
+use crate::skinning::clusters::CLUSTER;
+use crate::skinning::mesh::MeshLevel;
+use crate::skinning::morph::reference::morph;
+use crate::skinning::palette::Palette;
+use crate::skinning::palette::reference::rows;
+use crate::skinning::skin::reference::skin;
+use crate::skinning::skin::{Blend, SkinPass, Vertex};
+use crate::skinning::weights::Reduction;
+use crate::terrain::bench::copy_of;
+
+/// Eight, four, two influences and one.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = SkinPass::new(gpu, Blend::Linear)?;
+    let vertices = RING * RING;
+    for influences in [8, 4, 2, 1] {
+        for instances in CROWDS {
+            let scene = Scene::new(gpu, influences, 0, instances)?;
+            // A vertex and its influences in, its bones' rows in, a vertex out.
+            let words = 10 + influences.div_ceil(2) + (influences - 1) + 12 * influences + 10;
+            let batch = batch(gpu, instances, 4 * words / 2);
+            let jobs = batches(gpu, &pass, &scene, [instances, batch])?;
+            let copied = copy_of(gpu, words * vertices * batch / 2)?;
+            let mesh = &scene.model.meshes[0];
+            let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+            let unskinned = morph(mesh, &[]);
+            let twin = || {
+                for _ in 0..instances {
+                    drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
+                }
+            };
+            // The same output without influences.
+            let unmoved = copy_of(gpu, 20 * vertices * batch / 2)?;
+            let contenders = vec![
+                Contender::recorded(Backend::Gpu, |encoder| jobs.iter().for_each(|job| job.record(encoder))),
+                Contender::recorded(Backend::Copy, |encoder| {
+                    jobs.iter().for_each(|_| copied.record(encoder))
+                }),
+                Contender::recorded(Backend::Limit, |encoder| {
+                    jobs.iter().for_each(|_| unmoved.record(encoder))
+                }),
+                Contender::host(Backend::Twin, twin),
+            ];
+            let all = instances * vertices;
+            let case = format!("{influences} influences, 10k × {instances}");
+            bench.case(case, (all, "vertex"), (4 * words * all) as u64, contenders)?;
+        }
+    }
+    some(bench, &pass)?;
+    seen(bench, &pass)?;
+    levelled(bench, &pass)?;
+    faded(bench, &pass)
+}
+
+/// Every eighth cluster of a hundred instances.
+fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
+    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
+    let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
+    let chosen: Vec<u32> = (0..(CROWDS[1] * scene.mesh.clusters()) as u32).step_by(8).collect();
+    active.write(gpu, &chosen)?;
+    let job = pass.prepare_active(gpu, &scene.mesh, &scene.crowd, &output, &active)?;
+    let vertices = CLUSTER * chosen.len();
+    let copied = copy_of(gpu, 73 * vertices / 2)?;
+    let mesh = &scene.model.meshes[0];
+    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+    let unskinned = morph(mesh, &[]);
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            for _ in 0..vertices / unskinned.len() {
+                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
+            }
+        }),
+    ];
+    bench.case("an eighth of 4, 10k × 100", (vertices, "vertex"), 292 * vertices as u64, contenders)
+}
+
+/// A hundred instances, a quarter of them seen, without a list that leaves out the others: nanoseconds a vertex of
+/// those that are seen.
+fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
+    scene.crowd.reductions.write(gpu, &seen_of(CROWDS[1], 4))?;
+    let work =
+        Work { instances: CROWDS[1] / 4, vertices: RING * RING, words: 73, reduction: Reduction::FULL };
+    crowd(bench, pass, &scene, "4, a quarter of 10k × 100 seen, no list", &work)
+}
+
+/// A hundred instances at a level of a quarter of the vertices, without a list that leaves out the others' clusters:
+/// nanoseconds a vertex of those clusters that it has.
+fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let mut model = tube(4, 0)?;
+    let mesh = &mut model.meshes[0];
+    let quarter = mesh.indices[..mesh.indices.len() / 12 * 3].to_vec();
+    mesh.levels = vec![MeshLevel { indices: quarter, error: 0.0 }];
+    let scene = Scene::of(gpu, model, CROWDS[1])?;
+    let level = Reduction::level(1)?;
+    scene.crowd.reductions.write(gpu, &[level; CROWDS[1]])?;
+    let each = CLUSTER * scene.clusters.level(1).clusters as usize;
+    let work = Work { instances: CROWDS[1], vertices: each, words: 73, reduction: level };
+    crowd(bench, pass, &scene, "4, 10k × 100 at a level of a quarter, no list", &work)
+}
+
+/// What is skinned of a crowd. Which vertices of an instance these are does not matter to the twin.
+struct Work {
+    instances: usize,
+    vertices: usize,
+    /// That are loaded and stored, a vertex.
+    words: usize,
+    reduction: Reduction,
+}
+
+/// A hundred instances without a list: nanoseconds a vertex of those that are skinned.
+fn crowd(
+    bench: &mut Bench<'_>,
+    pass: &SkinPass,
+    scene: &Scene,
+    name: &str,
+    work: &Work,
+) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
+    let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
+    let all = work.instances * work.vertices;
+    let copied = copy_of(gpu, work.words * all / 2)?;
+    let mesh = &scene.model.meshes[0];
+    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
+    let unskinned = morph(mesh, &[]);
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            let some = &unskinned[..work.vertices];
+            for _ in 0..work.instances {
+                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, work.reduction)));
+            }
+        }),
+    ];
+    bench.case(name, (all, "vertex"), (4 * work.words * all) as u64, contenders)
+}
+
+/// A hundred instances at full fade: the weight that decides is read, and one bone.
+fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
+    let rigid = Reduction { fade: 1.0, ..Reduction::FULL };
+    scene.crowd.reductions.write(gpu, &[rigid; CROWDS[1]])?;
+    // A vertex, a bone and a weight in, the bone's rows, a vertex out.
+    let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, reduction: rigid };
+    crowd(bench, pass, &scene, "4 faded to 1, 10k × 100", &work)
+}
+
+/// Instances of which a buffer holds so many bytes a vertex, a divisor of them all.
+fn batch(gpu: &Gpu, instances: usize, bytes: usize) -> usize {
+    let room = gpu.max_binding() as usize / (RING * RING * bytes.max(size_of::<Vertex>()));
+    (1..=instances).rev().find(|batch| instances.is_multiple_of(*batch) && *batch <= room.max(1)).unwrap_or(1)
+}
+
+/// Jobs for all instances, batch by batch into the same buffer.
+fn batches(
+    gpu: &Gpu,
+    pass: &SkinPass,
+    scene: &Scene,
+    [instances, batch]: [usize; 2],
+) -> Result<Vec<Job>, Error> {
+    let output = Buffer::new(gpu, "skinned", batch * RING * RING)?;
+    let firsts = (0..instances).step_by(batch);
+    firsts.map(|first| pass.prepare(gpu, &scene.mesh, &scene.crowd, first..first + batch, &output)).collect()
+}

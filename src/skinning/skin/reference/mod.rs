@@ -1,0 +1,133 @@
+//! Skinning: twin of `kernels/skinning/skin.wgsl`.
+
+pub mod weights;
+
+use crate::animation::transform::Affine;
+use crate::skinning::clusters::{CLUSTER, Clusters};
+use crate::skinning::palette::reference::{cross, dot, unit_or};
+use crate::skinning::palette::{DualBone, Palette};
+use crate::skinning::skin::Vertex;
+use crate::skinning::skin::reference::weights::reduced;
+use crate::skinning::weights::{Influence, Influences, Reduction};
+
+/// Vertices where a palette takes them. `vertices` are a mesh's, morphed or not, and `influences` its own.
+///
+/// # Panics
+/// With fewer influences than vertices, a reduction to none, or a palette of fewer bones than they name.
+pub fn skin(
+    vertices: &[Vertex],
+    influences: &Influences,
+    palette: &Palette,
+    reduction: Reduction,
+) -> Vec<Vertex> {
+    let matrix = |at: usize| blended(palette, &reduced(influences.of(at), reduction));
+    vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
+}
+
+/// The same for one instance of a crowd, whose vertices stay as they are where it is not seen, and in clusters beyond its
+/// level of detail. `clusters` are those of the mesh.
+///
+/// # Panics
+/// As [`skin`].
+pub fn skin_seen(
+    skinned: &mut [Vertex],
+    vertices: &[Vertex],
+    (influences, clusters): (&Influences, &Clusters),
+    palette: &Palette,
+    reduction: Reduction,
+) {
+    if reduction.most > 0 {
+        let all = skin(vertices, influences, palette, reduction);
+        let places = CLUSTER * clusters.level(reduction.level).clusters as usize;
+        for vertex in clusters.order.iter().take(places).map(|vertex| *vertex as usize) {
+            skinned[vertex] = all[vertex];
+        }
+    }
+}
+
+/// The matrix of a vertex: `left` are its reduced influences.
+pub fn blended(palette: &Palette, left: &[Influence]) -> Affine {
+    match palette {
+        Palette::Linear(bones) => mean(bones, left),
+        Palette::Dual(bones) => dual_mean(bones, left),
+    }
+}
+
+/// The weaker ones first, as the kernel knows the strongest weight last.
+fn weaker_first(left: &[Influence]) -> impl Iterator<Item = &Influence> {
+    left[1..].iter().chain(&left[..1])
+}
+
+fn mean(bones: &[Affine], left: &[Influence]) -> Affine {
+    weaker_first(left).fold([[0.0; 4]; 3], |sum, influence| {
+        let bone = &bones[influence.bone as usize];
+        std::array::from_fn(|row| added(sum[row], influence.weight, bone[row]))
+    })
+}
+
+fn added(sum: [f32; 4], weight: f32, value: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|at| sum[at] + weight * value[at])
+}
+
+fn dual_mean(bones: &[DualBone], left: &[Influence]) -> Affine {
+    let strongest = &bones[left[0].bone as usize];
+    let zero = [0.0; 4];
+    let mut sum = DualBone { real: zero, dual: zero, diagonal: zero, above: zero };
+    for influence in weaker_first(left) {
+        let bone = &bones[influence.bone as usize];
+        // Of q and −q the one on the strongest one's side.
+        let side = if dot4(bone.real, strongest.real) < 0.0 { -influence.weight } else { influence.weight };
+        sum.real = added(sum.real, side, bone.real);
+        sum.dual = added(sum.dual, side, bone.dual);
+        sum.diagonal = added(sum.diagonal, influence.weight, bone.diagonal);
+        sum.above = added(sum.above, influence.weight, bone.above);
+    }
+    matrix_of(&sum)
+}
+
+fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
+
+/// The matrix of a sum, whose rotation is not 0: the strongest weight is at least 1/8, and no other one is against it.
+fn matrix_of(sum: &DualBone) -> Affine {
+    let inverse = 1.0 / dot4(sum.real, sum.real);
+    let [x, y, z, w] = sum.real;
+    let [dx, dy, dz, dw] = sum.dual;
+    // Times 2 over the squared length, in place of normalizing.
+    let twice = 2.0 * inverse;
+    let rotation = [
+        [1.0 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)],
+        [twice * (x * y + w * z), 1.0 - twice * (x * x + z * z), twice * (y * z - w * x)],
+        [twice * (x * z - w * y), twice * (y * z + w * x), 1.0 - twice * (x * x + y * y)],
+    ];
+    let translation = [
+        twice * (w * dx - dw * x + y * dz - z * dy),
+        twice * (w * dy - dw * y + z * dx - x * dz),
+        twice * (w * dz - dw * z + x * dy - y * dx),
+    ];
+    let ([u, v, t, _], [uv, ut, vt, _]) = (sum.diagonal, sum.above);
+    std::array::from_fn(|row| {
+        let [a, b, c] = rotation[row];
+        [a * u, a * uv + b * v, a * ut + b * vt + c * t, translation[row]]
+    })
+}
+
+/// A vertex that a matrix takes along.
+pub fn transformed(vertex: &Vertex, [x, y, z]: &Affine) -> Vertex {
+    let linear = |row: &[f32; 4], v: [f32; 3]| row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
+    let position = [x, y, z].map(|row| linear(row, vertex.position) + row[3]);
+    let [a, b, c] = [x, y, z].map(|row| [row[0], row[1], row[2]]);
+    // The rows of the cofactor matrix.
+    let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
+    let side = if dot(a, cofactors[0]) < 0.0 { -1.0 } else { 1.0 };
+    let normal = cofactors.map(|row| side * dot(row, vertex.normal));
+    let [tx, ty, tz, handedness] = vertex.tangent;
+    let along = [tx, ty, tz];
+    let tangent = unit_or([x, y, z].map(|row| linear(row, along)), along);
+    Vertex {
+        position,
+        normal: unit_or(normal, vertex.normal),
+        tangent: [tangent[0], tangent[1], tangent[2], side * handedness],
+    }
+}

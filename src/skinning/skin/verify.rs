@@ -1,0 +1,233 @@
+//! Parity of `kernels/skinning/skin.wgsl`.
+
+use crate::Error;
+use crate::animation::Model;
+use crate::animation::transform::Affine;
+use crate::gpu::{Buffer, Gpu};
+use crate::harness::compare::Comparison;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::clusters::Clusters;
+use crate::skinning::morph::reference::morph;
+use crate::skinning::palette::Palette;
+use crate::skinning::palette::reference::palette_for;
+use crate::skinning::skin::reference::weights::reduced;
+use crate::skinning::skin::reference::{blended, skin_seen};
+use crate::skinning::skin::{Blend, SKIN_BOUND, SkinPass, TRUNCATED, Vertex};
+use crate::skinning::verify::{
+    SHAPES, Shape, flat, poisoned, random_matrices, random_model, random_reductions,
+};
+use crate::skinning::weights::Reduction;
+
+/// Instances of a case: full, truncated, fading and unseen ones.
+const INSTANCES: usize = 9;
+
+/// One influence to eight, linear and by dual quaternions, morphed or not; all instances, some, and lists of clusters,
+/// where the others stay untouched, as those of unseen instances do and those beyond an instance's level. Errors are shares of each value's own bound.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for blend in [Blend::Linear, Blend::DualQuaternion] {
+        let pass = SkinPass::new(cases.gpu, blend)?;
+        for (case, shape) in (0..).zip(SHAPES) {
+            let scene = Scene::new(cases.gpu, case, shape, blend)?;
+            let name = format!("{} vertices of {} influences, {blend:?}", shape.vertices, shape.influences);
+            for instances in [0..INSTANCES, 0..1, 4..7] {
+                let output = Poisoned::<Vertex>::new(cases.gpu, instances.len() * shape.vertices)?;
+                let (mesh, crowd) = (&scene.mesh, &scene.crowd);
+                let job = pass.prepare(cases.gpu, mesh, crowd, instances.clone(), &output.buffer)?;
+                cases.gpu.run("verify", |encoder| job.record(encoder))?;
+                let expected =
+                    &scene.expected[instances.start * shape.vertices..][..instances.len() * shape.vertices];
+                let comparison = output.check(cases.gpu, |actual| scene.compare(actual, expected))?;
+                cases.add(format!("{name}, instances {instances:?}"), comparison);
+            }
+            for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
+                cases.add(format!("{name}, {list}"), scene.some(cases.gpu, &pass, every)?);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A vertex, and how far it may lie from that.
+#[derive(Clone, Copy)]
+struct Expected {
+    vertex: Vertex,
+    position: f32,
+    normal: f32,
+    tangent: f32,
+}
+
+impl Expected {
+    fn untouched() -> Self {
+        Self { vertex: poisoned(), position: 1.0, normal: 1.0, tangent: 1.0 }
+    }
+}
+
+struct Scene {
+    mesh: MeshBuffers,
+    clusters: Clusters,
+    crowd: SkinnedCrowd,
+    /// Instance by instance, in the mesh's order.
+    expected: Vec<Expected>,
+}
+
+impl Scene {
+    fn new(gpu: &Gpu, case: u32, shape: Shape, blend: Blend) -> Result<Self, Error> {
+        let model = random_model(case, shape)?;
+        let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+        let mut crowd = SkinnedCrowd::new(gpu, &mesh, INSTANCES, blend)?;
+        let reductions = random_reductions(case, INSTANCES);
+        crowd.reductions.write(gpu, &reductions)?;
+        let matrices = random_matrices(case, shape.bones, INSTANCES);
+        let mut vectors: Vec<[f32; 4]> = Vec::new();
+        let mut placed = Vec::new();
+        let mut expected = Vec::new();
+        for (instance, models) in matrices.chunks(shape.bones).enumerate() {
+            let palette = palette_for(&model.skins[0], models, blend);
+            match &palette {
+                Palette::Linear(bones) => vectors.extend(bones.as_flattened()),
+                Palette::Dual(bones) => vectors.extend(bytemuck::cast_slice::<_, [f32; 4]>(bones)),
+            }
+            let weights: Vec<f32> =
+                (0..shape.targets).map(|target| 0.5 - 0.25 * (target + instance) as f32).collect();
+            let vertices = morph(&model.meshes[0], &weights);
+            placed.extend(clusters.order.iter().map(|vertex| vertices[*vertex as usize]));
+            expected.extend(expect(&model, (&vertices, &clusters), &palette, reductions[instance]));
+        }
+        crowd.palette = Buffer::from_slice(gpu, "palette", &vectors)?;
+        if shape.targets > 0 {
+            crowd.morphed = Buffer::from_slice(gpu, "morphed", &placed)?;
+        }
+        Ok(Self { mesh, clusters, crowd, expected })
+    }
+
+    fn some(&self, gpu: &Gpu, pass: &SkinPass, every: u32) -> Result<Comparison, Error> {
+        let output = Poisoned::<Vertex>::new(gpu, self.expected.len())?;
+        let active = ActiveClusters::new(gpu, &self.mesh, &self.crowd)?;
+        let pairs = (self.clusters.len() * INSTANCES) as u32;
+        let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
+        active.write(gpu, &chosen)?;
+        let job = pass.prepare_active(gpu, &self.mesh, &self.crowd, &output.buffer, &active)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let mut expected = self.expected.clone();
+        for (instance, expected) in expected.chunks_mut(self.clusters.order.len()).enumerate() {
+            for (place, vertex) in self.clusters.order.iter().enumerate() {
+                let pair = (place / 64 * INSTANCES + instance) as u32;
+                if !chosen.contains(&pair) {
+                    expected[*vertex as usize] = Expected::untouched();
+                }
+            }
+        }
+        Ok(output.check(gpu, |actual| self.compare(actual, &expected))?)
+    }
+
+    fn compare(&self, actual: &[Vertex], expected: &[Expected]) -> Comparison {
+        let ordered =
+            actual.chunks(self.clusters.order.len()).flat_map(|actual| self.clusters.in_mesh_order(actual));
+        let shares = |vertices: Vec<Vertex>| {
+            let mut values = flat(&vertices);
+            for (values, expected) in values.chunks_exact_mut(10).zip(expected) {
+                let Expected { position: p, normal: n, tangent: t, .. } = *expected;
+                let bounds = [p, p, p, n, n, n, t, t, t, 0.5];
+                values.iter_mut().zip(bounds).for_each(|(value, bound)| *value /= bound);
+            }
+            values
+        };
+        let expected = shares(expected.iter().map(|expected| expected.vertex).collect());
+        compare::absolute(&shares(ordered.collect()), &expected, 1.0)
+    }
+}
+
+/// The twin's vertices, each with its own bounds: see [`SKIN_BOUND`].
+fn expect(
+    model: &Model,
+    (vertices, clusters): (&[Vertex], &Clusters),
+    palette: &Palette,
+    reduction: Reduction,
+) -> Vec<Expected> {
+    let influences = &model.meshes[0].influences;
+    let mut skinned = vec![poisoned(); vertices.len()];
+    skin_seen(&mut skinned, vertices, (influences, clusters), palette, reduction);
+    if reduction == Reduction::UNSEEN {
+        return skinned.into_iter().map(|vertex| Expected { vertex, ..Expected::untouched() }).collect();
+    }
+    let largest = match palette {
+        Palette::Linear(bones) => size(bones.as_flattened().as_flattened()),
+        // Translations are twice the dual part; three products of three factors take the place of one matrix.
+        Palette::Dual(bones) => 8.0 * size(bytemuck::cast_slice(bones)),
+    };
+    let expected = |(at, vertex): (usize, Vertex)| {
+        if vertex == poisoned() {
+            return Expected::untouched();
+        }
+        let matrix = blended(palette, &reduced(influences.of(at), reduction));
+        let old = &vertices[at];
+        let is_truncated = (reduction.most as usize) < influences.of(at).len();
+        let bound = SKIN_BOUND * if is_truncated { TRUNCATED } else { 1.0 } * largest;
+        let sum = |vector: &[f32]| vector.iter().map(|x| x.abs()).sum::<f32>();
+        let [normal, tangent] = lengths(&matrix, old);
+        Expected {
+            vertex,
+            position: bound * (1.0 + sum(&old.position)),
+            normal: 4.0 * bound * largest * sum(&old.normal) / normal,
+            tangent: 2.0 * bound * sum(&old.tangent[..3]) / tangent,
+        }
+    };
+    skinned.into_iter().enumerate().map(expected).collect()
+}
+
+fn size(values: &[f32]) -> f32 {
+    values.iter().fold(1.0, |a: f32, b| a.max(b.abs()))
+}
+
+/// How long a vertex's normal and tangent are before they are made units.
+fn lengths(matrix: &Affine, vertex: &Vertex) -> [f32; 2] {
+    let linear = glam::Mat3::from_cols_array_2d(&matrix.map(|[x, y, z, _]| [x, y, z])).transpose();
+    let cofactors = linear.determinant() * linear.inverse().transpose();
+    let [tx, ty, tz, _] = vertex.tangent;
+    [(cofactors * glam::Vec3::from(vertex.normal)).length(), (linear * glam::vec3(tx, ty, tz)).length()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::Options;
+
+    /// The twin's own vertices hold; one of them elsewhere, turned, or mirrored does not.
+    #[test]
+    fn vertices_that_go_astray_are_seen() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        for blend in [Blend::Linear, Blend::DualQuaternion] {
+            let scene = Scene::new(&gpu, 3, SHAPES[3], blend).expect("made");
+            let vertices = SHAPES[3].vertices;
+            let placed = |instance: usize| {
+                let expected = &scene.expected[instance * vertices..][..vertices];
+                scene
+                    .clusters
+                    .order
+                    .iter()
+                    .map(|vertex| expected[*vertex as usize].vertex)
+                    .collect::<Vec<_>>()
+            };
+            let right: Vec<Vertex> = (0..INSTANCES).flat_map(placed).collect();
+            assert!(scene.compare(&right, &scene.expected).holds);
+            let wrong = |change: &dyn Fn(&mut Vertex)| {
+                let mut changed = right.clone();
+                change(&mut changed[300]);
+                scene.compare(&changed, &scene.expected)
+            };
+            for axis in 0..3 {
+                assert!(!wrong(&|vertex| vertex.position[axis] += 4e-3).holds);
+                assert!(!wrong(&|vertex| vertex.normal[axis] += 0.05).holds);
+                assert!(!wrong(&|vertex| vertex.tangent[axis] += 0.05).holds);
+                assert!(!wrong(&|vertex| vertex.position[axis] = f32::NAN).holds);
+            }
+            assert!(!wrong(&|vertex| vertex.tangent[3] *= -1.0).holds);
+            assert!(!scene.compare(&right[1..], &scene.expected).holds);
+        }
+    }
+}

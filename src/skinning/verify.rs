@@ -1,0 +1,184 @@
+//! Parity of `kernels/skinning/`.
+
+use crate::InputError;
+use crate::animation::Model;
+use crate::animation::concat::reference::{affine, product};
+use crate::animation::skeleton::Skin;
+use crate::animation::transform::{Affine, Transform};
+use crate::animation::verify::{Draw, random_skeleton};
+use crate::harness::poison::POISON;
+use crate::skinning::morph::MorphDelta;
+use crate::skinning::{Influence, Influences, Mesh, MeshLevel, MorphTarget, Reduction, Vertex};
+
+/// A random mesh, and the skeleton and skin that it follows.
+#[derive(Debug, Clone, Copy)]
+pub struct Shape {
+    /// Of the skeleton; the skin has half of them, at least one.
+    pub bones: usize,
+    /// Of the mesh.
+    pub vertices: usize,
+    /// At most, of a vertex.
+    pub influences: usize,
+    /// Morph targets.
+    pub targets: usize,
+    /// Of detail, besides the mesh itself; needs three vertices.
+    pub levels: usize,
+}
+
+/// Vertices around the boundaries of clusters; bones around those of sets; one influence to eight; no levels, some and
+/// as many as there may be.
+pub const SHAPES: [Shape; 8] = [
+    Shape { bones: 1, vertices: 1, influences: 1, targets: 0, levels: 0 },
+    Shape { bones: 9, vertices: 63, influences: 2, targets: 1, levels: 1 },
+    Shape { bones: 32, vertices: 64, influences: 3, targets: 0, levels: 0 },
+    Shape { bones: 33, vertices: 65, influences: 4, targets: 2, levels: 15 },
+    Shape { bones: 64, vertices: 127, influences: 5, targets: 0, levels: 2 },
+    Shape { bones: 65, vertices: 500, influences: 7, targets: 3, levels: 3 },
+    Shape { bones: 153, vertices: 1000, influences: 8, targets: 0, levels: 15 },
+    Shape { bones: 1000, vertices: 129, influences: 8, targets: 1, levels: 1 },
+];
+
+/// A model of this shape, with one mesh and no clip.
+///
+/// # Errors
+/// None: it is checked like any other.
+pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
+    let mut draw = Draw::new(case ^ 0x5c1);
+    let skeleton = random_skeleton(case, shape.bones)?;
+    let bones: Vec<u32> = (0..shape.bones as u32).rev().step_by(2).collect();
+    let inverse_binds = bones.iter().map(|_| column_major(&near_identity(&mut draw))).collect();
+    let skin = Skin { name: "random".to_owned(), bones, inverse_binds };
+    let vertices = 0..shape.vertices;
+    let mesh = Mesh {
+        name: "random".to_owned(),
+        skin: 0,
+        positions: vertices.clone().map(|_| [0; 3].map(|_| 2.0 * draw.signed())).collect(),
+        normals: vertices.clone().map(|_| unit(&mut draw)).collect(),
+        tangents: vertices.clone().map(|_| tangent(&mut draw)).collect(),
+        uv: vertices.clone().map(|_| [0; 2].map(|_| draw.signed())).collect(),
+        levels: levels(&mut draw, shape),
+        indices: triangles(shape).collect(),
+        double_sided: true,
+        material: None,
+        influences: influences(&mut draw, shape, skin.bones.len())?,
+        targets: (0..shape.targets).map(|_| target(&mut draw, shape.vertices)).collect(),
+        weights: vec![0.0; shape.targets],
+        weight_keys: vec![],
+    };
+    mesh.validate(std::slice::from_ref(&skin))?;
+    let (clips, materials, images) = (vec![], vec![], vec![]);
+    Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images })
+}
+
+/// All vertices but two at most have a triangle.
+pub(crate) fn triangles(shape: Shape) -> std::ops::Range<u32> {
+    0..shape.vertices as u32 / 3 * 3
+}
+
+/// Half of the triangles, a quarter and so on; one in the end.
+pub(crate) fn levels(draw: &mut Draw, shape: Shape) -> Vec<MeshLevel> {
+    let mut left: Vec<u32> = triangles(shape).step_by(3).collect();
+    let mut level = |at| {
+        let half = left.len().div_ceil(2);
+        while left.len() > half {
+            left.swap_remove(draw.word() as usize % left.len());
+        }
+        let indices = left.iter().flat_map(|first| *first..first + 3).collect();
+        MeshLevel { indices, error: at as f32 }
+    };
+    (0..shape.levels).map(&mut level).collect()
+}
+
+pub(crate) fn unit(draw: &mut Draw) -> [f32; 3] {
+    let [x, y, z, w] = draw.rotation();
+    glam::Quat::from_xyzw(x, y, z, w).normalize().mul_vec3(glam::Vec3::Y).to_array()
+}
+
+pub(crate) fn tangent(draw: &mut Draw) -> [f32; 4] {
+    let [x, y, z] = unit(draw);
+    [x, y, z, if draw.word().is_multiple_of(2) { 1.0 } else { -1.0 }]
+}
+
+/// Few or many, uneven or equal.
+pub(crate) fn influences(draw: &mut Draw, shape: Shape, bones: usize) -> Result<Influences, InputError> {
+    let vertex = |_| {
+        let count = 1 + draw.word() as usize % shape.influences;
+        let is_even = draw.word().is_multiple_of(4);
+        let influence = |_| Influence {
+            bone: draw.word() % bones as u32,
+            weight: if is_even { 1.0 } else { 0.01 + draw.signed().abs() },
+        };
+        (0..count).map(influence).collect()
+    };
+    Influences::new("random.weights", bones, (0..shape.vertices).map(vertex).collect::<Vec<_>>())
+}
+
+pub(crate) fn target(draw: &mut Draw, vertices: usize) -> MorphTarget {
+    let delta = |_| match draw.word() % 3 {
+        0 => MorphDelta {
+            position: [0; 3].map(|_| draw.signed()),
+            normal: [0; 3].map(|_| draw.signed()),
+            tangent: [0; 3].map(|_| draw.signed()),
+        },
+        _ => MorphDelta::default(),
+    };
+    MorphTarget::new(&(0..vertices).map(delta).collect::<Vec<_>>())
+}
+
+/// A small turn, an uneven stretch and a move.
+pub(crate) fn near_identity(draw: &mut Draw) -> Affine {
+    let [x, y, z] = [0; 3].map(|_| 0.2 * draw.signed());
+    let w = (1.0 - x * x - y * y - z * z).sqrt();
+    let translation = [0; 3].map(|_| draw.signed());
+    affine(&Transform {
+        translation,
+        rotation: [x, y, z, w],
+        scale: [0; 3].map(|_| 1.0 + 0.3 * draw.signed()),
+    })
+}
+
+/// Matrices that lie near each other, so that their means are no worse than they are: for each instance a turn of its
+/// own, some mirrored.
+pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine> {
+    let mut draw = Draw::new(case ^ 0xba1e);
+    let mut matrices = Vec::with_capacity(bones * instances);
+    for instance in 0..instances {
+        let [x, y, z, w] = draw.rotation();
+        let rotation = glam::Quat::from_xyzw(x, y, z, w).normalize().to_array();
+        let scale = [if instance % 3 == 2 { -1.0 } else { 1.0 }, 1.0, 1.25];
+        let common = affine(&Transform { translation: [0; 3].map(|_| 3.0 * draw.signed()), rotation, scale });
+        matrices.extend((0..bones).map(|_| product(&common, &near_identity(&mut draw))));
+    }
+    matrices
+}
+
+/// Full, truncated, fading and unseen ones in turn, half of them at coarse levels, which the mesh may lack.
+pub fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
+    let mut draw = Draw::new(case ^ 0xfade);
+    let reduction = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
+        0 => Reduction::FULL,
+        1 => Reduction { most: 1 + draw.word() % 8, ..Reduction::FULL },
+        2 => Reduction { fade: draw.signed().abs(), ..Reduction::FULL },
+        3 => Reduction { fade: (draw.word() % 2) as f32, ..Reduction::FULL },
+        _ => Reduction::UNSEEN,
+    };
+    let levelled = |instance| {
+        let level = [0, 0, 0, 0, 1, 2, 3, 15, u32::MAX][draw.word() as usize % 9];
+        Reduction { level, ..reduction(instance, &mut draw) }
+    };
+    (0..instances).map(levelled).collect()
+}
+
+pub(crate) fn column_major(matrix: &Affine) -> [f32; 16] {
+    crate::animation::transform::column_major(matrix)
+}
+
+/// What a kernel has not written, of any type.
+pub(crate) fn poisoned<T: bytemuck::Pod>() -> T {
+    bytemuck::pod_read_unaligned(&POISON.to_ne_bytes().repeat(size_of::<T>() / 4))
+}
+
+/// All ten words of each vertex.
+pub(crate) fn flat(vertices: &[Vertex]) -> Vec<f32> {
+    bytemuck::cast_slice(vertices).to_vec()
+}

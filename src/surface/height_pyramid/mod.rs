@@ -1,0 +1,105 @@
+//! Max-mip pyramids of height maps (B section 2.3.4): a leaf is the highest corner of a bilinear cell, a node the
+//! highest of its four children. What `quadtree` traverses, and what cone maps are made from.
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::{HeightPyramidPass, Pyramids};
+
+use crate::surface::map::Address;
+
+/// Where a pyramid keeps its nodes: all levels in one plane, rows padded so that it can be copied to a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PyramidLayout {
+    /// Texels of the map along x and y.
+    pub size: [u32; 2],
+    /// Bilinear cells: as many with [`Address::Wrap`], one more an axis with [`Address::Clamp`].
+    pub cells: [u32; 2],
+    /// Nodes a row of the plane.
+    pub pitch: u32,
+    /// Rows of the plane.
+    pub rows: u32,
+    /// Levels, the one of single cells and the one of a single node included.
+    pub levels: u32,
+}
+
+impl PyramidLayout {
+    /// The layout for a map of `size` texels.
+    pub fn new(size: [u32; 2], address: Address) -> Self {
+        let cells = match address {
+            Address::Wrap => size,
+            Address::Clamp => size.map(|edge| edge + 1),
+        };
+        let levels = cells[0].max(cells[1]).next_power_of_two().ilog2() + 1;
+        // A texture's rows start at multiples of 256 bytes.
+        let width = cells[0].next_multiple_of(4) + cells[0].div_ceil(2);
+        let mut layout = Self { size, cells, pitch: width.next_multiple_of(64), rows: cells[1], levels };
+        for level in 1..levels {
+            layout.rows = layout.rows.max(layout.first(level)[1] + layout.nodes(level)[1]);
+        }
+        layout
+    }
+
+    /// Nodes of a level along x and y.
+    pub fn nodes(&self, level: u32) -> [u32; 2] {
+        self.cells.map(|cells| cells.div_ceil(1 << level))
+    }
+
+    /// Nodes of the whole plane, padding included.
+    pub fn len(&self) -> usize {
+        self.pitch as usize * self.rows as usize
+    }
+
+    /// Whether there are none; never.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The plane's index of a node. Between the end of a row of level 0 and the next multiple of four, and wherever
+    /// no level stands, is padding of any value.
+    pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
+        let first = self.first(level);
+        ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize
+    }
+
+    /// Column and row of a level's first node.
+    fn first(&self, level: u32) -> [u32; 2] {
+        match level.checked_sub(1) {
+            None => [0, 0],
+            Some(before) => {
+                [self.cells[0].next_multiple_of(4), self.cells[1] - (self.cells[1] >> before) + before]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_nodes_share_a_place() {
+        for size in [[1, 1], [2, 1], [1, 9], [3, 3], [4, 4], [5, 7], [17, 33], [64, 64], [100, 1]] {
+            for address in [Address::Wrap, Address::Clamp] {
+                let layout = PyramidLayout::new(size, address);
+                let mut taken = vec![false; layout.len()];
+                for level in 0..layout.levels {
+                    let [columns, rows] = layout.nodes(level);
+                    for y in 0..rows {
+                        for x in 0..columns {
+                            let index = layout.index(level, [x, y]);
+                            assert!(!std::mem::replace(&mut taken[index], true), "{size:?} {level} {x} {y}");
+                        }
+                    }
+                }
+                assert_eq!(layout.nodes(layout.levels - 1), [1, 1]);
+            }
+        }
+    }
+}

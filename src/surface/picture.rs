@@ -1,0 +1,139 @@
+//! The picture of a square of relief: twin of `wgsl/render/relief.wgsl` under a parallel projection.
+
+use rayon::prelude::*;
+
+use crate::srgb::linear;
+use crate::surface::linear_image::LinearImage;
+use crate::surface::map::Address;
+use crate::surface::material::{Green, Material, Shadow};
+use crate::surface::mips::Mips;
+use crate::surface::relief::reference::Surface;
+use crate::surface::relief::reference::height::height;
+use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
+use crate::surface::relief::{Hit, March, Method, Ray};
+use crate::surface::view::SquareView;
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Scene<'a> {
+    /// Heights and acceleration maps.
+    pub surface: &'a Surface<'a>,
+    /// How the surface is found.
+    pub method: Method,
+    /// How it is marched.
+    pub march: &'a March,
+    /// Colours.
+    pub albedo: &'a Mips,
+    /// Tangent-space normals; else those of the heights.
+    pub normals: Option<&'a Mips>,
+    /// Depth, light, shadow. The light is in tangent space here.
+    pub material: &'a Material,
+    /// Where it is seen from.
+    pub view: SquareView,
+}
+
+impl Scene<'_> {
+    /// The picture over a linear `background`.
+    pub fn draw(&self, background: [f32; 3]) -> LinearImage {
+        let [width, height] = self.view.size;
+        let pixels = (0..width * height).into_par_iter().map(|index| {
+            let (x, y) = (f64::from(index % width) + 0.5, f64::from(index / width) + 0.5);
+            let ray = self.view.ray(x, y, self.material.scale, self.material.plane);
+            ray.and_then(|ray| self.shade(&ray)).unwrap_or(background)
+        });
+        LinearImage { size: self.view.size, pixels: pixels.collect() }
+    }
+
+    /// The linear colour that a ray sees; none beyond the silhouette.
+    fn shade(&self, ray: &Ray) -> Option<[f32; 3]> {
+        let hit = self.surface.trace(self.method, ray, self.march);
+        let tiles = self.view.tiles as f32;
+        if self.material.silhouette && !hit.uv.iter().all(|axis| (0.0..=tiles).contains(axis)) {
+            return None;
+        }
+        let steps = self.view.uv_steps();
+        let color = sampled(self.albedo, hit.uv, steps, self.march.address);
+        let facing = match self.normals {
+            None => self.normal(&hit),
+            Some(normals) => {
+                let texel = sampled(normals, hit.uv, steps, self.march.address);
+                let [x, y] = [texel[0], texel[1]].map(|channel| channel * 2.0 - 1.0);
+                let along_v = if self.material.green == Green::Up { -y } else { y };
+                [x, along_v, (1.0 - x * x - y * y).max(0.0).sqrt()]
+            }
+        };
+        let light = self.material.light;
+        let facing: f32 = facing.iter().zip(light).map(|(n, l)| n * l).sum();
+        let direct = facing.max(0.0) * self.sunlit(&hit);
+        let ambient = self.material.ambient;
+        Some([0, 1, 2].map(|i| color[i] * (ambient + (1.0 - ambient) * direct)))
+    }
+
+    fn sunlit(&self, hit: &Hit) -> f32 {
+        let (light, scale) = (self.material.light, self.material.scale);
+        if light[2] <= 0.0 {
+            return 1.0;
+        }
+        match self.material.shadow {
+            Shadow::None => 1.0,
+            Shadow::Hard => {
+                let first = self.surface.trace(self.method, &light_ray(hit, light, scale), self.march);
+                if shaded(&first, hit) { 0.0 } else { 1.0 }
+            }
+            Shadow::Soft => {
+                let (steps, softness) = (self.material.shadow_steps, self.material.softness);
+                soft_shadow(self.surface.map, hit, light, scale, self.march, steps, softness)
+            }
+        }
+    }
+
+    fn normal(&self, hit: &Hit) -> [f32; 3] {
+        let map = self.surface.map;
+        let size = [map.width() as f32, map.height() as f32];
+        let at = |du: f32, dv: f32| height(map, [hit.uv[0] + du, hit.uv[1] + dv], self.march.address);
+        let rise = [
+            at(1.0 / size[0], 0.0) - at(-1.0 / size[0], 0.0),
+            at(0.0, 1.0 / size[1]) - at(0.0, -1.0 / size[1]),
+        ];
+        let [x, y] = [0, 1].map(|i| -0.5 * self.material.scale * size[i] * rise[i]);
+        let length = (x * x + y * y + 1.0).sqrt();
+        [x / length, y / length, 1.0 / length]
+    }
+}
+
+/// Trilinear: the levels whose texels are about as long as the longer of the pixel's steps.
+fn sampled(mips: &Mips, uv: [f32; 2], steps: [[f64; 2]; 2], address: Address) -> [f32; 3] {
+    let size = [mips.levels[0].width(), mips.levels[0].height()].map(f64::from);
+    let texels = steps.map(|step| (step[0] * size[0]).hypot(step[1] * size[1]));
+    let level = texels[0].max(texels[1]).log2().clamp(0.0, (mips.levels.len() - 1) as f64);
+    let (near, part) = (level.floor() as usize, level.fract() as f32);
+    let first = bilinear(mips, near, uv, address);
+    if part == 0.0 {
+        return first;
+    }
+    let second = bilinear(mips, near + 1, uv, address);
+    [0, 1, 2].map(|i| first[i] + part * (second[i] - first[i]))
+}
+
+fn bilinear(mips: &Mips, level: usize, uv: [f32; 2], address: Address) -> [f32; 3] {
+    let image = &mips.levels[level];
+    let size = [image.width(), image.height()];
+    let at = [0, 1].map(|i| uv[i] * size[i] as f32 - 0.5);
+    let texel = |dx: i32, dy: i32| {
+        let place = [dx, dy].into_iter().zip(at).zip(size).map(|((offset, at), edge)| {
+            let index = at.floor() as i32 + offset;
+            let inside = match address {
+                Address::Wrap => index.rem_euclid(edge as i32),
+                Address::Clamp => index.clamp(0, edge as i32 - 1),
+            };
+            inside as u32
+        });
+        let place: Vec<u32> = place.collect();
+        let texel = image.get_pixel(place[0], place[1]).0;
+        let value = |byte: u8| if mips.is_srgb { linear(byte) } else { f32::from(byte) / 255.0 };
+        [value(texel[0]), value(texel[1]), value(texel[2])]
+    };
+    let [x, y] = at.map(|at| at - at.floor());
+    let (a, b, c, d) = (texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1));
+    [0, 1, 2].map(|i| (a[i] * (1.0 - x) + b[i] * x) * (1.0 - y) + (c[i] * (1.0 - x) + d[i] * x) * y)
+}

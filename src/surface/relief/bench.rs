@@ -1,0 +1,132 @@
+//! The fragment pass, each method beside `plain` and beside as many bare texel loads.
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::Error;
+use crate::baseline::loads::LoadsPass;
+use crate::gpu::{Buffer, Gpu};
+use crate::harness::{Backend, Bench, Contender};
+use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
+use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
+use crate::surface::builtin::BuiltInMap;
+use crate::surface::map::{Address, HeightMap};
+use crate::surface::material::{Material, Shadow};
+use crate::surface::mesh::SurfaceMesh;
+use crate::surface::mips::Mips;
+use crate::surface::relief::reference::Surface;
+use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
+use crate::surface::texture::SurfaceTextures;
+
+/// Texels along an edge of the map.
+const TEXELS: u32 = 512;
+
+/// Pixels along an edge of the target.
+const EDGE: u32 = 1024;
+
+/// Degrees from the normal.
+const ANGLE: f32 = 60.0;
+
+/// Cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
+/// (the case names them), and nothing else. Then 1024² pixels by the fragment pass: `limit` is `plain` drawn the
+/// same, the twin marches and does not shade.
+///
+/// All kernels come before all pictures: lavapipe's timestamps around compute work are too short once a picture
+/// has been drawn.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let map = BuiltInMap::Cobbles.height_map(TEXELS)?;
+    for method in Method::ALL {
+        listed(bench, &map, method)?;
+    }
+    let gpu = bench.gpu;
+    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
+    let albedo = ColorTexture::new(gpu, &albedo, true)?;
+    let target = Target::new(gpu, [EDGE, EDGE])?;
+    let plain = scene(gpu, &map, &albedo, Method::Plain)?;
+    let (rays, march) = (rays(EDGE), March::default());
+    for method in Method::ALL {
+        let scene = scene(gpu, &map, &albedo, method)?;
+        let surface = Surface::new(&map, method, Address::Wrap);
+        let draw = |scene: &ReliefScene, encoder: &mut wgpu::CommandEncoder| {
+            target.record(encoder, [0.0; 3], |pass| scene.draw(pass));
+        };
+        let contenders = vec![
+            Contender::recorded(Backend::Gpu, |encoder| draw(&scene, encoder)),
+            Contender::recorded(Backend::Limit, |encoder| draw(&plain, encoder)),
+            Contender::host(Backend::TwinParallel, || {
+                drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
+            }),
+        ];
+        let pixels = (EDGE * EDGE) as usize;
+        bench.case(
+            format!("{EDGE}² pixels, {}", method.name()),
+            (pixels, "pixel"),
+            4 * pixels as u64,
+            contenders,
+        )?;
+    }
+    Ok(())
+}
+
+/// One method by the kernel.
+fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let rays = rays(EDGE);
+    let march = March::default();
+    let surface = Surface::new(map, method, Address::Wrap);
+    let samples: u64 =
+        (surface.trace_all(method, &rays, &march).iter()).map(|hit| u64::from(hit.samples)).sum();
+    let mean = samples as f64 / rays.len() as f64;
+    let textures = textures(gpu, map, method)?;
+    let input = Buffer::from_slice(gpu, "rays", &rays)?;
+    let hits = Buffer::new(gpu, "hits", rays.len())?;
+    let job = ReliefPass::new(gpu, method)?.prepare(gpu, &textures, &march, &input, &hits)?;
+    let sums = Buffer::new(gpu, "sums", rays.len())?;
+    let bare = LoadsPass::new(gpu)?;
+    let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &bare),
+        Contender::host(Backend::TwinParallel, || {
+            drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
+        }),
+    ];
+    let bytes = 4 * samples + (rays.len() * (size_of::<Ray>() + size_of::<Hit>())) as u64;
+    bench.case(format!("{}, {mean:.1} loads a ray", method.name()), (rays.len(), "ray"), bytes, contenders)
+}
+
+fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTextures, Error> {
+    SurfaceTextures::new(gpu, map, method, Address::Wrap)
+}
+
+/// The square over the whole target.
+fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> Result<ReliefScene, Error> {
+    let options = ReliefOptions {
+        method,
+        shadow: Shadow::None,
+        normal_map: false,
+        silhouette: false,
+        green: Default::default(),
+        depth: false,
+        mip: false,
+    };
+    let textures = textures(gpu, map, method)?;
+    let maps = ReliefMaps { textures: &textures, albedo, normals: None };
+    let renderer = ReliefRenderer::new(gpu, COLOR_FORMAT, options)?;
+    let mesh = SurfaceMesh::square(1.0);
+    let mut scene = renderer.scene(gpu, &mesh, maps, &Material::default(), &March::default(), 1.0)?;
+    let clip_from_world = Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(2.0, 2.0, 1.0));
+    let (sine, cosine) = ANGLE.to_radians().sin_cos();
+    scene.set_camera(gpu, ReliefCamera { clip_from_world, eye: Vec4::new(0.0, -sine, cosine, 0.0) })?;
+    Ok(scene)
+}
+
+/// The rays of the picture, `edge` of them along each edge.
+fn rays(edge: u32) -> Vec<Ray> {
+    let (sine, cosine) = ANGLE.to_radians().sin_cos();
+    let at = |index: u32| (index as f32 + 0.5) / edge as f32;
+    let places = (0..edge).flat_map(|y| (0..edge).map(move |x| [at(x), at(y)]));
+    places.map(|uv| Ray::new(uv, [0.0, sine, cosine], Material::default().scale, 1.0)).collect()
+}

@@ -1,0 +1,79 @@
+//! Twin of `wgsl/surface/linear.wgsl`.
+
+use super::height::{BILINEAR, height};
+use crate::surface::map::HeightMap;
+use crate::surface::relief::{Hit, MOST_BINARY, MOST_STEPS, March, Outcome, Ray};
+
+/// Where a linear search stopped.
+struct Bracket {
+    above: f32,
+    under: f32,
+    height_above: f32,
+    height_under: f32,
+    samples: u32,
+}
+
+fn steps(march: &March, cosine: f32) -> u32 {
+    let [low, high] = march.steps.map(|steps| steps as f32);
+    let steps = (low + (high - low) * (1.0 - cosine.min(1.0))).ceil();
+    (steps as u32).clamp(1, MOST_STEPS)
+}
+
+fn search(map: &HeightMap, ray: &Ray, march: &March) -> Bracket {
+    let steps = steps(march, ray.cosine);
+    let width = 1.0 / steps as f32;
+    let mut bracket = Bracket { above: 0.0, under: 1.0, height_above: 0.0, height_under: 0.0, samples: 0 };
+    for step in 1..=steps {
+        let parameter = if step == steps { 1.0 } else { step as f32 * width };
+        let height = height(map, ray.at(parameter), march.address);
+        bracket.samples += BILINEAR;
+        if 1.0 - parameter <= height || step == steps {
+            bracket.under = parameter;
+            bracket.height_under = height;
+            break;
+        }
+        bracket.above = parameter;
+        bracket.height_above = height;
+    }
+    bracket
+}
+
+/// Linear, then binary search.
+pub fn relief(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+    let bracket = search(map, ray, march);
+    narrowed(map, ray, march, [bracket.above, bracket.under], bracket.samples)
+}
+
+/// Binary steps between a point above the surface and one at or under it.
+pub(crate) fn narrowed(
+    map: &HeightMap,
+    ray: &Ray,
+    march: &March,
+    [mut above, mut under]: [f32; 2],
+    mut samples: u32,
+) -> Hit {
+    for _ in 0..march.binary_steps.min(MOST_BINARY) {
+        let middle = 0.5 * (above + under);
+        samples += BILINEAR;
+        if 1.0 - middle <= height(map, ray.at(middle), march.address) {
+            under = middle;
+        } else {
+            above = middle;
+        }
+    }
+    Hit::of(ray, 0.5 * (above + under), samples, Outcome::Hit)
+}
+
+/// Linear search, then the segment between the last two samples.
+pub fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+    let mut bracket = search(map, ray, march);
+    if bracket.above == 0.0 {
+        bracket.height_above = height(map, ray.origin, march.address);
+        bracket.samples += BILINEAR;
+    }
+    let over = (1.0 - bracket.above - bracket.height_above).max(0.0);
+    let below = (bracket.height_under - (1.0 - bracket.under)).max(0.0);
+    let share = if over + below > 1e-12 { over / (over + below).max(1e-12) } else { 1.0 };
+    let parameter = bracket.above + share * (bracket.under - bracket.above);
+    Hit::of(ray, parameter, bracket.samples, Outcome::Hit)
+}

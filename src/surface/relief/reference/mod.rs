@@ -1,0 +1,67 @@
+//! Twin of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
+
+pub mod cone;
+pub mod flat;
+pub mod grid;
+pub mod height;
+pub mod linear;
+pub mod quadtree;
+pub mod shadow;
+
+use rayon::prelude::*;
+
+use crate::surface::cone_map::reference::cone_map;
+use crate::surface::height_pyramid::reference::height_pyramid;
+use crate::surface::map::{Address, HeightMap};
+use crate::surface::relief::reference::cone::cone;
+use crate::surface::relief::reference::flat::{parallax, parallax_limited, plain};
+use crate::surface::relief::reference::linear::{occlusion, relief};
+use crate::surface::relief::reference::quadtree::quadtree;
+use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
+
+/// A height map with what accelerates a method.
+#[derive(Debug, Clone)]
+pub struct Surface<'a> {
+    /// The heights.
+    pub map: &'a HeightMap,
+    /// The address mode that its maps were made for, and that it is traced with.
+    pub address: Address,
+    /// Its pyramid, for [`Method::Quadtree`]; else empty.
+    pub pyramid: Vec<f32>,
+    /// Its cones, for [`Method::Cone`]; else empty.
+    pub cones: Vec<[f32; 2]>,
+}
+
+impl<'a> Surface<'a> {
+    /// Makes the maps that `method` needs.
+    pub fn new(map: &'a HeightMap, method: Method, address: Address) -> Self {
+        let pyramid = match method {
+            Method::Quadtree | Method::Cone => height_pyramid(map, address),
+            _ => Vec::new(),
+        };
+        let cones = if method == Method::Cone { cone_map(map, &pyramid, address) } else { Vec::new() };
+        Self { map, address, pyramid, cones }
+    }
+
+    /// Where a ray meets the surface, as `method` finds it, in the surface's own address mode.
+    pub fn trace(&self, method: Method, ray: &Ray, march: &March) -> Hit {
+        if ray.cosine.is_nan() || ray.cosine <= 0.0 {
+            return Hit::of(ray, ray.polygon, 0, Outcome::Miss);
+        }
+        let march = &March { address: self.address, ..*march };
+        match method {
+            Method::Plain => plain(ray),
+            Method::Parallax => parallax(self.map, ray, march),
+            Method::ParallaxLimited => parallax_limited(self.map, ray, march),
+            Method::Relief => relief(self.map, ray, march),
+            Method::Occlusion => occlusion(self.map, ray, march),
+            Method::Cone => cone(self.map, &self.cones, ray, march),
+            Method::Quadtree => quadtree(self.map, &self.pyramid, ray, march),
+        }
+    }
+
+    /// [`Surface::trace`] for a list of rays, on all threads.
+    pub fn trace_all(&self, method: Method, rays: &[Ray], march: &March) -> Vec<Hit> {
+        rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
+    }
+}

@@ -1,0 +1,30 @@
+//! Tangent frames.
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::surface::tangent::reference::tangents;
+use crate::surface::tangent::verify::torus;
+use crate::surface::tangent::{TangentBuffers, TangentPass};
+use crate::terrain::bench::copy_of;
+
+/// A torus of half a million triangles. A vertex has 32 bytes and two triangles (24), and six corners (24 and an
+/// offset of 4) that meet there; its tangent has 16.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let torus = torus(512, 512);
+    let vertices = torus.positions.len();
+    let mesh = TangentBuffers::new(gpu, &torus.mesh())?;
+    let output = Buffer::new(gpu, "tangents", vertices)?;
+    let job = TangentPass::new(gpu)?.prepare(gpu, &mesh, &output)?;
+    let copied = copy_of(gpu, vertices * 100 / 8)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || drop(std::hint::black_box(tangents(&torus.mesh())))),
+    ];
+    bench.case("512x512 torus", (vertices, "vertex"), 100 * vertices as u64, contenders)
+}

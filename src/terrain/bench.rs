@@ -1,0 +1,21 @@
+//! Benchmarks of `kernels/terrain/`.
+
+use crate::Error;
+use crate::baseline::copy::CopyPass;
+use crate::gpu::{Buffer, Gpu, Job};
+use crate::terrain::verify::random_heights;
+
+/// A copy of `words` words, rounded up to a vector, as a baseline.
+pub(crate) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
+    let words = words.next_multiple_of(4);
+    let (source, destination) =
+        (Buffer::new(gpu, "copy source", words)?, Buffer::new(gpu, "copy destination", words)?);
+    CopyPass::new(gpu)?.prepare(gpu, words, &source, &destination)
+}
+
+/// Plausible heights of a batch.
+pub(crate) fn some_heights(points: usize) -> Vec<i32> {
+    // A pattern is repeated: drawing millions of heights one by one takes longer than the benchmark.
+    let pattern = random_heights(1, 4096, 1 << 22);
+    pattern.into_iter().cycle().take(points).collect()
+}

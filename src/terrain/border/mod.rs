@@ -1,0 +1,58 @@
+//! B's transition area (section 3.3.1; spec section 1.2, `blend`): along a border shared with a patch that
+//! already exists, a patch's samples move towards that patch's.
+//!
+//! The shared border takes the neighbour's heights exactly where only one neighbour reaches. Near a point
+//! where four patches meet, the top or bottom transition runs after the left or right one, so the vertical
+//! border is no longer exactly the neighbour's there: `seamless` has no such places.
+
+use crate::InputError;
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+#[cfg(feature = "gpu")]
+mod visits;
+
+#[cfg(feature = "gpu")]
+pub use pass::BorderPass;
+
+/// Indices of the patches left, right, above (y − 1) and below that exist before a patch.
+pub type Neighbours = [Option<usize>; 4];
+
+/// The neighbours of each patch that stand before it in `patches`.
+pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
+    let mut known = std::collections::HashMap::new();
+    let mut all = Vec::with_capacity(patches.len());
+    for (index, &[x, y]) in patches.iter().enumerate() {
+        let at = |dx: i32, dy: i32| known.get(&[x.wrapping_add(dx), y.wrapping_add(dy)]).copied();
+        all.push([at(-1, 0), at(1, 0), at(0, -1), at(0, 1)]);
+        known.insert([x, y], index);
+    }
+    all
+}
+
+/// Groups patches so that each stands after the neighbours it depends on; patches of a group are
+/// independent.
+///
+/// # Errors
+/// [`InputError`] when a patch does not stand after its neighbours.
+pub fn waves(neighbours: &[Neighbours]) -> Result<Vec<Vec<u32>>, InputError> {
+    let mut wave_of = vec![0; neighbours.len()];
+    let mut waves: Vec<Vec<u32>> = Vec::new();
+    for (index, around) in neighbours.iter().enumerate() {
+        for neighbour in around.iter().flatten() {
+            if *neighbour >= index {
+                let bound = format!("must be below {index}: a patch blends towards earlier ones");
+                return Err(InputError::new("neighbour", neighbour, bound));
+            }
+            wave_of[index] = wave_of[index].max(wave_of[*neighbour] + 1);
+        }
+        waves.resize_with(waves.len().max(wave_of[index] + 1), Vec::new);
+        waves[wave_of[index]].push(index as u32);
+    }
+    Ok(waves)
+}

@@ -1,0 +1,78 @@
+//! Parity of `kernels/terrain/despike.wgsl`.
+
+use crate::Error;
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+use crate::terrain::despike::reference::despike;
+use crate::terrain::despike::{Despike, DespikePass};
+use crate::terrain::features::FeatureIndex;
+use crate::terrain::fields::Fields;
+use crate::terrain::verify::{LIMIT, random_heights, random_words};
+
+/// Thresholds from 0 up, widths around workgroup boundaries, with and without features.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for with_features in [false, true] {
+        let pass = DespikePass::new(cases.gpu, with_features)?;
+        for (case, (width, count)) in
+            [(3, 1), (5, 3), (34, 2), (65, 5), (66, 4), (67, 3), (131, 2)].into_iter().enumerate()
+        {
+            for threshold in [0.0, 0.5, 300.0, 16383.0] {
+                check(
+                    cases,
+                    &pass,
+                    with_features.then_some(case as u32),
+                    Despike { threshold },
+                    [width, count],
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check(
+    cases: &mut Cases<'_>,
+    pass: &DespikePass,
+    features: Option<u32>,
+    params: Despike,
+    [width, count]: [u32; 2],
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let (edge, points) = (width as usize, (width * width) as usize);
+    let limit = if params.threshold > 1.0 { LIMIT } else { 1 << 17 };
+    let heights = random_heights(width, points * count as usize, limit);
+    let windows = Fields::new(gpu, "windows", width, count)?;
+    windows.heights.write(gpu, &heights)?;
+    let output = Poisoned::new(gpu, (edge - 2).pow(2) * count as usize)?;
+    let cropped = Fields { heights: output.buffer.clone(), width: width - 2, count };
+    // A third of all points, rim included.
+    let marks: Vec<Vec<bool>> = (0..count)
+        .map(|window| {
+            let words = features.map_or(vec![1; points], |case| random_words(case ^ window, points));
+            words.into_iter().map(|word| word.is_multiple_of(3)).collect()
+        })
+        .collect();
+    let index = FeatureIndex::new(gpu, &[width], count, features.map_or(0, |_| points * count as usize))?;
+    index.write(gpu, count, |_, window| {
+        let marked = marks[window as usize].iter().enumerate().filter(|(_, marked)| **marked);
+        marked.map(|(at, _)| (at as u32 % width + 1, at as u32 / width + 1, 7)).collect()
+    })?;
+    let job = pass.prepare(gpu, params, &windows, &index, &cropped)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let expected: Vec<i32> = (heights.chunks_exact(points).zip(&marks))
+        .flat_map(|(window, marks)| {
+            despike(window, edge, params.fixed_threshold(), |x, y| marks[y * edge + x])
+        })
+        .collect();
+    let name = format!(
+        "{width}×{width} × {count}, threshold {}{}",
+        params.threshold,
+        features.map_or("", |_| ", a third injected")
+    );
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    Ok(())
+}

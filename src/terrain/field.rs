@@ -1,0 +1,102 @@
+//! Whole fields on the CPU: the twins in the order of a recipe.
+
+use rayon::prelude::*;
+
+use super::{border, despike, height, pad, thermal, wrap};
+use crate::InputError;
+use crate::terrain::border::neighbours;
+use crate::terrain::config::{Border, Config};
+use crate::terrain::features::Features;
+use crate::terrain::height::Window;
+use crate::terrain::pad::surrounds;
+use crate::terrain::recipe::Recipe;
+
+/// The final heights of `patches`, each with `margin` samples around it: rows of patchSize + 2·margin.
+/// Patches are made in parallel on rayon's threads.
+///
+/// # Errors
+/// [`InputError`] as [`Recipe::validate`].
+pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<Vec<i32>>, InputError> {
+    field_with(recipe, patches, margin, &|| ())
+}
+
+/// [`field`]; `progress` hears of every patch that is done, on whichever thread made it.
+///
+/// # Errors
+/// [`InputError`] as [`Recipe::validate`].
+pub fn field_with(
+    recipe: &Recipe,
+    patches: &[[i32; 2]],
+    margin: u32,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Vec<Vec<i32>>, InputError> {
+    recipe.validate(patches, margin)?;
+    let reach = recipe.reach(margin);
+    let (config, features) = (&recipe.config, &recipe.features);
+    let width = (config.patch_size + 2 * reach) as usize;
+    let finished = |window: Vec<i32>, injected: &[(u32, u32)]| {
+        let field = finish(recipe, width, injected, window);
+        progress();
+        field
+    };
+    let injected = recipe.injected(patches, reach);
+    // The patches of `blend` depend on each other; the others are made one by one from start to end.
+    if let Border::Blend(_) = config.border {
+        let windows = generate(config, features, patches, reach);
+        return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
+    }
+    let made = |(patch, at): (&[i32; 2], &Vec<_>)| {
+        let window = generate(config, features, std::slice::from_ref(patch), reach).swap_remove(0);
+        finished(window, at)
+    };
+    Ok(patches.par_iter().zip(&injected).map(made).collect())
+}
+
+/// The windows of `patches` before despiking and erosion.
+pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<i32>> {
+    if config.border == Border::Seamless {
+        let window =
+            |patch: &[i32; 2]| height::reference::height(config, features, Window { patch: *patch, reach });
+        return patches.par_iter().map(window).collect();
+    }
+    let mut fields: Vec<_> =
+        patches.par_iter().map(|patch| wrap::reference::wrap(config, features, *patch)).collect();
+    let size = config.patch_size as usize;
+    if let Border::Blend(width) = config.border {
+        for (index, around) in neighbours(patches).into_iter().enumerate() {
+            let (earlier, rest) = fields.split_at_mut(index);
+            let around = around.map(|neighbour| neighbour.map(|index| earlier[index].as_slice()));
+            border::reference::border(&mut rest[0], size, width, around);
+        }
+    }
+    (surrounds(config, patches).into_par_iter())
+        .map(|around| {
+            pad::reference::pad(
+                size,
+                reach as usize,
+                around.map(|tile| tile.map(|index| fields[index].as_slice())),
+            )
+        })
+        .collect()
+}
+
+/// Despikes and erodes a window; `injected` are (column, row) of its features, sorted by row.
+fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window: Vec<i32>) -> Vec<i32> {
+    if let Some(despike) = recipe.despike {
+        window = despike::reference::despike(&window, width, despike.fixed_threshold(), |x, y| {
+            injected.binary_search_by_key(&(y as u32, x as u32), |(column, row)| (*row, *column)).is_ok()
+        });
+        width -= 2;
+    }
+    if let Some(thermal) = recipe.thermal {
+        for _ in 0..thermal.iterations {
+            window = thermal::reference::thermal(
+                &window,
+                width,
+                thermal.fixed_threshold(recipe.config.terrain_scale),
+            );
+            width -= 2;
+        }
+    }
+    window
+}

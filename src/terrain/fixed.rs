@@ -1,0 +1,66 @@
+//! Exact arithmetic of heights: twin of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
+
+use crate::hash::{LANES, threefry2x32};
+use crate::terrain::config::{Config, Offset};
+use crate::terrain::features::FeatureMode;
+
+/// The mean of four, rounded half up.
+#[inline(always)]
+pub fn mean_of_four(a: i32, b: i32, c: i32, d: i32) -> i32 {
+    (a >> 2) + (b >> 2) + (c >> 2) + (d >> 2) + (((a & 3) + (b & 3) + (c & 3) + (d & 3) + 2) >> 2)
+}
+
+/// The high word of the 64-bit product.
+#[inline(always)]
+pub fn multiply_high(a: u32, b: u32) -> u32 {
+    ((u64::from(a) * u64::from(b)) >> 32) as u32
+}
+
+/// Random offsets of one seed and distribution.
+#[derive(Debug, Clone, Copy)]
+pub struct Draw {
+    key: [u32; 2],
+    offset: Offset,
+}
+
+impl Draw {
+    /// Those of a configuration.
+    pub fn new(config: &Config) -> Self {
+        Self { key: config.key(), offset: config.offset }
+    }
+
+    /// Adds to `heights[i]` the offset of the point (x + i·step, y), in world coordinates.
+    pub fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
+        for (chunk, row) in heights.chunks_mut(LANES).enumerate() {
+            let start = x.wrapping_add(step.wrapping_mul((chunk * LANES) as u32));
+            let columns = std::array::from_fn(|lane| start.wrapping_add(step.wrapping_mul(lane as u32)));
+            let (first, second) = threefry2x32(self.key, columns, [y; LANES]);
+            let offsets: [i32; LANES] =
+                std::array::from_fn(|lane| self.offset_of(range, first[lane], second[lane]));
+            for (height, offset) in row.iter_mut().zip(offsets) {
+                *height += offset;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn offset_of(&self, range: u32, first: u32, second: u32) -> i32 {
+        let uniform = match self.offset {
+            Offset::Positive => return multiply_high(first, range) as i32,
+            Offset::Signed => first,
+            Offset::Gaussian => {
+                let sum = (first & 0xffff) + (first >> 16) + (second & 0xffff) + (second >> 16);
+                (sum << 14) + 0x8000
+            }
+        };
+        multiply_high(uniform, 2 * range) as i32 - range as i32
+    }
+}
+
+/// Injects a feature into a computed height.
+pub fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
+    match mode {
+        FeatureMode::Keep => feature,
+        FeatureMode::Additive => computed + feature,
+    }
+}

@@ -1,0 +1,160 @@
+//! Heights of a window onto the plane: twin of `kernels/terrain/height.wgsl`. Rows of coarse points are
+//! streamed as in the kernel; what a thread does there for four cells is done here for a whole row.
+
+use crate::terrain::config::Config;
+use crate::terrain::features::{Features, Lattice};
+use crate::terrain::fixed::{Draw, inject, mean_of_four};
+use crate::terrain::height::{Span, Window};
+
+/// The heights of a window, rows of `window.width(config)` samples. The window must be valid.
+pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> {
+    let levels = window.levels(config);
+    let draw = Draw::new(config);
+    let base_spacing = config.sample_spacing() << config.levels();
+    let mut grid = base_lattice(config, features, &draw, levels[0], base_spacing);
+    for (level, pair) in levels.windows(2).enumerate() {
+        let lattice = Fine {
+            features,
+            draw: &draw,
+            spans: pair[1],
+            spacing: base_spacing >> (level + 1),
+            range: config.level_range(level as u32),
+            injected: Injected::new(features, pair[1], base_spacing >> (level + 1), true),
+        };
+        grid = lattice.subdivide(&grid, pair[0]);
+    }
+    grid
+}
+
+fn base_lattice(
+    config: &Config,
+    features: &Features,
+    draw: &Draw,
+    spans: [Span; 2],
+    spacing: i64,
+) -> Vec<i32> {
+    let injected = Injected::new(features, spans, spacing, false);
+    let width = spans[0].width();
+    let mut grid = vec![0; width * spans[1].width()];
+    for (row, heights) in grid.chunks_exact_mut(width).enumerate() {
+        let y = spans[1].first + row as i64;
+        draw.add_row(
+            heights,
+            config.level_range(0),
+            world(spans[0].first, spacing),
+            spacing as u32,
+            world(y, spacing),
+        );
+        injected.inject_row(features, y, spans[0].first, 1, heights);
+    }
+    grid
+}
+
+fn world(index: i64, spacing: i64) -> u32 {
+    (index * spacing) as u32
+}
+
+/// Features of one level, found by row.
+struct Injected {
+    points: Vec<(u32, u32, i32)>,
+    origin: [i64; 2],
+}
+
+impl Injected {
+    // One point more than the window on every side: a diamond on the rim sees features too.
+    fn new(features: &Features, spans: [Span; 2], spacing: i64, new_only: bool) -> Self {
+        let origin = [spans[0].first - 1, spans[1].first - 1];
+        let width = spans[0].width().max(spans[1].width()) as u32 + 2;
+        let lattice = Lattice { origin: origin.map(|index| index * spacing), width, spacing };
+        Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
+    }
+
+    /// Injects into `heights[i]`, the point (x + i·step, y) in units of the lattice.
+    fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
+        let row = (y - self.origin[1]) as u32;
+        let start = self.points.partition_point(|point| point.1 < row);
+        for &(column, _, height) in self.points[start..].iter().take_while(|point| point.1 == row) {
+            let distance = i64::from(column) + self.origin[0] - x;
+            if distance.rem_euclid(step) == 0
+                && let Some(computed) = usize::try_from(distance / step).ok().and_then(|i| heights.get_mut(i))
+            {
+                *computed = inject(features.mode, *computed, height);
+            }
+        }
+    }
+}
+
+/// The finer lattice of one subdivision.
+struct Fine<'a> {
+    features: &'a Features,
+    draw: &'a Draw,
+    spans: [Span; 2],
+    spacing: i64,
+    range: u32,
+    injected: Injected,
+}
+
+impl Fine<'_> {
+    fn subdivide(&self, coarse: &[i32], coarse_spans: [Span; 2]) -> Vec<i32> {
+        let coarse_width = coarse_spans[0].width();
+        let coarse_row = |y: i64| {
+            let start = (y - coarse_spans[1].first) as usize * coarse_width;
+            &coarse[start..start + coarse_width]
+        };
+        let width = self.spans[0].width();
+        let mut fine = vec![0; width * self.spans[1].width()];
+        let mut upper = vec![0; coarse_width - 1];
+        let mut lower = upper.clone();
+        let mut between = upper.clone();
+        let mut beside = upper.clone();
+        let x = coarse_spans[0].first;
+        // The first row of squares lies outside the window and has no upper diamonds; it is not stored.
+        for y in coarse_spans[1].first..coarse_spans[1].last {
+            let (here, below) = (coarse_row(y), coarse_row(y + 1));
+            self.diamonds(here, below, x, y, &mut lower);
+            for (i, point) in between.iter_mut().enumerate() {
+                *point = mean_of_four(here[i], here[i + 1], upper[i], lower[i]);
+            }
+            self.draw_row(&mut between, 2 * x + 1, 2 * y);
+            for (i, point) in beside[1..].iter_mut().enumerate() {
+                *point = mean_of_four(here[i + 1], below[i + 1], lower[i], lower[i + 1]);
+            }
+            self.draw_row(&mut beside[1..], 2 * x + 2, 2 * y + 1);
+            self.store_row(&mut fine, 2 * y, 2 * x, here, &between);
+            self.store_row(&mut fine, 2 * y + 1, 2 * x, &beside, &lower);
+            std::mem::swap(&mut upper, &mut lower);
+        }
+        fine
+    }
+
+    /// The centres of the cells between two coarse rows; the first cell starts at coarse point (x, y).
+    fn diamonds(&self, above: &[i32], below: &[i32], x: i64, y: i64, centres: &mut [i32]) {
+        for (i, centre) in centres.iter_mut().enumerate() {
+            *centre = mean_of_four(above[i], above[i + 1], below[i], below[i + 1]);
+        }
+        self.draw_row(centres, 2 * x + 1, 2 * y + 1);
+    }
+
+    /// Adds offsets to points (x, y), (x + 2, y), … and injects features.
+    fn draw_row(&self, heights: &mut [i32], x: i64, y: i64) {
+        let step = 2 * self.spacing as u32;
+        self.draw.add_row(heights, self.range, world(x, self.spacing), step, world(y, self.spacing));
+        self.injected.inject_row(self.features, y, x, 2, heights);
+    }
+
+    /// Stores what lies in the window of `even` and `odd` points in turn, which start at (x, y).
+    fn store_row(&self, fine: &mut [i32], y: i64, x: i64, even: &[i32], odd: &[i32]) {
+        if !(self.spans[1].first..=self.spans[1].last).contains(&y) {
+            return;
+        }
+        let width = self.spans[0].width();
+        let row = &mut fine[(y - self.spans[1].first) as usize * width..][..width];
+        let skip = (self.spans[0].first - x) as usize;
+        let even_first = skip.is_multiple_of(2);
+        let (mut evens, mut odds) = (even[skip.div_ceil(2)..].iter(), odd[skip / 2..].iter());
+        for (i, height) in row.iter_mut().enumerate() {
+            let source = if (i % 2 == 0) == even_first { evens.next() } else { odds.next() };
+            *height = source.copied().unwrap_or_default();
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Parity of `kernels/terrain/height.wgsl`.
+
+use serde_json::json;
+
+use crate::Error;
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+use crate::terrain::config::{Config, Offset};
+use crate::terrain::features::{FeatureFile, FeatureMode, Features};
+use crate::terrain::height::reference::height;
+use crate::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch, Window};
+use crate::terrain::verify::{config, scattered};
+
+/// Every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
+/// sizes.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for offset in ["signed", "positive", "gaussian"] {
+        let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
+        let pass = HeightPass::new(cases.gpu, code, None)?;
+        for exponent in 1..=12 {
+            // The largest sizes once: time goes into variety.
+            let levels =
+                if exponent <= 8 { 0..=8 } else { 0..=u32::from(offset == "signed" && exponent <= 10) };
+            for coarse_levels in levels.filter(|_| exponent <= 11 || offset == "signed") {
+                let config = config(&json!({
+                    "patchSize": (1 << exponent) + 1, "scaleFactor": 40.0, "seed": format!("{offset}{exponent}"),
+                    "offset": offset, "coarseLevels": coarse_levels, "roughness": 0.9,
+                }))?;
+                let odd = coarse_levels as i32 * 3 - 7;
+                check(cases, &pass, &config, &Features::default(), &[[odd, 5 - odd]], 0)?;
+            }
+        }
+    }
+    windows_and_batches(cases)?;
+    with_features(cases)?;
+    large(cases)?;
+    block_sizes(cases)
+}
+
+/// Large patches with what small ones are tested with: coarse levels, reach, neighbours, features.
+fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for (size, coarse_levels, reach, offset, mode) in [
+        (513, 8, 3, Offset::Gaussian, None),
+        (1025, 4, 17, Offset::Positive, None),
+        (1025, 8, 0, Offset::Signed, None),
+        (513, 3, 1, Offset::Positive, Some(FeatureMode::Keep)),
+        (1025, 1, 0, Offset::Signed, Some(FeatureMode::Additive)),
+        (1025, 6, 5, Offset::Gaussian, Some(FeatureMode::Keep)),
+        (2049, 0, 2, Offset::Signed, Some(FeatureMode::Keep)),
+    ] {
+        let pass = HeightPass::new(cases.gpu, offset, mode)?;
+        let config = Config { coarse_levels, offset, ..Config::new(size, 40.0, "large")? };
+        let features = match mode {
+            Some(mode) => scattered(&config, [2, -3], mode, size + coarse_levels)?,
+            None => Features::default(),
+        };
+        let patches = if size < 2000 { &[[2, -3], [3, -4]][..] } else { &[[3, -3]] };
+        check(cases, &pass, &config, &features, patches, reach)?;
+    }
+    Ok(())
+}
+
+fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let pass = HeightPass::new(cases.gpu, Offset::Signed, None)?;
+    for (size, coarse_levels, reach) in
+        [(3, 0, 1), (5, 1, 2), (17, 2, 3), (33, 3, 40), (65, 8, 7), (129, 0, 64), (257, 0, 1)]
+    {
+        let config = config(&json!({
+            "patchSize": size, "scaleFactor": 12.5, "seed": "windows", "coarseLevels": coarse_levels,
+        }))?;
+        let patches: Vec<_> = (0..7).map(|i| [3 * i - 10, -i * i]).collect();
+        check(cases, &pass, &config, &Features::default(), &patches, reach)?;
+    }
+    // The last patches whose world coordinates fit.
+    let config = config(&json!({"patchSize": 9, "scaleFactor": 40.0, "seed": "far"}))?;
+    let far = [[524_285, -524_287], [-524_287, 524_285]];
+    check(cases, &pass, &config, &Features::default(), &far, 0)
+}
+
+fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for mode in [FeatureMode::Keep, FeatureMode::Additive] {
+        let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(mode))?;
+        for (case, (size, coarse_levels, reach)) in
+            [(3, 0, 0), (5, 0, 1), (17, 1, 0), (33, 0, 0), (33, 2, 5), (129, 0, 3), (257, 0, 0)]
+                .into_iter()
+                .enumerate()
+        {
+            let config = config(&json!({
+                "patchSize": size, "scaleFactor": 40.0, "seed": "features", "coarseLevels": coarse_levels,
+            }))?;
+            let features = scattered(&config, [2, -3], mode, case as u32)?;
+            let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [9, 9]];
+            check(cases, &pass, &config, &features, &patches, reach)?;
+        }
+    }
+    // Every point of a patch, whose windows end anywhere in a word.
+    let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(FeatureMode::Additive))?;
+    for (size, reach) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
+        let config = config(&json!({"patchSize": size, "scaleFactor": 4.0, "seed": "dense"}))?;
+        let points =
+            (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
+        let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: points.collect() };
+        let features = Features::new(&config, &[file], FeatureMode::Additive)?;
+        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], reach)?;
+    }
+    Ok(())
+}
+
+fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let one = [1, 2, 3, 4, 8, 16, 64].map(|cell_rows| Blocks { cell_rows, levels: 1 });
+    let two = [1, 3, 17].map(|cell_rows| Blocks { cell_rows, levels: 2 });
+    // SwiftShader's compiler takes gigabytes for two levels.
+    let two = if cases.gpu.adapter().name.contains("SwiftShader") { &two[..0] } else { &two };
+    for &blocks in one.iter().chain(two) {
+        let pass = HeightPass::with_blocks(cases.gpu, Offset::Signed, None, blocks)?;
+        for size in [3, 9, 33, 129] {
+            let config =
+                config(&json!({"patchSize": size, "scaleFactor": 1.0, "seed": format!("{blocks:?}")}))?;
+            check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1)?;
+        }
+    }
+    Ok(())
+}
+
+fn check(
+    cases: &mut Cases<'_>,
+    pass: &HeightPass,
+    config: &Config,
+    features: &Features,
+    patches: &[[i32; 2]],
+    reach: u32,
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let count = patches.len() as u32;
+    let output = Poisoned::new(gpu, HeightJob::output_points(config, count, reach))?;
+    let scratch = HeightScratch::new(gpu, pass, config, count, reach)?;
+    let capacity = features.len() * patches.len();
+    let job = pass.prepare(gpu, config, [count, reach], capacity, &output.buffer, &scratch)?;
+    job.set(gpu, patches, features)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let expected: Vec<i32> =
+        patches.iter().flat_map(|&patch| height(config, features, Window { patch, reach })).collect();
+    let name = format!(
+        "{size}×{size} {offset:?} k={k} reach {reach} × {count} at {at:?}{features}",
+        size = config.patch_size,
+        offset = config.offset,
+        k = config.coarse_levels,
+        at = patches[0],
+        features = features
+            .injection()
+            .map_or(String::new(), |mode| format!(" {mode:?} {} features", features.len())),
+    );
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! A blend of two fields.
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::{copy_of, some_heights};
+use crate::terrain::morph::reference::morph;
+use crate::terrain::morph::{Morph, MorphPass};
+
+/// As many points as a batch of 64 × 257².
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let points = 64 * 257 * 257;
+    let (from, to) = (some_heights(points), some_heights(points));
+    let buffers = [Buffer::from_slice(gpu, "from", &from)?, Buffer::from_slice(gpu, "to", &to)?];
+    let heights = Buffer::new(gpu, "heights", points)?;
+    let job = MorphPass::new(gpu)?.prepare(gpu, &buffers[0], &buffers[1], &heights)?;
+    let params = Morph { time: 0.3 };
+    job.set(gpu, params)?;
+    // Two words in and one out: one and a half copies.
+    let copied = copy_of(gpu, points * 3 / 2)?;
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || drop(std::hint::black_box(morph(&from, &to, params.fixed_time())))),
+    ];
+    bench.case("257x257 batch 64", (points, "point"), 12 * points as u64, contenders)
+}

@@ -1,0 +1,36 @@
+//! Slopes and unit normals.
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::{copy_of, some_heights};
+use crate::terrain::fields::Fields;
+use crate::terrain::normals::NormalsPass;
+use crate::terrain::normals::reference::normals;
+
+/// A batch of 64: 4 bytes in, 20 out a point.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let (width, count) = (259_u32, 64);
+    let host = some_heights((width * width * count) as usize);
+    let windows = Fields::new(gpu, "windows", width, count)?;
+    windows.heights.write(gpu, &host)?;
+    let points = (width as usize - 2).pow(2) * count as usize;
+    let (slopes, units) = (Buffer::new(gpu, "slopes", points)?, Buffer::new(gpu, "normals", 3 * points)?);
+    let job = NormalsPass::new(gpu)?.prepare(gpu, 1.0, &windows, &slopes, &units)?;
+    // Half of the bytes read, half written.
+    let copied = copy_of(gpu, 3 * points)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || {
+            for window in host.chunks_exact((width * width) as usize) {
+                drop(std::hint::black_box(normals(window, width as usize, 1.0)));
+            }
+        }),
+    ];
+    bench.case("257x257 batch 64", (points, "point"), 24 * points as u64, contenders)
+}

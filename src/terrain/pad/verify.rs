@@ -1,0 +1,65 @@
+//! Parity of `kernels/terrain/pad.wgsl`.
+
+use serde_json::json;
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+use crate::terrain::fields::Fields;
+use crate::terrain::pad::reference::pad;
+use crate::terrain::pad::{PadPass, surrounds};
+use crate::terrain::verify::{LIMIT, config, random_heights};
+
+/// Wrapping patches, whole grids and grids with holes, every reach up to the patch's edge, patches in one buffer and in
+/// several.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let pass = PadPass::new(cases.gpu)?;
+    let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3, i / 3 - 2]).collect();
+    let holes = vec![[0, 0], [1, 0], [2, 1], [0, 2], [1, 1]];
+    for border in [json!("wrap"), json!({"blend": 1})] {
+        for (patches, most) in [(&grid, 9), (&grid, 2), (&holes, 5), (&holes, 2)] {
+            for shape in [[3, 0], [3, 2], [5, 4], [33, 1], [33, 32], [65, 9]] {
+                case(cases, &pass, &border, (patches, most), shape)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Patches with at most so many to a buffer.
+fn case(
+    cases: &mut Cases<'_>,
+    pass: &PadPass,
+    border: &serde_json::Value,
+    (patches, most): (&[[i32; 2]], usize),
+    [size, reach]: [u32; 2],
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let config = config(&json!({"patchSize": size, "scaleFactor": 1.0, "seed": "", "border": border}))?;
+    let points = (size * size) as usize;
+    let heights = random_heights(size + reach, points * patches.len(), LIMIT);
+    let around = surrounds(&config, patches);
+    let mut parts = Vec::new();
+    for part in heights.chunks(most * points) {
+        let count = (part.len() / points) as u32;
+        parts.push(Fields { heights: Buffer::from_slice(gpu, "patches", part)?, width: size, count });
+    }
+    let output = Poisoned::new(gpu, patches.len() * ((size + 2 * reach) as usize).pow(2))?;
+    let job = pass.prepare(gpu, reach, &around, &parts, &output.buffer)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let field = |index: usize| &heights[index * points..(index + 1) * points];
+    let expected: Vec<i32> = (around.iter())
+        .flat_map(|around| pad(size as usize, reach as usize, around.map(|tile| tile.map(field))))
+        .collect();
+    let mut name = format!("{size}×{size} × {} patches, {border}, reach {reach}", patches.len());
+    if parts.len() > 1 {
+        name += &format!(", {} buffers", parts.len());
+    }
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! Thermal erosion: slopes steeper than the talus angle slide (spec section 1.3).
+
+use crate::InputError;
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::ThermalPass;
+
+/// Every iteration moves, between each pair of 4-neighbours whose heights differ by more than the talus
+/// allows, an eighth of the excess downhill. Conserves mass to the last bit; reaches one sample an
+/// iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thermal {
+    /// Iterations, at most 1024.
+    pub iterations: u32,
+    /// The steepest stable slope, in degrees: 0 to 89. Default 35.
+    pub talus: f64,
+}
+
+impl Default for Thermal {
+    fn default() -> Self {
+        Self { iterations: 1, talus: 35.0 }
+    }
+}
+
+impl Thermal {
+    /// Checks iterations and angle.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `thermal` or `talus`.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if self.iterations > 1024 {
+            return Err(InputError::new("thermal", self.iterations, "must be at most 1024 iterations"));
+        }
+        finite("talus", self.talus, 0.0, 89.0)
+    }
+
+    /// T: the stable difference between neighbours `terrain_scale` apart, in 1/65536 units.
+    pub fn fixed_threshold(&self, terrain_scale: f64) -> i32 {
+        let difference = libm::tan(self.talus.to_radians()) * terrain_scale * HEIGHT_ONE;
+        // No two heights differ by more than twice the limit.
+        difference.round_ties_even().min(2.0 * HEIGHT_LIMIT as f64) as i32
+    }
+}

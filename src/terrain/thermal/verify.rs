@@ -1,0 +1,48 @@
+//! Parity of `kernels/terrain/thermal.wgsl`.
+
+use crate::Error;
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+use crate::terrain::fields::Fields;
+use crate::terrain::thermal::reference::thermal;
+use crate::terrain::thermal::{Thermal, ThermalPass};
+use crate::terrain::verify::{LIMIT, random_heights};
+
+/// Odd and even numbers of iterations, angles from 0 up, heights at the limit.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = ThermalPass::new(gpu)?;
+    for (width, count) in [(3, 2), (23, 3), (66, 5), (130, 2)] {
+        for iterations in [1, 2, 5, 10].into_iter().filter(|iterations| 2 * iterations < width) {
+            for (talus, limit) in [(0.0, LIMIT / 2), (35.0, 1 << 20), (89.0, LIMIT / 2)] {
+                let params = Thermal { iterations, talus };
+                let mut fields = random_heights(width, (width * width * count) as usize, limit);
+                let outputs = [Poisoned::new(gpu, fields.len())?, Poisoned::new(gpu, fields.len())?];
+                let [windows, other] =
+                    [0, 1].map(|i| Fields { heights: outputs[i].buffer.clone(), width, count });
+                windows.heights.write(gpu, &fields)?;
+                let job = pass.prepare(gpu, params, 1.0, &windows, &other)?;
+                gpu.run("verify", |encoder| job.record(encoder))?;
+                let mut edge = width as usize;
+                for _ in 0..iterations {
+                    let windows = fields.chunks_exact(edge * edge);
+                    fields = windows
+                        .flat_map(|window| thermal(window, edge, params.fixed_threshold(1.0)))
+                        .collect();
+                    edge -= 2;
+                }
+                let result = &outputs[iterations as usize % 2];
+                let comparison = result.check(gpu, |actual| exact(&actual[..fields.len()], &fields))?;
+                cases.add(
+                    format!("{width}×{width} × {count}, {iterations} iterations, talus {talus}°"),
+                    comparison,
+                );
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! Parity of `kernels/terrain/`.
+
+use crate::hash::threefry2x32;
+use crate::terrain::config::{Config, HEIGHT_LIMIT};
+use crate::terrain::features::{FeatureFile, FeatureMode, Features};
+use crate::{Error, InputError};
+
+/// Random words of a test case, the same on every machine.
+pub fn random_words(case: u32, count: usize) -> Vec<u32> {
+    let first = |index: usize| threefry2x32([case, 0x7e57], [index as u32; 8], [0; 8]).0[0];
+    (0..count).map(first).collect()
+}
+
+/// Random heights up to `limit` in size, ends included now and then.
+pub fn random_heights(case: u32, count: usize, limit: i32) -> Vec<i32> {
+    let span = 2 * i64::from(limit) + 1;
+    let height = |word: u32| match word % 64 {
+        0 => limit,
+        1 => -limit,
+        _ => (((i64::from(word) * span) >> 32) - i64::from(limit)) as i32,
+    };
+    random_words(case, count).into_iter().map(height).collect()
+}
+
+/// The largest height there can be.
+pub const LIMIT: i32 = HEIGHT_LIMIT as i32;
+
+/// Features scattered over the 3×3 patches around `patch`, edges and corners included.
+///
+/// # Errors
+/// [`InputError`] never, for valid configurations.
+pub fn scattered(
+    config: &Config,
+    patch: [i32; 2],
+    mode: FeatureMode,
+    case: u32,
+) -> Result<Features, InputError> {
+    let last = config.patch_size - 1;
+    let mut files = Vec::new();
+    for tile in 0..9_i32 {
+        let mut heights = Vec::new();
+        for pair in random_words(case * 9 + tile as u32, 24).chunks_exact(2) {
+            // Whole edges of zeros would be refused as second heights of one lattice point.
+            let (x, y) = (1 + pair[0] % last, 1 + pair[1] % last);
+            heights.extend([f64::from(x), f64::from(y), f64::from(x + 3 * y) * 0.125]);
+        }
+        let patch_coordinates = [patch[0] + tile % 3 - 1, patch[1] + tile / 3 - 1];
+        // The same point twice would be drawn with equal heights only by chance of position.
+        files.push(FeatureFile { patch_coordinates, precomputed_heights: heights });
+    }
+    Features::new(config, &files, mode)
+}
+
+/// A configuration from JSON that is known to be valid.
+///
+/// # Errors
+/// [`InputError`] never.
+pub fn config(json: &serde_json::Value) -> Result<Config, Error> {
+    Ok(Config::from_json(&json.to_string())?)
+}

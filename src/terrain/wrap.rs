@@ -1,8 +1,0 @@
-//! Heights of a patch by itself, whose neighbours wrap around (B section 3.3.1; spec section 1.2, `wrap`). A
-//! patch with equal corners tiles with itself bit for bit.
-
-#[cfg(feature = "gpu")]
-mod pass;
-
-#[cfg(feature = "gpu")]
-pub use pass::{WrapJob, WrapPass};

@@ -1,0 +1,38 @@
+//! Generation of patches by themselves.
+
+use rayon::prelude::*;
+
+use crate::Error;
+use crate::gpu::Buffer;
+use crate::harness::{Backend, Bench, Contender};
+use crate::terrain::bench::copy_of;
+use crate::terrain::config::{Border, Config, Offset};
+use crate::terrain::features::Features;
+use crate::terrain::wrap::reference::wrap;
+use crate::terrain::wrap::{WrapJob, WrapPass};
+
+/// A batch of 64.
+///
+/// # Errors
+/// What the device reports.
+pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let (size, count) = (257_u32, 64_u32);
+    let config = Config { border: Border::Wrap, ..Config::new(size, 40.0, "bench")? };
+    let patches: Vec<_> = (0..count as i32).map(|i| [i % 8, i / 8]).collect();
+    let points = (count * size * size) as usize;
+    let output = Buffer::new(gpu, "heights", points)?;
+    let scratch = Buffer::new(gpu, "scratch", WrapJob::scratch_points(&config, count))?;
+    let job = WrapPass::new(gpu, Offset::Signed, None)?.prepare(gpu, &config, count, 0, &output, &scratch)?;
+    let features = Features::default();
+    job.set(gpu, &patches, &features)?;
+    let copied = copy_of(gpu, points)?;
+    let twin = |patch: &[i32; 2]| drop(std::hint::black_box(wrap(&config, &features, *patch)));
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Twin, || patches.iter().for_each(twin)),
+        Contender::host(Backend::TwinParallel, || patches.par_iter().for_each(twin)),
+    ];
+    bench.case(format!("{size}x{size} batch {count}"), (points, "point"), 4 * points as u64, contenders)
+}

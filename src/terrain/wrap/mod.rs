@@ -1,0 +1,13 @@
+//! Heights of a patch by itself, whose neighbours wrap around (B section 3.3.1; spec section 1.2, `wrap`). A
+//! patch with equal corners tiles with itself bit for bit.
+
+#[cfg(feature = "gpu")]
+pub mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "gpu")]
+pub mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::{WrapJob, WrapPass};

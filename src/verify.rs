@@ -1,0 +1,113 @@
+//! Parity: every kernel against its twin, on the adapter at hand. Part of the product, so that a user with a
+//! strange driver finds out (`relievo verify`).
+
+use serde::Serialize;
+
+use crate::Error;
+use crate::gpu::{AdapterSummary, Gpu};
+use crate::harness::compare::Comparison;
+use crate::harness::{CaseResult, Cases};
+use crate::{animation, baseline, skinning, surface, terrain};
+
+/// A kernel's parity cases.
+#[derive(Clone, Copy)]
+pub struct Stem {
+    /// The kernel's path below `kernels/`, without extension.
+    pub name: &'static str,
+    /// Runs its cases.
+    pub run: fn(&mut Cases<'_>) -> Result<(), Error>,
+}
+
+/// Every kernel with its parity cases.
+pub static STEMS: &[Stem] = &[
+    Stem { name: "baseline/copy", run: baseline::copy::verify::cases },
+    Stem { name: "baseline/gather", run: baseline::gather::verify::cases },
+    Stem { name: "baseline/loads", run: baseline::loads::verify::cases },
+    Stem { name: "baseline/words", run: baseline::words::verify::cases },
+    Stem { name: "terrain/height", run: terrain::height::verify::cases },
+    Stem { name: "terrain/wrap", run: terrain::wrap::verify::cases },
+    Stem { name: "terrain/border", run: terrain::border::verify::cases },
+    Stem { name: "terrain/pad", run: terrain::pad::verify::cases },
+    Stem { name: "terrain/despike", run: terrain::despike::verify::cases },
+    Stem { name: "terrain/thermal", run: terrain::thermal::verify::cases },
+    Stem { name: "terrain/normals", run: terrain::normals::verify::cases },
+    Stem { name: "terrain/morph", run: terrain::morph::verify::cases },
+    Stem { name: "terrain/blend", run: terrain::blend::verify::cases },
+    Stem { name: "surface/height_pyramid", run: surface::height_pyramid::verify::cases },
+    Stem { name: "surface/cone_map", run: surface::cone_map::verify::cases },
+    Stem { name: "surface/relief", run: surface::relief::verify::cases },
+    Stem { name: "surface/tangent", run: surface::tangent::verify::cases },
+    Stem { name: "animation/place", run: animation::place::verify::cases },
+    Stem { name: "animation/phase", run: animation::phase::verify::cases },
+    Stem { name: "animation/gate", run: animation::gate::verify::cases },
+    Stem { name: "animation/budget", run: animation::budget::verify::cases },
+    Stem { name: "animation/compact", run: animation::compact::verify::cases },
+    Stem { name: "animation/decide", run: animation::decide::verify::cases },
+    Stem { name: "animation/sample", run: animation::sample::verify::cases },
+    Stem { name: "animation/concat", run: animation::concat::verify::cases },
+    Stem { name: "animation/bounds", run: animation::bounds::verify::cases },
+    Stem { name: "skinning/lod", run: skinning::lod::verify::cases },
+    Stem { name: "skinning/palette", run: skinning::palette::verify::cases },
+    Stem { name: "skinning/morph_weights", run: skinning::morph_weights::verify::cases },
+    Stem { name: "skinning/morph", run: skinning::morph::verify::cases },
+    Stem { name: "skinning/select", run: skinning::select::verify::cases },
+    Stem { name: "skinning/skin", run: skinning::skin::verify::cases },
+];
+
+/// Every case's result on one adapter.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// The adapter.
+    pub adapter: AdapterSummary,
+    /// relievo's version.
+    pub version: &'static str,
+    /// Whether every case holds.
+    pub holds: bool,
+    /// The cases.
+    pub cases: Vec<CaseResult>,
+}
+
+/// Whether `stem` is asked for: `only` is a stem, a part of one, or nothing.
+pub fn selected(stem: &str, only: Option<&str>) -> bool {
+    only.is_none_or(|only| stem.contains(only))
+}
+
+/// Runs the cases of every selected kernel; `progress` hears of each.
+///
+/// # Errors
+/// [`crate::InputError`] when nothing is selected; what the device reports.
+pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&CaseResult)) -> Result<Report, Error> {
+    let chosen: Vec<_> = STEMS.iter().filter(|stem| selected(stem.name, only)).collect();
+    if chosen.is_empty() {
+        let names = STEMS.iter().map(|stem| stem.name).collect::<Vec<_>>().join(", ");
+        return Err(crate::InputError::new(
+            "only",
+            only.unwrap_or(""),
+            format!("must be (part of) one of {names}"),
+        )
+        .into());
+    }
+    run_stems(gpu, chosen, progress)
+}
+
+/// Runs the cases of these kernels. One without any does not hold: nothing was proven.
+///
+/// # Errors
+/// What the device reports.
+pub fn run_stems<'a>(
+    gpu: &Gpu,
+    stems: impl IntoIterator<Item = &'a Stem>,
+    progress: &mut dyn FnMut(&CaseResult),
+) -> Result<Report, Error> {
+    let mut all = Vec::new();
+    for stem in stems {
+        let mut cases = Cases { gpu, stem: stem.name, results: Vec::new(), progress };
+        (stem.run)(&mut cases)?;
+        if cases.results.is_empty() {
+            cases.add("no case", Comparison::failed(0, "the kernel has no parity case".to_owned()));
+        }
+        all.append(&mut cases.results);
+    }
+    let holds = !all.is_empty() && all.iter().all(|result| result.comparison.holds);
+    Ok(Report { adapter: gpu.adapter().clone(), version: env!("CARGO_PKG_VERSION"), holds, cases: all })
+}

@@ -1,6 +1,0 @@
-//! Parity of `kernels/baseline/`.
-
-pub mod copy;
-pub mod gather;
-pub mod loads;
-pub mod words;
