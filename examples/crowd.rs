@@ -6,9 +6,10 @@
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Lens, Lod, creature};
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Lens, Lod};
+use relievo::asset::mesh::reaches;
 use relievo::gpu::{Gpu, Options};
-use relievo::skinning::mesh::reaches;
+use relievo::samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Yours: `Gpu::from_wgpu(device, queue)`.

@@ -52,6 +52,7 @@
 //! ```
 
 pub mod animation;
+pub mod asset;
 #[cfg(feature = "gpu")]
 pub mod baseline;
 #[cfg(feature = "gpu")]
@@ -65,6 +66,7 @@ pub mod hash;
 pub mod mesh;
 #[cfg(feature = "gpu")]
 pub mod render;
+pub mod samples;
 pub mod skinning;
 pub mod srgb;
 pub mod surface;

@@ -1,7 +1,7 @@
 //! Matrices of chosen bones on the host: gameplay needs a hand or a head, not the crowd.
 
 use super::crowd::Crowd;
-use super::transform::Affine;
+use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 

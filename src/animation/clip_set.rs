@@ -3,8 +3,8 @@
 
 use std::collections::HashMap;
 
-use super::clip::Clip;
 use crate::InputError;
+use crate::asset::clip::Clip;
 
 /// A track's timeline when its value never changes.
 pub const CONSTANT: u32 = (1 << 30) - 1;
@@ -207,7 +207,7 @@ impl ClipSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::creature;
+    use crate::samples::creature;
 
     #[test]
     fn tracks_find_their_own_times_and_values() {
@@ -246,7 +246,7 @@ mod tests {
     fn clips_of_other_skeletons_are_refused() {
         assert_eq!(ClipSet::new(&[]).expect_err("refused").field, "clips.len");
         let model = creature().expect("valid");
-        let one = crate::animation::Skeleton::of_joints(model.skeleton.bones()[..1].to_vec()).expect("valid");
+        let one = crate::asset::Skeleton::of_joints(model.skeleton.bones()[..1].to_vec()).expect("valid");
         let other = Clip::new("other", &one, &[Default::default()], 1.0).expect("valid");
         assert_eq!(ClipSet::new(&[&model.clips[0], &other]).expect_err("refused").field, "clips[1].bones");
     }

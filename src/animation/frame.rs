@@ -10,8 +10,8 @@ use super::gate::{Frame, Gating};
 use super::gate_table::GateTable;
 use super::place::{PlaceJob, PlacePass};
 use super::sample::{RotationPath, SampleActiveJob, SamplePass};
-use super::skeleton::Skeleton;
 use crate::Error;
+use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Gpu, compute_pass};
 
 /// Prepared frames: set the time, then record.

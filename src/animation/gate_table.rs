@@ -1,14 +1,14 @@
 //! Tables of gates: what clips tell about their bones, once, at load. Columns are slots of an
 //! [`Order`], rows the common times of each clip, one clip after another, and one more row a clip.
 
-use super::clip::{Clip, Interpolation, Part};
 use super::clip_set::ClipSet;
 use super::concat::{NO_PARENT, Order};
 use super::motion::{BoneMotion, Path, bounding_levers, motions, shares, typical_levers, whole_reaches};
 use super::priority::Priorities;
 use super::sample::RotationPath;
-use super::skeleton::Skeleton;
 use crate::InputError;
+use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::skeleton::Skeleton;
 
 /// The largest sum of motion of a whole clip, in units.
 const MOST_MOTION: f64 = (1 << 30) as f64;

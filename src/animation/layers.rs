@@ -28,8 +28,8 @@
 //! ```
 
 use super::place::Instance;
-use super::skeleton::Skeleton;
 use crate::InputError;
+use crate::asset::skeleton::Skeleton;
 
 /// The most layers of a crowd, the base included.
 pub const MOST_LAYERS: usize = 8;
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn masks_reach_down() {
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         for bone in [0, 10, 152] {
             let mask = mask_below(&model.skeleton, bone).expect("a bone");
             let ones = mask.iter().filter(|value| **value == 1.0).count();

@@ -7,46 +7,35 @@ pub mod bounds;
 pub mod budget;
 #[cfg(feature = "gpu")]
 pub mod chosen;
-pub mod clip;
 pub mod clip_set;
 pub mod compact;
 pub mod concat;
-pub mod creature;
 pub mod crowd;
 pub mod decide;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod gate;
 pub mod gate_table;
-pub mod gltf;
 pub mod layers;
 pub mod lod;
-pub mod model;
 pub mod motion;
 pub mod phase;
 pub mod place;
 pub mod priority;
 pub mod root_motion;
 pub mod sample;
-pub mod skeleton;
-pub mod transform;
 #[cfg(feature = "gpu")]
 pub mod verify;
 
 pub use bounds::Bounds;
-pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use clip_set::ClipSet;
 pub use concat::Order;
-pub use creature::creature;
 pub use decide::Choice;
 pub use gate::{Frame, Gate};
 pub use gate_table::GateTable;
 pub use layers::Layer;
 pub use lod::{Lens, Lod, Range};
-pub use model::Model;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;
 pub use sample::{RotationPath, Wrap};
-pub use skeleton::{Bone, Skeleton, Skin};
-pub use transform::{Affine, Transform};

@@ -14,10 +14,10 @@
 //! - step, and repeated times: a jump at the later key;
 //! - a loop: a jump from the last pose to the first.
 
-use super::clip::{Clip, Interpolation, Part, Track};
 use super::clip_set::{ClipEntry, ClipSet};
 use super::sample::RotationPath;
-use super::skeleton::Skeleton;
+use crate::asset::clip::{Clip, Interpolation, Part, Track};
+use crate::asset::skeleton::Skeleton;
 
 /// Moments at which a spline of rotations is measured between two keys.
 const MOMENTS: usize = 64;

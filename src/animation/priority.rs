@@ -23,13 +23,13 @@
 
 mod analyze;
 
-use super::clip::{Clip, Part};
 use super::sample::RotationPath;
-use super::skeleton::Skeleton;
-use super::transform::Transform;
 use crate::InputError;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::reference::sample_bone;
+use crate::asset::clip::{Clip, Part};
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::Transform;
 
 /// Largest values below this count as none: radians, factors, and shares of the model's size.
 pub const NOISE: f64 = 1e-6;
@@ -244,8 +244,8 @@ pub fn size(skeleton: &Skeleton) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::clip::{BoneKeys, Interpolation, Keys};
-    use crate::animation::skeleton::Bone;
+    use crate::asset::clip::{BoneKeys, Interpolation, Keys};
+    use crate::asset::skeleton::Bone;
 
     /// root ─ arm ─ hand, and a leg below the root: 3, 1, 0, 0 descendants, 0, 1, 2, 1 steps from the root.
     fn skeleton() -> Skeleton {

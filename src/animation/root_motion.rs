@@ -20,14 +20,15 @@
 //! Bones above the root must not move in the clip; they may turn, mirror and scale it (exporters' axes and units), but
 //! for a yaw they must scale evenly and not mirror.
 
-use super::clip::{Clip, Keys};
-use super::place::{Instance, Place};
+use super::place::Instance;
 use super::sample::Wrap;
-use super::skeleton::Skeleton;
-use super::transform::Transform;
 use crate::InputError;
-use crate::animation::place::reference::place;
 use crate::animation::sample::reference::vector_at;
+use crate::asset::clip::{Clip, Keys};
+use crate::asset::keyframe::Place;
+use crate::asset::keyframe::place;
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::Transform;
 
 mod extract;
 mod rigid;

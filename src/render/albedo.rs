@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use crate::Error;
-use crate::animation::Model;
+use crate::asset::Model;
+use crate::asset::material::{Alpha, Material, Texture};
 use crate::gpu::{Gpu, GpuError};
 use crate::render::color::ColorTexture;
-use crate::skinning::material::{Alpha, Material, Texture};
 use crate::surface::mips::Mips;
 
 /// The colour of a surface.

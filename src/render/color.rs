@@ -1,7 +1,7 @@
 //! Colour textures with mip levels.
 
+use crate::asset::material::{Filter, Sampling, Wrapping};
 use crate::gpu::{Gpu, GpuError};
-use crate::skinning::material::{Filter, Sampling, Wrapping};
 use crate::srgb::linear;
 use crate::surface::mips::Mips;
 

@@ -4,15 +4,15 @@
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
-use crate::animation::transform::Affine;
+use crate::asset::material::Alpha;
+use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
 use crate::render::albedo::Albedo;
 use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{DRAW_WORDS, list_stride};
-use crate::skinning::material::Alpha;
-use crate::skinning::mesh::MOST_LEVELS;
 use crate::skinning::picture::Light;
 use crate::skinning::skin::Vertex;
 use crate::{Error, InputError};

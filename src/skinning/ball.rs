@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 
-use super::mesh::reaches;
-use crate::animation::Model;
 use crate::animation::bounds::reference::bounds;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample;
+use crate::asset::Model;
+use crate::asset::mesh::reaches;
 
 /// Moments of each clip that are looked at.
 const MOMENTS: u32 = 32;
@@ -58,14 +58,15 @@ fn followed(model: &Model) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::skinning::Blend;
     use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::reference::palette_for;
+    use crate::skinning::reduction::Reduction;
     use crate::skinning::skin::reference::skin;
-    use crate::skinning::{Blend, Reduction};
 
     #[test]
     fn the_ball_holds_every_vertex_and_not_much_more() {
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         let (center, radius) = ball_in_clips(&model);
         let mesh = &model.meshes[0];
         let mut farthest = 0.0_f32;

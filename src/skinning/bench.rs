@@ -1,16 +1,17 @@
 //! Benchmarks of `kernels/skinning/`: a mesh of 10,000 vertices around 64 bones.
 
 use crate::Error;
-use crate::animation::Model;
+use crate::asset::Model;
+use crate::asset::mesh::smooth_normals;
+use crate::asset::morph::MorphDelta;
+use crate::asset::{Influence, Influences, Mesh, MorphTarget};
 use crate::gpu::Gpu;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::Clusters;
-use crate::skinning::mesh::smooth_normals;
-use crate::skinning::morph::MorphDelta;
 use crate::skinning::palette::reference::rows;
+use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::Blend;
 use crate::skinning::verify::{Shape, random_model};
-use crate::skinning::{Influence, Influences, Mesh, MorphTarget, Reduction};
 
 /// Vertices of the mesh: 100 rings of 100.
 pub(crate) const RING: usize = 100;

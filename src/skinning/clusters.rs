@@ -2,11 +2,11 @@
 
 use std::cmp::Reverse;
 
-use super::mesh::Mesh;
 use super::skin::Vertex;
 use crate::InputError;
 use crate::animation::concat::Order;
-use crate::animation::skeleton::{Skeleton, Skin};
+use crate::asset::mesh::Mesh;
+use crate::asset::skeleton::{Skeleton, Skin};
 use crate::skinning::morph::reference::morph;
 
 /// Vertices of a cluster.
@@ -199,11 +199,11 @@ fn mask(mesh: &Mesh, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skinning::mesh::MeshLevel;
+    use crate::asset::mesh::MeshLevel;
 
     #[test]
     fn clusters_hold_every_vertex_and_its_bones() {
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         let (mesh, skin) = (&model.meshes[0], &model.skins[0]);
         let clusters = Clusters::new(mesh, &model.skins, &model.skeleton).expect("fits");
         assert_eq!(clusters.len(), mesh.vertices().div_ceil(64));
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn levels_are_the_first_places() {
-        let mut model = crate::animation::creature().expect("valid");
+        let mut model = crate::samples::creature().expect("valid");
         let mesh = &mut model.meshes[0];
         let plain = Clusters::new(mesh, &model.skins, &model.skeleton).expect("fits");
         let (vertices, indices) = (mesh.vertices() as u32, mesh.indices.len() as u32);

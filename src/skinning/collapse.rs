@@ -11,8 +11,8 @@ use crate::InputError;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample;
-use crate::animation::transform::Affine;
-use crate::animation::{Model, Skeleton, Skin, Transform};
+use crate::asset::transform::Affine;
+use crate::asset::{Model, Skeleton, Skin, Transform};
 
 /// A model of fewer bones.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,7 +104,7 @@ fn matrix(transform: &Transform) -> DMat4 {
 impl<'a> State<'a> {
     fn new(model: &'a Model, kept: &[u32], poses: usize) -> Self {
         let skeleton = &model.skeleton;
-        let pose = |clip: &crate::animation::Clip, at: usize| {
+        let pose = |clip: &crate::asset::Clip, at: usize| {
             let time = clip.duration() * at as f32 / poses as f32;
             concat(skeleton, &sample(clip, time, RotationPath::Slerp)).iter().map(wide).collect()
         };
@@ -260,11 +260,11 @@ mod tests {
     use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::Palette;
     use crate::skinning::palette::reference::palette;
+    use crate::skinning::reduction::Reduction;
     use crate::skinning::skin::reference::skin;
-    use crate::skinning::weights::Reduction;
 
     fn model() -> Model {
-        crate::animation::creature().expect("valid")
+        crate::samples::creature().expect("valid")
     }
 
     /// Where the vertices are, by the twins.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::mesh::Mesh;
 use super::skin::Vertex;
+use crate::asset::mesh::Mesh;
 
 /// An object a mesh, in order: vertices in the mesh's order with every digit that `f32` needs, texture coordinates
 /// (v up, as OBJ has it), normals, triangles.

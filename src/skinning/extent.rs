@@ -6,10 +6,11 @@ use rayon::prelude::*;
 
 use super::lod::{MARGIN, middle_of};
 use super::pose::{Pose, mean, moments};
-use super::weights::Influence;
 use crate::InputError;
-use crate::animation::{Lens, Model};
-use crate::skinning::Mesh;
+use crate::animation::Lens;
+use crate::asset::Mesh;
+use crate::asset::Model;
+use crate::asset::influences::Influence;
 
 /// By how much [`Extent::stray`] is larger than what was found. A vertex whose way from one pose to the next were
 /// straight would be off most at one of the two: the margin is for what bends in between.
@@ -23,7 +24,7 @@ pub struct Extent {
     /// Its radius.
     pub radius: f32,
     /// No vertex is further than λ times this from where full quality has it, at any λ of
-    /// [`Reduction::fade`](super::Reduction::fade): the largest distance that was found, divided by its λ.
+    /// [`Reduction::fade`](crate::skinning::reduction::Reduction::fade): the largest distance that was found, divided by its λ.
     pub stray: f32,
 }
 
@@ -65,7 +66,7 @@ impl Extent {
         [near, self.beyond(lens, pixels, self.stray).max(near.next_up())]
     }
 
-    /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](super::mesh::MeshLevel::error)) may be
+    /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be
     /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs is seen more than `pixels` from the
     /// mesh's surface, and no point of that from theirs, as far as the errors hold at that point. Placements neither
     /// stretch nor shrink. Where nothing may be off, levels with an error begin at the end of all numbers.
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn requests_are_checked() {
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         let field = |mesh, clips: &[usize], poses| {
             Extent::new(&model, mesh, clips, poses).expect_err("refused").field
         };

@@ -6,8 +6,8 @@ use super::morph::MorphPass;
 use super::palette::PalettePass;
 use super::select::{SelectBuffers, SelectPass};
 use super::skin::{Blend, SkinPass, Vertex};
-use crate::animation::Model;
-use crate::animation::transform::Affine;
+use crate::asset::Model;
+use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
 use crate::{Error, InputError};
 

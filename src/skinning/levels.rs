@@ -6,10 +6,10 @@ use std::iter::successors;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::mesh::{MOST_LEVELS, Mesh, MeshLevel};
 use super::pose::{Pose, moments};
 use crate::InputError;
-use crate::animation::Model;
+use crate::asset::Model;
+use crate::asset::mesh::{MOST_LEVELS, Mesh, MeshLevel};
 use crate::mesh::simplify::{Options, Simplified, Surface, simplify_within};
 use near::{Near, Sides};
 use welded::Welded;
@@ -199,12 +199,12 @@ fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skinning::{Influence, Influences};
+    use crate::asset::{Influence, Influences};
 
     /// What is measured is what was kept, where the simplifier saw all moments: nothing near is overlooked.
     #[test]
     fn errors_are_the_distances_that_were_kept() {
-        let plain = crate::animation::creature().expect("valid");
+        let plain = crate::samples::creature().expect("valid");
         for scale in [1e-6, 1.0, 1e8, 1e15] {
             let mut model = plain.clone();
             let mesh = &mut model.meshes[0];
@@ -241,7 +241,7 @@ mod tests {
     /// looked at.
     #[test]
     fn creatures_lose_triangles_by_distance() {
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         let mesh = &model.meshes[0];
         let found = MeshLevels::new(&model, 0, &[0, 2], 16).expect("valid");
         let mut levelled = model.clone();
@@ -278,7 +278,7 @@ mod tests {
     /// Every triangle with vertices of its own, which face as it does: what is left of it still does.
     #[test]
     fn hard_edges_do_not_matter() {
-        let mut model = crate::animation::creature().expect("valid");
+        let mut model = crate::samples::creature().expect("valid");
         let smooth = MeshLevels::new(&model, 0, &[0], 9).expect("valid");
         let mesh = model.meshes[0].clone();
         let corners: Vec<usize> = mesh.indices.iter().map(|vertex| *vertex as usize).collect();
@@ -286,7 +286,7 @@ mod tests {
         let positions: Vec<_> = corners.iter().map(|vertex| mesh.positions[*vertex]).collect();
         let indices: Vec<u32> = (0..corners.len() as u32).collect();
         let hard = Mesh {
-            normals: crate::skinning::mesh::smooth_normals(&positions, &indices),
+            normals: crate::asset::mesh::smooth_normals(&positions, &indices),
             tangents: corners.iter().map(|vertex| mesh.tangents[*vertex]).collect(),
             uv: corners.iter().map(|vertex| mesh.uv[*vertex]).collect(),
             influences: Influences::new("w", model.skins[0].bones.len(), influences).expect("valid"),

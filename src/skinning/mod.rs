@@ -13,23 +13,18 @@ pub mod extent;
 pub mod frame;
 pub mod levels;
 pub mod lod;
-pub mod material;
-pub mod mesh;
 pub mod morph;
 pub mod morph_weights;
 pub mod palette;
 pub mod picture;
 mod pose;
+pub mod reduction;
 pub mod select;
 pub mod skin;
 #[cfg(feature = "gpu")]
 pub mod verify;
-pub mod weights;
 
 pub use extent::Extent;
 pub use levels::{MeshLevels, add_levels, level_errors};
-pub use material::Material;
-pub use mesh::{Mesh, MeshLevel, reaches};
-pub use morph::{MorphTarget, WeightKeys};
+pub use reduction::Reduction;
 pub use skin::{Blend, Vertex};
-pub use weights::{Influence, Influences, Reduction};

@@ -2,13 +2,14 @@
 
 use glam::Vec3;
 
-use super::{Influence, Mesh, Vertex};
+use super::Vertex;
 use crate::InputError;
-use crate::animation::Model;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample;
-use crate::animation::transform::Affine;
+use crate::asset::Model;
+use crate::asset::transform::Affine;
+use crate::asset::{Influence, Mesh};
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::reference::palette;
 use crate::skinning::skin::reference::transformed;

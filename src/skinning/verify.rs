@@ -1,14 +1,16 @@
 //! Parity of `kernels/skinning/`.
 
 use crate::InputError;
-use crate::animation::Model;
 use crate::animation::concat::reference::{affine, product};
-use crate::animation::skeleton::Skin;
-use crate::animation::transform::{Affine, Transform};
 use crate::animation::verify::{Draw, random_skeleton};
+use crate::asset::Model;
+use crate::asset::morph::MorphDelta;
+use crate::asset::skeleton::Skin;
+use crate::asset::transform::{Affine, Transform};
+use crate::asset::{Influence, Influences, Mesh, MeshLevel, MorphTarget};
 use crate::harness::poison::POISON;
-use crate::skinning::morph::MorphDelta;
-use crate::skinning::{Influence, Influences, Mesh, MeshLevel, MorphTarget, Reduction, Vertex};
+use crate::skinning::Vertex;
+use crate::skinning::reduction::Reduction;
 
 /// A random mesh, and the skeleton and skin that it follows.
 #[derive(Debug, Clone, Copy)]
@@ -170,7 +172,7 @@ pub fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
 }
 
 pub(crate) fn column_major(matrix: &Affine) -> [f32; 16] {
-    crate::animation::transform::column_major(matrix)
+    crate::asset::transform::column_major(matrix)
 }
 
 /// What a kernel has not written, of any type.

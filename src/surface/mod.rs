@@ -3,7 +3,6 @@
 
 #[cfg(feature = "gpu")]
 pub mod bench;
-pub mod builtin;
 pub mod cone_map;
 pub mod exact;
 pub mod height_pyramid;
@@ -22,7 +21,6 @@ pub mod texture;
 pub mod verify;
 pub mod view;
 
-pub use builtin::BuiltInMap;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
 pub use material::{Green, Material, Shadow};

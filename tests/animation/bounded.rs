@@ -1,13 +1,12 @@
 //! The promise of `bounded` on clips that were made to break it.
 
 use relievo::animation::Choice;
-use relievo::animation::clip::{BoneKeys, Interpolation, Keys};
 use relievo::animation::crowd::reference::Crowd;
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::verify::Draw;
-use relievo::animation::{
-    Affine, Bone, Clip, ClipSet, Frame, Gate, GateTable, Instance, Order, Skeleton, Transform,
-};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable, Instance, Order};
+use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
+use relievo::asset::{Affine, Bone, Clip, Skeleton, Transform};
 
 fn skeleton(parents: &[Option<u32>]) -> Skeleton {
     let bone =

@@ -1,12 +1,14 @@
 //! The bounds' twin against the exact box in double precision.
 
+use relievo::animation::Bounds;
 use relievo::animation::bounds::bone_reaches;
 use relievo::animation::bounds::reference::bounds;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
-use relievo::animation::transform::AFFINE_IDENTITY;
-use relievo::animation::{Affine, Bone, Bounds, Skeleton, Transform, creature};
+use relievo::asset::transform::AFFINE_IDENTITY;
+use relievo::asset::{Affine, Bone, Skeleton, Transform};
+use relievo::samples::creature;
 
 use crate::player::unit;
 use crate::sampling::noise;

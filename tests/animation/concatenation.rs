@@ -1,8 +1,8 @@
 //! The concatenation twin against 4×4 products in double precision.
 
 use relievo::animation::concat::reference::{affine, concat, concat_into};
-use relievo::animation::transform::{AFFINE_IDENTITY, column_major};
-use relievo::animation::{Bone, Skeleton, Transform};
+use relievo::asset::transform::{AFFINE_IDENTITY, column_major};
+use relievo::asset::{Bone, Skeleton, Transform};
 
 use crate::player::{Matrix, matrix, product, unit, wide};
 use crate::sampling::{noise, skeleton};

@@ -11,10 +11,12 @@ use relievo::animation::place::PlacePass;
 use relievo::animation::place::reference::places;
 use relievo::animation::sample::reference::sample_layers;
 use relievo::animation::sample::{RotationPath, SAMPLE_BOUND, SamplePass, Wrap};
-use relievo::animation::{Affine, ClipSet, Instance, Layer, Model, Transform, creature};
+use relievo::animation::{ClipSet, Instance, Layer};
+use relievo::asset::{Affine, Model, Transform};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::harness::compare::absolute;
 use relievo::harness::poison::Poisoned;
+use relievo::samples::creature;
 
 use crate::harness::gpu;
 

@@ -8,10 +8,10 @@ use relievo::animation::frame::GatedFrame;
 use relievo::animation::gate::Gating;
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{
-    Affine, Choice, ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, Order, creature,
-};
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, Order};
+use relievo::asset::Affine;
 use relievo::gpu::{Gpu, GpuError};
+use relievo::samples::creature;
 
 use crate::harness::gpu;
 

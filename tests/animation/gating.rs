@@ -5,13 +5,14 @@ use relievo::animation::budget::reference::rank_of;
 use relievo::animation::compact::reference::Work;
 use relievo::animation::crowd::reference::Crowd;
 use relievo::animation::gate::reference::{gate, is_skipped, share_of};
+use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::transform::Affine;
 use relievo::animation::verify::{Draw, random_clips, random_skeleton};
-use relievo::animation::{
-    Clip, ClipSet, Frame, Gate, GateTable, Instance, Lod, Order, Skeleton, creature, lod::OMEGA_ONE,
-};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable, Instance, Lod, Order};
+use relievo::asset::transform::Affine;
+use relievo::asset::{Clip, Skeleton};
+use relievo::samples::creature;
 
 /// What a test plays.
 struct Stage {

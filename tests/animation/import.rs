@@ -1,11 +1,11 @@
 //! glTF documents as they may be.
 
-use relievo::animation::clip::{Interpolation, Part};
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
-use relievo::animation::transform::Affine;
-use relievo::animation::{Model, Transform};
+use relievo::asset::clip::{Interpolation, Part};
+use relievo::asset::transform::Affine;
+use relievo::asset::{Model, Transform};
 use serde_json::json;
 
 use crate::scene::{FLOAT, Scene};

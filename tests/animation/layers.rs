@@ -1,11 +1,13 @@
 //! Layers against their definition in double precision.
 
-use relievo::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::animation::layers::{all_instances, mask_below};
 use relievo::animation::place::reference::places;
 use relievo::animation::sample::reference::{blend, sample, sample_layers};
 use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::{ClipSet, Instance, Layer, Transform, creature};
+use relievo::animation::{ClipSet, Instance, Layer};
+use relievo::asset::Transform;
+use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use relievo::samples::creature;
 
 use crate::player::{angle, dot, unit, wide};
 use crate::sampling::{noise, skeleton};

@@ -1,6 +1,6 @@
 //! Documents that are wrong: an error with the path inside the file, and never a panic.
 
-use relievo::animation::Model;
+use relievo::asset::Model;
 use serde_json::{Value, json};
 
 use crate::sampling::noise;

@@ -1,8 +1,8 @@
 //! Meshes of glTF documents, as they may be and as they may not.
 
 use relievo::InputError;
-use relievo::animation::Model;
-use relievo::skinning::{Mesh, MorphTarget};
+use relievo::asset::Model;
+use relievo::asset::{Mesh, MorphTarget};
 use serde_json::{Value, json};
 
 use crate::scene::Scene;
@@ -235,11 +235,13 @@ fn full() -> Scene {
 /// Whatever is read can be skinned, and stays finite.
 fn skin_all(model: &Model) {
     use relievo::animation::concat::reference::concat;
+    use relievo::asset::reaches;
+    use relievo::skinning::Blend;
     use relievo::skinning::clusters::Clusters;
     use relievo::skinning::morph::reference::morph;
     use relievo::skinning::palette::reference::palette_for;
+    use relievo::skinning::reduction::Reduction;
     use relievo::skinning::skin::reference::skin;
-    use relievo::skinning::{Blend, Reduction, reaches};
     let models = concat(&model.skeleton, &model.skeleton.rest());
     // Scales may drive places out of range; that is the pose's fault.
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);

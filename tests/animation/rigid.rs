@@ -1,7 +1,7 @@
 //! Meshes without a skin: what they follow, and what their nodes become. Where their vertices are, `tests/cli/skin.rs`
 //! calculates.
 
-use relievo::animation::Model;
+use relievo::asset::Model;
 use serde_json::{Value, json};
 
 use crate::scene::Scene;
@@ -38,7 +38,7 @@ fn read(scene: &Scene) -> Model {
 /// The bones, and of each mesh its name and the bone that it follows.
 fn followed(model: &Model) -> (Vec<&str>, Vec<(&str, &str)>) {
     let bones: Vec<&str> = model.skeleton.bones().iter().map(|bone| &*bone.name).collect();
-    let of = |mesh: &relievo::skinning::Mesh| {
+    let of = |mesh: &relievo::asset::Mesh| {
         let skin = &model.skins[mesh.skin];
         assert!((0..mesh.vertices()).all(|vertex| mesh.influences.of(vertex).len() == 1));
         (skin.name.clone(), skin.bones[0] as usize)

@@ -4,9 +4,9 @@ use std::io::Cursor;
 
 use base64::Engine as _;
 use image::{ImageFormat, Rgba, RgbaImage};
-use relievo::animation::Model;
-use relievo::skinning::Material;
-use relievo::skinning::material::{Alpha, Filter, Sampling, Texture, Wrapping};
+use relievo::asset::Material;
+use relievo::asset::Model;
+use relievo::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
 use serde_json::json;
 
 use crate::meshes::Skinned;

@@ -172,7 +172,7 @@ fn alpha_is_the_height_where_no_other_is_given() {
 #[test]
 fn normal_maps_say_what_heights_say() {
     let bench = Bench::new();
-    let map = relievo::surface::BuiltInMap::Cobbles.height_map(128).expect("a map");
+    let map = relievo::samples::BuiltInMap::Cobbles.height_map(128).expect("a map");
     let grey = image::GrayImage::from_fn(128, 128, |x, y| {
         image::Luma([(map.texel(x as i32, y as i32, Address::Wrap) * 255.0).round() as u8])
     });

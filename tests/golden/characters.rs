@@ -1,14 +1,16 @@
 //! Several characters in one picture, near and far: seen, faded, skinned and drawn together.
 
 use glam::{Vec3, camera};
+use relievo::animation::Order;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
-use relievo::animation::transform::Affine;
-use relievo::animation::{Model, Order, creature};
+use relievo::asset::Model;
+use relievo::asset::transform::Affine;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
+use relievo::samples::creature;
 use relievo::skinning::Blend;
 use relievo::skinning::lod::standing;
 use relievo::skinning::picture::Light;

@@ -4,10 +4,11 @@ use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Gpu;
 use relievo::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use relievo::render::{ColorTexture, Target, target::COLOR_FORMAT};
+use relievo::samples::BuiltInMap;
 use relievo::surface::tangent::Mesh;
 use relievo::surface::tangent::reference::tangents;
 use relievo::surface::{
-    Address, BuiltInMap, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
+    Address, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
 };
 
 use crate::harness::{self, Tolerance, check_golden};

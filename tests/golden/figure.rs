@@ -4,7 +4,7 @@
 use std::io::Cursor;
 
 use image::{ImageFormat, Rgba, RgbaImage};
-use relievo::animation::Model;
+use relievo::asset::Model;
 use serde_json::{Value, json};
 
 use crate::gltf::Scene;

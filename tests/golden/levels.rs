@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
-use relievo::animation::transform::Affine;
-use relievo::animation::{Model, Order};
+use relievo::animation::Order;
+use relievo::asset::MeshLevel;
+use relievo::asset::Model;
+use relievo::asset::transform::Affine;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
@@ -17,8 +19,9 @@ use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::Light;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::{skin, transformed};
-use relievo::skinning::{Blend, MeshLevel, Reduction, Vertex};
+use relievo::skinning::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
 

@@ -4,7 +4,7 @@ use image::RgbaImage;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
-use relievo::animation::transform::{AFFINE_IDENTITY, Affine};
+use relievo::asset::transform::{AFFINE_IDENTITY, Affine};
 use relievo::gpu::Buffer;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
@@ -13,8 +13,9 @@ use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Reduction, Vertex};
+use relievo::skinning::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
 
 use crate::figure::figure;
@@ -27,7 +28,7 @@ const SIZE: [u32; 2] = [2 * 160; 2];
 fn a_figure_in_its_materials() {
     let (gpu, model) = (gpu(), figure());
     let models: Vec<Affine> = concat(&model.skeleton, &sample(&model.clips[0], 0.8, RotationPath::Slerp));
-    let vertices = |mesh: &relievo::skinning::Mesh| -> Vec<Vertex> {
+    let vertices = |mesh: &relievo::asset::Mesh| -> Vec<Vertex> {
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
         skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL)
     };

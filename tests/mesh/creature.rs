@@ -3,14 +3,15 @@
 use std::time::Instant;
 
 use relievo::animation::concat::reference::concat;
-use relievo::animation::creature::creature;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::mesh::{Options, Stopped, Surface, simplify};
+use relievo::samples::creature;
+use relievo::skinning::Blend;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Reduction};
 use relievo::terrain::export::sha256;
 
 use crate::measure::{Topology, distances, topology};

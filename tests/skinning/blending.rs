@@ -4,8 +4,9 @@ use glam::{Mat4, Vec3};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::{dual, palette, palette_for};
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Reduction, Vertex};
+use relievo::skinning::{Blend, Vertex};
 
 use crate::shapes::{influences, matrices, model, models, rows};
 
@@ -147,7 +148,8 @@ fn nothing_becomes_nan() {
 
 #[test]
 fn targets_add_up_before_bones() {
-    use relievo::skinning::{MorphTarget, morph::MorphDelta};
+    use relievo::asset::MorphTarget;
+    use relievo::asset::morph::MorphDelta;
     let mut mesh = model().meshes.remove(0);
     let delta =
         |x: f32| MorphDelta { position: [x, 0.0, 0.0], normal: [0.0, x, 0.0], tangent: [0.0, 0.0, x] };

@@ -2,11 +2,13 @@
 
 use glam::Vec3;
 use relievo::animation::Lens;
+use relievo::asset::{Influence, Influences};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::palette;
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Extent, Influence, Influences, Reduction, Vertex};
+use relievo::skinning::{Extent, Vertex};
 
 use crate::shapes::{model, models};
 

@@ -3,17 +3,18 @@
 use relievo::animation::Choice;
 use relievo::animation::crowd::reference::Crowd;
 use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::transform::Affine;
-use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Instance, Lens, Model, Order};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable, Instance, Lens, Order};
+use relievo::asset::mesh::reaches;
+use relievo::asset::transform::Affine;
+use relievo::asset::{Clip, Model};
 use relievo::skinning::clusters::Clusters;
-use relievo::skinning::mesh::reaches;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::select::reference::{Now, Skinned, select};
 use relievo::skinning::skin::Blend;
 use relievo::skinning::skin::Vertex;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::weights::Reduction;
 
 use crate::shapes::model;
 

@@ -3,9 +3,10 @@
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
-use relievo::animation::transform::Affine;
-use relievo::animation::{Model, creature};
-use relievo::skinning::weights::{Influence, Influences};
+use relievo::asset::Model;
+use relievo::asset::influences::{Influence, Influences};
+use relievo::asset::transform::Affine;
+use relievo::samples::creature;
 
 pub fn model() -> Model {
     creature().expect("valid")

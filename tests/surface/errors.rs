@@ -1,7 +1,8 @@
 //! Measured error and cost on the built-in maps: what each method promises. Relief depth 0.1, wrap addressing.
 
+use relievo::samples::BuiltInMap;
 use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, BuiltInMap, HeightMap, March, Measured, Method, Ray, SquareView};
+use relievo::surface::{Address, HeightMap, March, Measured, Method, Ray, SquareView};
 
 fn rays(angle: f64) -> Vec<Ray> {
     let view = SquareView { angle, azimuth: 25.0, tiles: 1.0, size: [120, 120] };

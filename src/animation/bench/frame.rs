@@ -8,10 +8,11 @@ use crate::Error;
 use crate::animation::concat::reference::concat_into;
 use crate::animation::concat::{ConcatJob, ConcatPass, Walk};
 use crate::animation::place::reference::places_into;
-use crate::animation::place::{Place, PlaceJob, PlacePass};
+use crate::animation::place::{PlaceJob, PlacePass};
 use crate::animation::sample::reference::sample_set_into;
 use crate::animation::sample::{RotationPath, SamplePass};
-use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
+use crate::asset::keyframe::Place;
+use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 use crate::baseline::gather::Reads;
 use crate::gpu::{Gpu, Job};
 

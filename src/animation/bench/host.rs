@@ -5,7 +5,7 @@ use std::hint::black_box;
 use super::Scene;
 use super::frame::{DeviceFrame, PlainFrame, TwinFrame};
 use crate::Error;
-use crate::animation::transform::AFFINE_IDENTITY;
+use crate::asset::transform::AFFINE_IDENTITY;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 

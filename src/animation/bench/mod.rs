@@ -6,19 +6,20 @@ pub(crate) mod host;
 pub(crate) mod plain_soa;
 
 use crate::Error;
-use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::concat::Order;
-use crate::animation::creature;
 use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::place::Instance;
 use crate::animation::place::reference::places;
-use crate::animation::place::{Instance, Place};
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::sample::reference::sample;
 use crate::animation::sample::{RotationPath, Wrap};
-use crate::animation::skeleton::Skeleton;
+use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::asset::keyframe::Place;
+use crate::asset::skeleton::Skeleton;
 use crate::baseline::gather::{GatherPass, Reads};
 use crate::gpu::{Gpu, Job};
+use crate::samples::creature;
 use crate::terrain::bench::copy_of;
 
 /// Instances of the cases.

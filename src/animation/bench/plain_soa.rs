@@ -3,13 +3,13 @@
 //! gating, no threads.
 
 use crate::InputError;
-use crate::animation::clip::Interpolation;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::concat::reference::{affine, product};
-use crate::animation::place::Place;
 use crate::animation::sample::{SLERP_U, SLERP_V};
-use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::{Affine, Transform};
+use crate::asset::clip::Interpolation;
+use crate::asset::keyframe::Place;
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::{Affine, Transform};
 
 /// Bones of a block.
 const LANES: usize = 8;
@@ -138,7 +138,7 @@ mod tests {
     use crate::animation::place::reference::places;
     use crate::animation::sample::reference::sample_set;
     use crate::animation::sample::{RotationPath, SAMPLE_BOUND};
-    use crate::animation::transform::AFFINE_IDENTITY;
+    use crate::asset::transform::AFFINE_IDENTITY;
 
     #[test]
     fn it_computes_what_the_twins_compute() {
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn tracks_that_it_cannot_play_are_refused() {
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         let set = ClipSet::new(&[&model.clips[0]]).expect("valid");
         assert_eq!(PlainSoa::new(&model.skeleton, &set).err().expect("refused").field, "tracks");
     }

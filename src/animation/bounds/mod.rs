@@ -18,8 +18,8 @@
 //! Rows below 2⁻⁶³, whose squares devices may flush to 0, are covered by 2⁻⁶² of the reach. Values must stay below
 //! 2⁶³; who transforms vertices by the palette in `f32` adds rounding of his own, some 8ε of where they lie.
 
-use super::skeleton::Skeleton;
 use crate::InputError;
+use crate::asset::skeleton::Skeleton;
 
 #[cfg(feature = "gpu")]
 pub mod bench;
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn bones_reach_their_farthest_child() {
-        let skeleton = crate::animation::creature().expect("valid").skeleton;
+        let skeleton = crate::samples::creature().expect("valid").skeleton;
         let reaches = bone_reaches(&skeleton);
         assert!(check_reaches(&reaches, skeleton.len()).is_ok());
         for bone in skeleton.bones() {

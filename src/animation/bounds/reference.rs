@@ -1,7 +1,7 @@
 //! Bounds of instances: twin of `kernels/animation/bounds.wgsl`.
 
 use crate::animation::bounds::{BOUNDS_GROWTH, BOUNDS_LEAST, BOUNDS_OF_CENTRE, Bounds};
-use crate::animation::transform::Affine;
+use crate::asset::transform::Affine;
 
 /// The bounds of each instance, from its palette and the reach of each bone.
 ///

@@ -4,8 +4,8 @@ use crate::Error;
 use crate::animation::bounds::reference::bounds;
 use crate::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, Share};
 use crate::animation::crowd::Crowd;
-use crate::animation::transform::Affine;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::asset::transform::Affine;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 

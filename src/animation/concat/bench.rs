@@ -11,7 +11,7 @@ use crate::animation::concat::{ConcatPass, Walk};
 use crate::animation::crowd::packed;
 use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample_set;
-use crate::animation::transform::AFFINE_IDENTITY;
+use crate::asset::transform::AFFINE_IDENTITY;
 use crate::harness::{Backend, Bench, Contender};
 
 /// All bones of all instances: concatenation, then sampling and concatenation; then a frame's parts on the host's clock.

@@ -8,7 +8,7 @@
 //!
 //! What is below an active bone is a run of slots too: so a thread that knows the first bone to compute knows them all.
 
-use super::skeleton::Skeleton;
+use crate::asset::skeleton::Skeleton;
 
 #[cfg(feature = "gpu")]
 pub mod bench;
@@ -154,8 +154,8 @@ fn heirs(skeleton: &Skeleton) -> Vec<Option<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::skeleton::Bone;
-    use crate::animation::transform::Transform;
+    use crate::asset::skeleton::Bone;
+    use crate::asset::transform::Transform;
 
     fn skeleton(parents: &[Option<u32>]) -> Skeleton {
         let bone =
@@ -217,7 +217,7 @@ mod tests {
         // A full binary tree needs as many levels as it has; one of 10 levels.
         let tree: Vec<_> = (0..1023_u32).map(|bone| bone.checked_sub(1).map(|bone| bone / 2)).collect();
         assert_eq!(check(&skeleton(&tree)).levels.len() - 1, 10);
-        let model = crate::animation::creature().expect("valid");
+        let model = crate::samples::creature().expect("valid");
         let deepest = model.skeleton.depths().iter().max().copied();
         assert_eq!((deepest, check(&model.skeleton).levels.len() - 1), (Some(19), 3));
     }

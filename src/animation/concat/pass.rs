@@ -5,7 +5,7 @@ use encase::ShaderType;
 use super::{Order, Slot};
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::skeleton::Skeleton;
+use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, shaders};
 use crate::{Error, InputError};
 

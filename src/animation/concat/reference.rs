@@ -1,8 +1,8 @@
 //! Concatenation into the model's space: twin of `kernels/animation/concat.wgsl`.
 
 use crate::animation::concat::{CONTINUES, NO_PARENT, Order};
-use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
 /// Each bone's transform in the model's space, from those in the parents' spaces.
 ///

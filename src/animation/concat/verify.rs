@@ -7,9 +7,9 @@ use crate::animation::concat::reference::{concat, concat_dirty};
 use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Order, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::gate::reference::Chosen;
-use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::{Affine, Transform};
 use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::{Affine, Transform};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 

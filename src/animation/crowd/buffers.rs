@@ -4,8 +4,9 @@
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::layers;
 use crate::animation::layers::{Layer, MOST_LAYERS};
-use crate::animation::place::{Instance, Place};
-use crate::animation::transform::{Affine, Transform};
+use crate::animation::place::Instance;
+use crate::asset::keyframe::Place;
+use crate::asset::transform::{Affine, Transform};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 

@@ -13,7 +13,7 @@ use crate::animation::place::Instance;
 use crate::animation::place::reference::places;
 use crate::animation::sample::reference::sample_pair;
 use crate::animation::sample::{PAIR_AHEAD, RotationPath};
-use crate::animation::transform::{AFFINE_IDENTITY, Affine, Transform};
+use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
 /// Instances of one skeleton, and what they keep from frame to frame.
 #[derive(Debug, Clone)]

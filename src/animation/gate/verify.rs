@@ -1,7 +1,6 @@
 //! Parity of `kernels/animation/gate.wgsl`.
 
 use crate::Error;
-use crate::animation::clip::Clip;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::Active;
 use crate::animation::concat::Order;
@@ -13,8 +12,9 @@ use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::phase::{Phase, Verdict};
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::sample::RotationPath;
-use crate::animation::skeleton::Skeleton;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
+use crate::asset::clip::Clip;
+use crate::asset::skeleton::Skeleton;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 

@@ -4,8 +4,10 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::phase::{BLENDED, Phase, Verdict};
-use crate::animation::place::reference::{inside_clip, place};
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
+use crate::animation::place::reference::inside_clip;
+use crate::asset::keyframe::Place;
+use crate::asset::keyframe::place;
 
 /// The phase of each instance. `layers` are those above the base; bones may be sampled `ahead` seconds ahead; `history` is
 /// kept from frame to frame, and zero at first.

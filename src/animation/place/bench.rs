@@ -4,8 +4,9 @@ use std::hint::black_box;
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, ELAPSED, Scene};
+use crate::animation::place::PlacePass;
 use crate::animation::place::reference::places_into;
-use crate::animation::place::{Place, PlacePass};
+use crate::asset::keyframe::Place;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 

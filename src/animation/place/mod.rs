@@ -84,17 +84,6 @@ impl Instance {
     }
 }
 
-/// A place between two keys of a timeline.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Place {
-    /// The key before.
-    pub key: u32,
-    /// The way to the key after it, 0 to below 1. 0 outside the keys.
-    pub fraction: f32,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,9 @@
 //! Where instances stand in their clips: twin of `kernels/animation/place.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
 use crate::animation::sample::Wrap;
+use crate::asset::keyframe::{Place, place};
 
 /// After so many turns, `f32` knows no place in a clip.
 const MOST_TURNS: f32 = 16_777_216.0;
@@ -29,33 +30,6 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
         inside -= duration;
     }
     inside
-}
-
-/// Where a time lies among key times. The last of equal times counts.
-pub fn place(times: &[f32], time: f32) -> Place {
-    let last = times.len().saturating_sub(1);
-    if last == 0 || time < times[0] {
-        return Place { key: 0, fraction: 0.0 };
-    }
-    if time >= times[last] {
-        return Place { key: last as u32, fraction: 0.0 };
-    }
-    // Most clips are sampled evenly: a guess hits.
-    let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
-    let mut key = (evenly as usize).min(last - 1);
-    if times[key] > time || times[key + 1] <= time {
-        let mut end = last;
-        key = 0;
-        while end - key > 1 {
-            let middle = (key + end) / 2;
-            if times[middle] <= time {
-                key = middle;
-            } else {
-                end = middle;
-            }
-        }
-    }
-    Place { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
 }
 
 /// The place of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] an instance. Where the clip

@@ -3,12 +3,12 @@
 
 use super::{Differences, Weights};
 use crate::InputError;
-use crate::animation::clip::Clip;
 use crate::animation::concat::reference::{affine, concat, product};
 use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::{sample, sample_bone};
-use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::{Affine, Transform};
+use crate::asset::clip::Clip;
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::{Affine, Transform};
 
 /// Moments at which a frozen bone is looked at, as shares of the way to the next key.
 const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
@@ -172,9 +172,9 @@ fn solve(normal: &[[f64; 5]; 5], right: &[f64; 5], subset: u32) -> Option<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::clip::{BoneKeys, Interpolation, Keys};
-    use crate::animation::creature;
-    use crate::animation::skeleton::Bone;
+    use crate::asset::clip::{BoneKeys, Interpolation, Keys};
+    use crate::asset::skeleton::Bone;
+    use crate::samples::creature;
 
     #[test]
     fn least_squares_finds_what_made_the_targets() {

@@ -4,12 +4,12 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::{PIECE, RootMotion, SPLINE_PIECES, Taken, rigid::Rigid};
 use crate::InputError;
-use crate::animation::clip::{Clip, Interpolation, Keys, Part, Track};
-use crate::animation::place::Place;
 use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::{rotation_at, sample_bone};
-use crate::animation::skeleton::Skeleton;
-use crate::animation::transform::Transform;
+use crate::asset::clip::{Clip, Interpolation, Keys, Part, Track};
+use crate::asset::keyframe::Place;
+use crate::asset::skeleton::Skeleton;
+use crate::asset::transform::Transform;
 
 /// By how much scales above a yaw may differ, and be sheared.
 const UNEVEN: f64 = 1e-4;

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::animation::transform::Transform;
+use crate::asset::transform::Transform;
 
 /// Turns about +Y, then moves.
 #[derive(Debug, Clone, Copy, PartialEq)]

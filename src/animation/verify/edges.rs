@@ -4,12 +4,13 @@
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::InputError;
-use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
 use crate::animation::sample::Wrap;
-use crate::animation::skeleton::{Bone, Skeleton};
-use crate::animation::transform::Transform;
+use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::asset::keyframe::Place;
+use crate::asset::skeleton::{Bone, Skeleton};
+use crate::asset::transform::Transform;
 
 /// The crowd, and for each instance its time in the first clip, or `None` where it plays the second.
 pub struct Edges {

@@ -3,12 +3,12 @@
 pub mod edges;
 
 use crate::InputError;
-use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::place::Instance;
 use crate::animation::sample::Wrap;
-use crate::animation::skeleton::{Bone, Skeleton};
-use crate::animation::transform::Transform;
+use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::asset::skeleton::{Bone, Skeleton};
+use crate::asset::transform::Transform;
 use crate::terrain::verify::random_words;
 
 /// Random numbers, the same on every machine.

@@ -1,7 +1,8 @@
 //! Moves the bytes of sampling: twin of `kernels/baseline/gather.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
+use crate::asset::keyframe::Place;
 
 /// For each instance and bone of its clip, the exclusive or of the two keys around the instance's place of three
 /// tracks, as bits of a local transform; then that of the track table's other words and the place's.

@@ -1,12 +1,13 @@
 //! Parity of `kernels/baseline/gather.wgsl`.
 
 use crate::Error;
-use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local};
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
 use crate::animation::sample::Wrap;
 use crate::animation::verify::{Draw, SIZES, random_skeleton};
+use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::asset::keyframe::Place;
 use crate::baseline::gather::reference::{gather, gather_keys};
 use crate::baseline::gather::{GatherPass, Reads};
 use crate::harness::Cases;

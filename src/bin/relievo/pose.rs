@@ -7,8 +7,6 @@ use clap::{Args, ValueEnum};
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::reference::sample;
 use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::transform::column_major;
-use relievo::animation::{Affine, Clip, Model, Transform, creature};
 #[cfg(feature = "gpu")]
 use relievo::animation::{
     ClipSet, Instance,
@@ -17,8 +15,11 @@ use relievo::animation::{
     place::PlacePass,
     sample::SamplePass,
 };
+use relievo::asset::transform::column_major;
+use relievo::asset::{Affine, Clip, Model, Transform};
 #[cfg(feature = "gpu")]
 use relievo::gpu::Gpu;
+use relievo::samples::creature;
 use relievo::{Error, InputError};
 use serde::Serialize;
 

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use relievo::animation::priority;
 use relievo::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
-use relievo::animation::{Clip, Model, Skeleton, priority};
+use relievo::asset::{Clip, Model, Skeleton};
 use relievo::{Error, InputError};
 use serde::Serialize;
 

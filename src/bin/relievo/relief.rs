@@ -9,10 +9,10 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use image::RgbaImage;
+use relievo::samples::BuiltInMap;
 use relievo::surface::view::towards_light;
 use relievo::surface::{
-    Address, BuiltInMap, Green, HeightMap, Hit, March, Material, Measured, Method, Mips, Outcome, Ray,
-    Shadow, SquareView,
+    Address, Green, HeightMap, Hit, March, Material, Measured, Method, Mips, Outcome, Ray, Shadow, SquareView,
 };
 use relievo::terrain::export::write_bytes;
 use relievo::{Error, InputError};

@@ -4,16 +4,18 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use relievo::animation::Model;
+use relievo::asset::Mesh;
+use relievo::asset::Model;
+use relievo::asset::mesh::COORDINATE_LIMIT;
 use relievo::skinning::export::obj;
-use relievo::skinning::mesh::COORDINATE_LIMIT;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Mesh, Reduction, Vertex, add_levels};
+use relievo::skinning::{Blend, Vertex, add_levels};
 use relievo::surface::linear_image::LinearImage;
 use relievo::{Error, InputError};
 
@@ -235,8 +237,8 @@ mod device {
     use relievo::animation::crowd::{ClipBuffers, Crowd};
     use relievo::animation::place::PlacePass;
     use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-    use relievo::animation::transform::AFFINE_IDENTITY;
     use relievo::animation::{ClipSet, Instance};
+    use relievo::asset::transform::AFFINE_IDENTITY;
     use relievo::gpu::{Buffer, Gpu};
     use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
     use relievo::render::target::{LINEAR_FORMAT, Target};

@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 use glam::Vec3;
 
 use super::Found;
+use crate::asset::mesh::Mesh;
 use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::Simplified;
-use crate::skinning::mesh::Mesh;
 use crate::surface::tangent::Adjacency;
 
 /// So many triangles may be nearest in some pose: those that are in the first.

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
+use crate::asset::mesh::Mesh;
 use crate::mesh::simplify::{Simplified, weld};
-use crate::skinning::mesh::Mesh;
 
 /// Which vertices are one.
 pub(super) struct Welded {

@@ -3,12 +3,12 @@
 use glam::{Mat4, Vec3, camera};
 
 use crate::Error;
-use crate::animation::transform::Affine;
+use crate::asset::transform::Affine;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::lod::reference::lod;
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, standing};
-use crate::skinning::weights::Reduction;
+use crate::skinning::reduction::Reduction;
 use crate::terrain::bench::copy_of;
 
 /// A field of instances, a quarter of them seen.

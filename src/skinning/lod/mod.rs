@@ -7,9 +7,10 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::InputError;
-use crate::animation::transform::Affine;
-use crate::skinning::mesh::MOST_LEVELS;
-use crate::skinning::weights::{MOST_INFLUENCES, Reduction};
+use crate::asset::influences::MOST_INFLUENCES;
+use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::transform::Affine;
+use crate::skinning::reduction::Reduction;
 
 #[cfg(feature = "gpu")]
 pub mod bench;

@@ -4,10 +4,10 @@ use encase::ShaderType;
 use glam::Vec4;
 
 use super::{LodView, list_stride, list_words};
-use crate::animation::transform::Affine;
+use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::skinning::mesh::MOST_LEVELS;
-use crate::skinning::weights::Reduction;
+use crate::skinning::reduction::Reduction;
 use crate::{Error, InputError};
 
 /// `LodParams` of the kernel.

@@ -2,9 +2,9 @@
 
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
-use crate::animation::transform::Affine;
+use crate::asset::transform::Affine;
 use crate::skinning::lod::LodView;
-use crate::skinning::weights::Reduction;
+use crate::skinning::reduction::Reduction;
 
 /// How an instance at this place is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]

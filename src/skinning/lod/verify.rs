@@ -3,15 +3,15 @@
 use glam::{Mat4, Vec3, camera};
 
 use crate::Error;
-use crate::animation::transform::Affine;
 use crate::animation::verify::Draw;
+use crate::asset::transform::Affine;
 use crate::gpu::Buffer;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 use crate::skinning::lod::reference::{Seen, lod, seen};
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, standing};
-use crate::skinning::weights::Reduction;
+use crate::skinning::reduction::Reduction;
 
 /// How near to a decision rounding may decide otherwise: places are within 200 of the origin, and their sums carry some
 /// 20ε of that.

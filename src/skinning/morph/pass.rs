@@ -4,11 +4,11 @@ use encase::ShaderType;
 use glam::UVec4;
 
 use crate::Error;
+use crate::asset::mesh::MOST_LEVELS;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use crate::skinning::mesh::MOST_LEVELS;
 
 /// `MorphParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]

@@ -1,18 +1,18 @@
 //! Weights of morph targets of crowds.
 
 use crate::Error;
-use crate::animation::clip::BoneKeys;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::place::Instance;
 use crate::animation::sample::Wrap;
-use crate::animation::{Clip, Interpolation};
+use crate::asset::clip::BoneKeys;
+use crate::asset::morph::WeightKeys;
+use crate::asset::{Clip, Interpolation};
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
-use crate::skinning::Reduction;
 use crate::skinning::bench::Scene;
-use crate::skinning::morph::WeightKeys;
 use crate::skinning::morph_weights::reference::morph_weights;
 use crate::skinning::morph_weights::{MorphWeightsPass, WeightSet};
+use crate::skinning::reduction::Reduction;
 use crate::terrain::bench::copy_of;
 
 /// Targets of the mesh, and keys of the clip.

@@ -3,7 +3,7 @@
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
-use crate::skinning::Mesh;
+use crate::asset::Mesh;
 
 #[cfg(feature = "gpu")]
 pub mod bench;
@@ -36,7 +36,7 @@ pub struct WeightEntry {
     pub keys: u32,
     /// Where its values begin.
     pub first_value: u32,
-    /// [`Interpolation`](crate::animation::Interpolation).
+    /// [`Interpolation`](crate::asset::Interpolation).
     pub interpolation: u32,
 }
 
@@ -86,13 +86,13 @@ impl WeightSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::Interpolation;
-    use crate::skinning::MorphTarget;
-    use crate::skinning::morph::WeightKeys;
+    use crate::asset::Interpolation;
+    use crate::asset::MorphTarget;
+    use crate::asset::morph::WeightKeys;
 
     #[test]
     fn sets_have_keys_for_every_clip() {
-        let mut model = crate::animation::creature().expect("valid");
+        let mut model = crate::samples::creature().expect("valid");
         let mesh = &mut model.meshes[0];
         mesh.targets = vec![MorphTarget::default(); 2];
         mesh.weights = vec![0.25, 0.5];

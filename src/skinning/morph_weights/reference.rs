@@ -3,7 +3,8 @@
 use crate::animation::clip_set::ClipSet;
 use crate::animation::place::Instance;
 use crate::animation::place::reference::inside_clip;
-use crate::skinning::{Mesh, Reduction};
+use crate::asset::Mesh;
+use crate::skinning::reduction::Reduction;
 
 /// The weights of a mesh's targets where instances stand in the clips of a set, instance by instance; those of instances
 /// that are not seen stay. `clips` says which of the model's each of the set is.

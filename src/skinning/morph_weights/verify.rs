@@ -1,22 +1,22 @@
 //! Parity of `kernels/skinning/morph_weights.wgsl`.
 
-use crate::animation::clip::BoneKeys;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::place::Instance;
 use crate::animation::place::reference::inside_clip;
 use crate::animation::sample::Wrap;
 use crate::animation::verify::Draw;
-use crate::animation::{Clip, Interpolation, Model};
+use crate::asset::clip::BoneKeys;
+use crate::asset::morph::WeightKeys;
+use crate::asset::{Clip, Interpolation, Model};
 use crate::gpu::Buffer;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use crate::skinning::morph::WeightKeys;
 use crate::skinning::morph_weights::reference::morph_weights;
 use crate::skinning::morph_weights::{MORPH_WEIGHTS_BOUND, MorphWeightsPass, WeightSet};
+use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::Blend;
 use crate::skinning::verify::{SHAPES, Shape, random_model};
-use crate::skinning::weights::Reduction;
 use crate::{Error, InputError};
 
 /// How near to a key, or to the clip's end, rounding may decide otherwise: times up to 16 s, three roundings.

@@ -4,7 +4,7 @@
 //! stretch, upper triangular, and a rigid motion after it (Gram–Schmidt on its columns): stretches blend linearly,
 //! motions as dual quaternions. So one bone alone does the same in both, sheared and mirrored or not.
 
-use crate::animation::transform::Affine;
+use crate::asset::transform::Affine;
 
 #[cfg(feature = "gpu")]
 pub mod bench;

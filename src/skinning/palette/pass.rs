@@ -3,7 +3,7 @@
 use encase::ShaderType;
 
 use crate::Error;
-use crate::animation::transform::Affine;
+use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::skin::Blend;

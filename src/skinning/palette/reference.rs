@@ -1,8 +1,8 @@
 //! Palettes: twin of `kernels/skinning/palette.wgsl`.
 
 use crate::animation::concat::reference::product;
-use crate::animation::skeleton::Skin;
-use crate::animation::transform::Affine;
+use crate::asset::skeleton::Skin;
+use crate::asset::transform::Affine;
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::skin::Blend;
 

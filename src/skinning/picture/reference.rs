@@ -3,8 +3,8 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use super::texture::Surface;
-use crate::skinning::Mesh;
-use crate::skinning::material::{Alpha, screen};
+use crate::asset::Mesh;
+use crate::asset::material::{Alpha, screen};
 use crate::skinning::picture::Light;
 use crate::skinning::skin::Vertex;
 use crate::surface::linear_image::LinearImage;

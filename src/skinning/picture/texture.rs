@@ -3,8 +3,8 @@
 
 use image::RgbaImage;
 
-use crate::animation::Model;
-use crate::skinning::material::{Alpha, Filter, Material, Sampling, Wrapping};
+use crate::asset::Model;
+use crate::asset::material::{Alpha, Filter, Material, Sampling, Wrapping};
 use crate::srgb::linear;
 use crate::surface::mips::Mips;
 

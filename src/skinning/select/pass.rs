@@ -4,9 +4,9 @@ use encase::ShaderType;
 use glam::UVec4;
 
 use crate::Error;
+use crate::asset::mesh::MOST_LEVELS;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
-use crate::skinning::mesh::MOST_LEVELS;
 
 /// `SelectParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]

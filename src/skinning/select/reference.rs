@@ -1,7 +1,7 @@
 //! Which clusters are skinned: twin of `kernels/skinning/select.wgsl`.
 
 use crate::skinning::clusters::Clusters;
-use crate::skinning::weights::Reduction;
+use crate::skinning::reduction::Reduction;
 
 /// What decides in a frame.
 #[derive(Debug, Clone, Copy)]

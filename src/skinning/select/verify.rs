@@ -1,19 +1,19 @@
 //! Parity of `kernels/skinning/select.wgsl`.
 
-use crate::animation::Model;
 use crate::animation::verify::Draw;
+use crate::asset::Model;
+use crate::asset::MorphTarget;
+use crate::asset::morph::MorphDelta;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
-use crate::skinning::MorphTarget;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::{CLUSTER, Clusters};
-use crate::skinning::morph::MorphDelta;
+use crate::skinning::reduction::Reduction;
 use crate::skinning::select::reference::{Now, Skinned, remember, select};
 use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
 use crate::skinning::skin::Blend;
 use crate::skinning::verify::{SHAPES, Shape, random_model, random_reductions};
-use crate::skinning::weights::Reduction;
 use crate::{Error, InputError};
 
 /// Frames in a row; of 64 bones how many move; whether reductions and weights are other ones.

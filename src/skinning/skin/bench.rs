@@ -1,18 +1,18 @@
 //! Skinning of crowds.
 
 use crate::Error;
+use crate::asset::mesh::MeshLevel;
 use crate::gpu::{Buffer, Gpu, Job};
 use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::bench::{CROWDS, RING, Scene, seen_of, tube};
 use crate::skinning::buffers::ActiveClusters;
 use crate::skinning::clusters::CLUSTER;
-use crate::skinning::mesh::MeshLevel;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::Palette;
 use crate::skinning::palette::reference::rows;
+use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::reference::skin;
 use crate::skinning::skin::{Blend, SkinPass, Vertex};
-use crate::skinning::weights::Reduction;
 use crate::terrain::bench::copy_of;
 
 /// Eight, four, two influences and one.

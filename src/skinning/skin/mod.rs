@@ -25,7 +25,7 @@ pub struct Vertex {
     pub position: [f32; 3],
     /// Unit length.
     pub normal: [f32; 3],
-    /// Unit length, and ±1: see [`Mesh::tangents`](super::mesh::Mesh::tangents).
+    /// Unit length, and ±1: see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
     pub tangent: [f32; 4],
 }
 

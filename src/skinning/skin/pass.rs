@@ -6,11 +6,11 @@ use encase::ShaderType;
 use glam::UVec4;
 
 use super::{Blend, Vertex};
+use crate::asset::mesh::MOST_LEVELS;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use crate::skinning::mesh::MOST_LEVELS;
 use crate::{Error, InputError};
 
 /// `SkinParams` of the kernel.

@@ -1,8 +1,8 @@
 //! Parity of `kernels/skinning/skin.wgsl`.
 
 use crate::Error;
-use crate::animation::Model;
-use crate::animation::transform::Affine;
+use crate::asset::Model;
+use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu};
 use crate::harness::compare::Comparison;
 use crate::harness::poison::Poisoned;
@@ -12,13 +12,13 @@ use crate::skinning::clusters::Clusters;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::Palette;
 use crate::skinning::palette::reference::palette_for;
+use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::skin::reference::{blended, skin_seen};
 use crate::skinning::skin::{Blend, SKIN_BOUND, SkinPass, TRUNCATED, Vertex};
 use crate::skinning::verify::{
     SHAPES, Shape, flat, poisoned, random_matrices, random_model, random_reductions,
 };
-use crate::skinning::weights::Reduction;
 
 /// Instances of a case: full, truncated, fading and unseen ones.
 const INSTANCES: usize = 9;

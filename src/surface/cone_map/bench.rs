@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
-use crate::surface::builtin::BuiltInMap;
+use crate::samples::BuiltInMap;
 use crate::surface::cone_map::ConeMapPass;
 use crate::surface::cone_map::reference::cone_map;
 use crate::surface::height_pyramid::reference::height_pyramid;

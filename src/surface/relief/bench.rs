@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Gpu};
 use crate::harness::{Backend, Bench, Contender};
 use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
-use crate::surface::builtin::BuiltInMap;
+use crate::samples::BuiltInMap;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::material::{Material, Shadow};
 use crate::surface::mesh::SurfaceMesh;

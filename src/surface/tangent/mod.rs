@@ -24,7 +24,7 @@
 //! should be split there, which [`split_mirrored`] does.
 
 use crate::InputError;
-use crate::mesh::check_triangles;
+use crate::asset::mesh::check_triangles;
 
 #[cfg(feature = "gpu")]
 pub mod bench;

@@ -2,7 +2,7 @@
 //! [`super::slerp`] computes it, to the bit.
 
 use crate::animation::sample::{SLERP_U, SLERP_V};
-use crate::animation::transform::Transform;
+use crate::asset::transform::Transform;
 
 /// Slerps that are computed together.
 const LANES: usize = 8;

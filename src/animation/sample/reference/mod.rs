@@ -1,12 +1,13 @@
 //! Sampling of clips: twin of `kernels/animation/sample.wgsl`.
 
-use crate::animation::clip::{Clip, Interpolation, Part, Track};
 use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
 use crate::animation::layers::{Layer, all_instances};
-use crate::animation::place::reference::place;
-use crate::animation::place::{Instance, Place};
+use crate::animation::place::Instance;
 use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V};
-use crate::animation::transform::Transform;
+use crate::asset::clip::{Clip, Interpolation, Part, Track};
+use crate::asset::keyframe::Place;
+use crate::asset::keyframe::place;
+use crate::asset::transform::Transform;
 
 mod arcs;
 

@@ -6,7 +6,8 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::place::{PlaceJob, PlacePass};
 use relievo::animation::sample::SamplePass;
-use relievo::animation::{Affine, Choice, GateTable, Lod};
+use relievo::animation::{Choice, GateTable, Lod};
+use relievo::asset::Affine;
 use relievo::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
 
 use super::gates::{PATH, frame};

@@ -4,7 +4,8 @@
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
 use relievo::animation::Choice;
-use relievo::animation::{Affine, GateTable, Lod};
+use relievo::animation::{GateTable, Lod};
+use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
@@ -13,7 +14,8 @@ use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE, list_words};
 use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
-use relievo::skinning::{Blend, Extent, Reduction};
+use relievo::skinning::reduction::Reduction;
+use relievo::skinning::{Blend, Extent};
 use relievo::surface::mips::Mips;
 use relievo::{Error, InputError};
 

@@ -1,7 +1,8 @@
 //! How far stale points lie from fresh ones.
 
 use rayon::prelude::*;
-use relievo::animation::{Affine, Lens};
+use relievo::animation::Lens;
+use relievo::asset::Affine;
 use serde::Serialize;
 
 use super::stage::{Scene, Stage};
@@ -244,7 +245,7 @@ mod tests {
     fn errors_are_projected_and_jumps_seen() {
         let lens = Lens { focal_pixels: 1000.0, near: 0.1 };
         let scene = Scene { origins: vec![[0.0, 0.0, 10.0]], turns: vec![[0.0, 1.0]] };
-        let fresh: Affine = relievo::animation::transform::AFFINE_IDENTITY;
+        let fresh: Affine = relievo::asset::transform::AFFINE_IDENTITY;
         let run = |ways: &[[f32; 3]]| {
             let share = Share {
                 metres: Tally::new(),

@@ -4,7 +4,8 @@ use clap::ValueEnum;
 use relievo::InputError;
 use relievo::animation::Choice;
 use relievo::animation::priority::{self, USER_DEFAULT, Weights};
-use relievo::animation::{Clip, ClipSet, Frame, Gate, GateTable, Order, RotationPath, Skeleton};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable, Order, RotationPath};
+use relievo::asset::{Clip, Skeleton};
 use serde::Serialize;
 
 /// Ticks a second.

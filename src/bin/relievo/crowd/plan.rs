@@ -1,8 +1,9 @@
 //! What the arguments mean, checked.
 
 use relievo::InputError;
+use relievo::animation::Range;
 use relievo::animation::priority::Weights;
-use relievo::animation::{Clip, Model, Range};
+use relievo::asset::{Clip, Model};
 use relievo::{Error, animation::lod::Lens};
 
 use super::gates::{Mode, TICKS};

@@ -1,7 +1,7 @@
 //! Playing a crowd: what a frame does and takes, on the device or the CPU.
 
 use relievo::Error;
-use relievo::animation::Affine;
+use relievo::asset::Affine;
 use serde::Serialize;
 
 use super::errors::{Errors, Jump, Meter};

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use relievo::animation::Range;
-use relievo::skinning::Reduction;
+use relievo::skinning::reduction::Reduction;
 use relievo::{Error, InputError};
 
 /// What is drawn, besides what is measured.

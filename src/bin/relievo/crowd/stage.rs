@@ -1,11 +1,11 @@
 //! Who plays, and where the camera stands.
 
 use relievo::InputError;
-#[cfg(feature = "gpu")]
-use relievo::animation::Model;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::gate::reference::scramble;
 use relievo::animation::{ClipSet, GateTable, Instance, Lens, Lod, Order, lod::OMEGA_ONE, sample::Wrap};
+#[cfg(feature = "gpu")]
+use relievo::asset::Model;
 use relievo::skinning;
 
 use super::Layout;
@@ -182,7 +182,7 @@ fn extents_of(plan: &Plan, meshes: usize) -> Result<Vec<skinning::Extent>, Input
 }
 
 /// The corners of a box around bones and as far as they are long.
-fn extents(models: &[relievo::animation::Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
+fn extents(models: &[relievo::asset::Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
     let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for (model, length) in models.iter().zip(lengths) {
         for (axis, row) in model.iter().enumerate() {

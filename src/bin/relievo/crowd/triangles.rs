@@ -4,10 +4,8 @@ use std::fmt;
 
 use relievo::InputError;
 #[cfg(feature = "gpu")]
-use relievo::{
-    animation::Model,
-    skinning::{Mesh, MeshLevels, add_levels},
-};
+use relievo::asset::{Mesh, Model};
+use relievo::skinning::{MeshLevels, add_levels};
 
 use super::skinning::bounded;
 #[cfg(feature = "gpu")]
@@ -74,7 +72,7 @@ pub struct LevelReport {
 impl LevelReport {
     /// Of a mesh's levels, with the metres from which on each is used.
     pub fn of_mesh(mesh: &Mesh, begins: &[f32], metres_a_unit: f32) -> Vec<Self> {
-        let report = |(level, begin): (&relievo::skinning::MeshLevel, &f32)| {
+        let report = |(level, begin): (&relievo::asset::MeshLevel, &f32)| {
             let mut vertices = level.indices.clone();
             vertices.sort_unstable();
             vertices.dedup();

@@ -5,7 +5,8 @@ use std::time::Instant;
 use relievo::Error;
 use relievo::animation::Choice;
 use relievo::animation::crowd::reference::Crowd;
-use relievo::animation::{Affine, GateTable, Lod};
+use relievo::animation::{GateTable, Lod};
+use relievo::asset::Affine;
 
 use super::gates::{Mode, PATH, frame};
 use super::play::{Play, Played, Taken, Times, Timing};

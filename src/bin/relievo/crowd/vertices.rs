@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
-use relievo::skinning::{MeshLevels, Reduction, Vertex};
+use relievo::skinning::reduction::Reduction;
+use relievo::skinning::{MeshLevels, Vertex};
 use serde::Serialize;
 
 use super::errors::{Errors, Tally, View, length};

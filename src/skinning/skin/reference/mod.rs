@@ -2,13 +2,14 @@
 
 pub mod weights;
 
-use crate::animation::transform::Affine;
+use crate::asset::influences::{Influence, Influences};
+use crate::asset::transform::Affine;
 use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::palette::reference::{cross, dot, unit_or};
 use crate::skinning::palette::{DualBone, Palette};
+use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::Vertex;
 use crate::skinning::skin::reference::weights::reduced;
-use crate::skinning::weights::{Influence, Influences, Reduction};
 
 /// Vertices where a palette takes them. `vertices` are a mesh's, morphed or not, and `influences` its own.
 ///

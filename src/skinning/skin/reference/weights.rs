@@ -1,9 +1,10 @@
 //! Which influences count, and how much: the part of the skinning kernel that reduces weights.
 
-use crate::skinning::weights::{Influence, Reduction};
+use crate::asset::influences::Influence;
+use crate::skinning::reduction::Reduction;
 
 /// The influences that are left, the strongest first; their weights sum to 1. `influences` is what
-/// [`Influences::of`](crate::skinning::Influences::of) gives: the strongest weight is never read, but what the others
+/// [`Influences::of`](crate::asset::Influences::of) gives: the strongest weight is never read, but what the others
 /// leave of 1.
 ///
 /// # Panics
@@ -31,7 +32,7 @@ pub fn reduced(influences: &[Influence], reduction: Reduction) -> Vec<Influence>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skinning::weights::Influences;
+    use crate::asset::influences::Influences;
 
     fn vertex(weights: &[f32]) -> Vec<Influence> {
         let given = (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight: *weight }).collect();

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::bones::{Kind, Part, Side, turn};
-use crate::animation::clip::{BoneKeys, Interpolation, Keys};
+use crate::asset::clip::{BoneKeys, Interpolation, Keys};
 
 /// What it does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

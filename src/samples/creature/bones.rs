@@ -1,6 +1,6 @@
 //! The creature's bones.
 
-use crate::animation::transform::Transform;
+use crate::asset::transform::Transform;
 
 /// Which side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

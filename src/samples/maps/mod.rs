@@ -1,7 +1,7 @@
 //! Height maps made by our own code, with matching colours: for tests, demonstrations and first steps without a
 //! file.
 //!
-//! Each is a square tile that repeats without a seam under [`Address::Wrap`](super::Address::Wrap), of any size,
+//! Each is a square tile that repeats without a seam under [`Address::Wrap`](crate::surface::Address::Wrap), of any size,
 //! and the same bits on every machine: only `+ − × ÷`, square roots and comparisons are used, which IEEE 754
 //! defines to the last bit, and randomness is counter-based ([`crate::hash`]).
 //!
@@ -27,8 +27,8 @@ use std::str::FromStr;
 use image::{Rgba, RgbaImage};
 use rayon::prelude::*;
 
-use super::map::{HeightMap, MAP_EDGE};
 use crate::InputError;
+use crate::surface::map::{HeightMap, MAP_EDGE};
 
 /// A height map that needs no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]

@@ -7,9 +7,9 @@ use glam::DVec3;
 use super::bones::{Kind, Part, Side};
 use super::tube::{Section, Surface, Tube};
 use crate::InputError;
-use crate::skinning::Mesh;
-use crate::skinning::mesh::solved_tangents;
-use crate::skinning::weights::{Influence, Influences};
+use crate::asset::Mesh;
+use crate::asset::influences::{Influence, Influences};
+use crate::asset::mesh::solved_tangents;
 
 /// The most bones of a vertex.
 const MOST: usize = 4;
@@ -262,7 +262,7 @@ fn strongest(mut influences: Vec<Influence>) -> Vec<Influence> {
 fn welded_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let welded = weld(positions);
     let indices: Vec<u32> = indices.iter().map(|index| welded[*index as usize]).collect();
-    let normals = crate::skinning::mesh::smooth_normals(positions, &indices);
+    let normals = crate::asset::mesh::smooth_normals(positions, &indices);
     welded.iter().map(|first| normals[*first as usize]).collect()
 }
 

@@ -3,7 +3,7 @@
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
 use crate::InputError;
-use crate::skinning::{Material, Mesh};
+use crate::asset::{Material, Mesh};
 
 /// A skeleton with its skins, clips and meshes.
 #[derive(Debug, Clone, PartialEq)]

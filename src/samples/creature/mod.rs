@@ -11,10 +11,10 @@ mod bones;
 mod motion;
 mod tube;
 
-use super::clip::Clip;
-use super::model::Model;
-use super::skeleton::{Bone, Skeleton, Skin};
 use crate::InputError;
+use crate::asset::clip::Clip;
+use crate::asset::model::Model;
+use crate::asset::skeleton::{Bone, Skeleton, Skin};
 use bones::{Part, parts};
 use motion::Action;
 
@@ -67,11 +67,11 @@ fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::clip::Part as TrackPart;
     use crate::animation::concat::reference::concat;
     use crate::animation::sample::RotationPath;
     use crate::animation::sample::reference::sample;
-    use crate::animation::transform::Affine;
+    use crate::asset::clip::Part as TrackPart;
+    use crate::asset::transform::Affine;
 
     fn model() -> Model {
         creature().expect("valid")

@@ -6,8 +6,8 @@ use gltf_json::scene::Node;
 use super::document::Document;
 use super::rigid::{Rigid, rigid};
 use crate::InputError;
-use crate::animation::skeleton::{Bone, Skeleton, Skin, inverse_bind};
-use crate::animation::transform::{Transform, decomposed};
+use crate::asset::skeleton::{Bone, Skeleton, Skin, inverse_bind};
+use crate::asset::transform::{Transform, decomposed};
 
 /// The skeleton of all skins, and which node became which bone.
 pub struct Nodes {

@@ -7,7 +7,7 @@ use gltf_json::validation::Checked;
 use super::document::Document;
 use super::nodes::Nodes;
 use crate::InputError;
-use crate::animation::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 
 /// Every animation of the document.
 pub fn clips(document: &Document<'_>, nodes: &Nodes) -> Result<Vec<Clip>, InputError> {

@@ -7,7 +7,7 @@ use gltf_json::validation::Checked;
 use super::document::Document;
 use super::nodes::rest;
 use crate::InputError;
-use crate::animation::skeleton::inverse_bind;
+use crate::asset::skeleton::inverse_bind;
 
 /// A node with a mesh and no skin.
 pub struct Rigid {

@@ -364,8 +364,8 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::skeleton::Bone;
-    use crate::animation::transform::Transform;
+    use crate::asset::skeleton::Bone;
+    use crate::asset::transform::Transform;
 
     fn skeleton() -> Skeleton {
         let rest = Transform { translation: [1.0, 2.0, 3.0], scale: [4.0, 5.0, 6.0], ..Transform::IDENTITY };

@@ -6,7 +6,7 @@
 //! - Accessors may be sparse, interleaved, and of normalized integers. Buffers lie in the GLB, in `data:` URIs, or in
 //!   files beside the document.
 //! - Channels that move no node, or one that is no bone, are left out, but count for the clip's duration.
-//! - Meshes are those of nodes with a skin, a [`Mesh`](crate::skinning::Mesh) a primitive, in the order of the nodes,
+//! - Meshes are those of nodes with a skin, a [`Mesh`](crate::asset::Mesh) a primitive, in the order of the nodes,
 //!   vertices in the file's order; behind them those of nodes without one, in the same order. The latter follow one
 //!   bone, by a skin of their own: the lowest node at or above them that is a joint, lies above joints, or is animated;
 //!   where there is none, the root of their tree, which never moves. Such a node becomes a bone with all above it, as
@@ -15,7 +15,7 @@
 //!   are left out.
 //! - Of materials: base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or in files beside the
 //!   document; any set of texture coordinates, `KHR_texture_transform` applied to these), samplers, alpha, and
-//!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::skinning::material::Alpha::Screen). Colours of
+//!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Screen). Colours of
 //!   vertices, everything else of materials, and materials of no mesh are left out.
 //!
 //! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic.

@@ -12,11 +12,11 @@ use super::materials::{Coordinates, Materials};
 use super::nodes::{Nodes, node_name};
 use super::rigid::Rigid;
 use crate::InputError;
-use crate::animation::clip::Interpolation;
-use crate::animation::skeleton::Skin;
-use crate::skinning::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals, solved_tangents};
-use crate::skinning::morph::{MorphDelta, MorphTarget, WeightKeys};
-use crate::skinning::weights::{Influence, Influences};
+use crate::asset::clip::Interpolation;
+use crate::asset::influences::{Influence, Influences};
+use crate::asset::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals, solved_tangents};
+use crate::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
+use crate::asset::skeleton::Skin;
 
 /// Every primitive of every node with a skin, in the order of the nodes; then of those without.
 pub fn meshes(
@@ -69,7 +69,7 @@ fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>
         let bound = format!("must be {targets}, one a morph target");
         return Err(InputError::new(format!("{path}.len"), weights.len(), bound));
     }
-    crate::animation::transform::finite(&path, &weights)?;
+    crate::asset::transform::finite(&path, &weights)?;
     Ok(weights)
 }
 

@@ -2,10 +2,9 @@
 //! morph targets.
 
 use super::morph::{MorphTarget, WeightKeys};
-use super::weights::Influences;
 use crate::InputError;
-use crate::animation::skeleton::Skin;
-use crate::mesh::check_triangles;
+use crate::asset::influences::Influences;
+use crate::asset::skeleton::Skin;
 use crate::surface::tangent;
 use crate::surface::tangent::reference::tangents;
 
@@ -24,7 +23,7 @@ pub struct MeshLevel {
     /// Three a triangle, of the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
     /// Units of the model, not negative: how far the level's surface and the mesh's are apart, in the poses that were
-    /// looked at. [`MeshLevels`](super::levels::MeshLevels) measures it at places: no vertex of the mesh is further from
+    /// looked at. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at places: no vertex of the mesh is further from
     /// the level, and none of these places on the level from the mesh; what lies between may be.
     pub error: f32,
 }
@@ -283,11 +282,25 @@ fn deltas_by_vertex(mesh: &Mesh) -> Vec<Vec<glam::DVec3>> {
     deltas
 }
 
+/// Refuses indices that are not three a triangle, and of no vertex.
+pub(crate) fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
+    if !indices.len().is_multiple_of(3) {
+        return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));
+    }
+    match indices.iter().position(|index| *index as usize >= vertices) {
+        None => Ok(()),
+        Some(at) => {
+            let bound = format!("must be below {vertices}, the number of vertices");
+            Err(InputError::new(format!("{path}[{at}]"), indices[at], bound))
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skinning::morph::MorphDelta;
-    use crate::skinning::weights::Influence;
+    use crate::asset::influences::Influence;
+    use crate::asset::morph::MorphDelta;
 
     /// One triangle; its last vertex follows two bones, one of them bound at x = 10 and at half the size.
     fn triangle() -> (Mesh, Vec<Skin>) {
@@ -333,8 +346,7 @@ mod tests {
         assert_eq!([found[0], found[2], found[4]], [0.0; 3]);
         mesh.weights = vec![0.0];
         assert!(near(reach(&mesh)[3], 3.0));
-        let keys =
-            WeightKeys::new(["t", "v"], vec![0.0], vec![7.0], crate::animation::Interpolation::Step, 1);
+        let keys = WeightKeys::new(["t", "v"], vec![0.0], vec![7.0], crate::asset::Interpolation::Step, 1);
         mesh.weight_keys = vec![(0, keys.expect("valid"))];
         assert!(near(reach(&mesh)[3], 9.0));
         assert_eq!((mesh.weights_at(0, 0.5), mesh.weights_at(1, 0.5)), (vec![7.0], vec![0.0]));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::skinning::weights::Influence;
+use crate::asset::influences::Influence;
 
 /// A cross-section that a tube passes through.
 #[derive(Debug, Clone, Copy)]

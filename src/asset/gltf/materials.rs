@@ -12,7 +12,7 @@ use image::{ImageFormat, ImageReader, RgbaImage};
 
 use super::document::Document;
 use crate::InputError;
-use crate::skinning::material::{Alpha, Filter, MOST_TEXELS, Material, Sampling, Texture, Wrapping};
+use crate::asset::material::{Alpha, Filter, MOST_TEXELS, Material, Sampling, Texture, Wrapping};
 
 /// What has been read of them so far: each once, in the order of their use.
 #[derive(Default)]

@@ -1,0 +1,39 @@
+//! Where a moment lies among the times of keys.
+
+/// A place between two keys of a timeline.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Place {
+    /// The key before.
+    pub key: u32,
+    /// The way to the key after it, 0 to below 1. 0 outside the keys.
+    pub fraction: f32,
+}
+
+/// Where a time lies among key times. The last of equal times counts.
+pub fn place(times: &[f32], time: f32) -> Place {
+    let last = times.len().saturating_sub(1);
+    if last == 0 || time < times[0] {
+        return Place { key: 0, fraction: 0.0 };
+    }
+    if time >= times[last] {
+        return Place { key: last as u32, fraction: 0.0 };
+    }
+    // Most clips are sampled evenly: a guess hits.
+    let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
+    let mut key = (evenly as usize).min(last - 1);
+    if times[key] > time || times[key + 1] <= time {
+        let mut end = last;
+        key = 0;
+        while end - key > 1 {
+            let middle = (key + end) / 2;
+            if times[middle] <= time {
+                key = middle;
+            } else {
+                end = middle;
+            }
+        }
+    }
+    Place { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
+}

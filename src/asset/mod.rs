@@ -1,0 +1,23 @@
+//! Plain data that no device is needed for: models with their skeletons, skins, clips, meshes and materials, and their
+//! import.
+
+pub mod clip;
+pub mod gltf;
+pub mod influences;
+pub mod keyframe;
+pub mod material;
+pub mod mesh;
+pub mod model;
+pub mod morph;
+pub mod skeleton;
+pub mod transform;
+
+pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use influences::{Influence, Influences};
+pub use keyframe::Place;
+pub use material::Material;
+pub use mesh::{Mesh, MeshLevel, reaches};
+pub use model::Model;
+pub use morph::{MorphTarget, WeightKeys};
+pub use skeleton::{Bone, Skeleton, Skin};
+pub use transform::{Affine, Transform};

@@ -1,0 +1,169 @@
+//! Morph targets: how vertices move before they are skinned, and the keys of the targets' weights (glTF 2.0, sections
+//! 3.7.2.2 and 3.11).
+
+use super::clip::{Interpolation, check_times};
+use super::keyframe::{Place, place};
+use super::transform::finite;
+use crate::InputError;
+
+/// What a weight of 1 adds to some vertices. The others do not move.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MorphTarget {
+    /// The vertices, ascending.
+    pub vertices: Vec<u32>,
+    /// One a vertex of the list: what is added to its position, normal and tangent.
+    pub deltas: Vec<MorphDelta>,
+}
+
+/// What a weight of 1 adds to a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MorphDelta {
+    /// To its position.
+    pub position: [f32; 3],
+    /// To its normal.
+    pub normal: [f32; 3],
+    /// To its tangent.
+    pub tangent: [f32; 3],
+}
+
+impl MorphTarget {
+    /// Keeps what moves of one delta a vertex.
+    pub fn new(deltas: &[MorphDelta]) -> Self {
+        let moving = (0..).zip(deltas).filter(|(_, delta)| **delta != MorphDelta::default());
+        let (vertices, deltas) = moving.map(|(vertex, delta): (u32, _)| (vertex, *delta)).unzip();
+        Self { vertices, deltas }
+    }
+}
+
+/// The weights of a mesh's morph targets in a clip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightKeys {
+    times: Vec<f32>,
+    values: Vec<f32>,
+    interpolation: Interpolation,
+    targets: usize,
+}
+
+impl WeightKeys {
+    /// Keys of `targets` weights: at each time one value a target, in splines their in-tangents, the values and their
+    /// out-tangents (per second). `paths` come before the fields of times and values.
+    ///
+    /// # Errors
+    /// [`InputError`] for no keys or targets, times that descend, are negative, too large or not finite, a wrong
+    /// number of values, and values that are not finite.
+    pub fn new(
+        [at_times, at_values]: [&str; 2],
+        times: Vec<f32>,
+        values: Vec<f32>,
+        interpolation: Interpolation,
+        targets: usize,
+    ) -> Result<Self, InputError> {
+        check_times(at_times, &times)?;
+        let each = if interpolation == Interpolation::CubicSpline { 3 * targets } else { targets };
+        if targets == 0 || values.len() != each * times.len() {
+            let bound = format!("must be {}, {each} a key", each * times.len());
+            return Err(InputError::new(format!("{at_values}.len"), values.len(), bound));
+        }
+        finite(at_values, &values)?;
+        Ok(Self { times, values, interpolation, targets })
+    }
+
+    /// The last key's time in seconds.
+    pub fn duration(&self) -> f32 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// The weights at a time inside the clip.
+    pub fn at(&self, time: f32) -> Vec<f32> {
+        let Place { key, fraction } = place(&self.times, time);
+        let key = key as usize;
+        (0..self.targets).map(|target| self.between(key, fraction, target)).collect()
+    }
+
+    /// Times, values and the code of the interpolation.
+    pub(crate) fn parts(&self) -> (&[f32], &[f32], u32) {
+        (&self.times, &self.values, self.interpolation as u32)
+    }
+
+    fn between(&self, key: usize, t: f32, target: usize) -> f32 {
+        let value = |key: usize, part: usize| match self.interpolation {
+            Interpolation::CubicSpline => self.values[(3 * key + part) * self.targets + target],
+            _ => self.values[key * self.targets + target],
+        };
+        let start = value(key, 1);
+        match self.interpolation {
+            _ if t <= 0.0 => start,
+            Interpolation::Step => start,
+            Interpolation::Linear => start + (value(key + 1, 1) - start) * t,
+            Interpolation::CubicSpline => {
+                let seconds = self.times[key + 1] - self.times[key];
+                let (square, cube) = (t * t, t * t * t);
+                let of_end = 3.0 * square - 2.0 * cube;
+                (1.0 - of_end) * start
+                    + (cube - 2.0 * square + t) * (seconds * value(key, 2))
+                    + of_end * value(key + 1, 1)
+                    + (cube - square) * (seconds * value(key + 1, 0))
+            }
+        }
+    }
+
+    /// No weight of a target is ever further from 0 than this.
+    pub fn largest(&self, target: usize) -> f32 {
+        let all = (0..self.times.len()).map(|key| self.between(key, 0.0, target).abs());
+        let values = all.fold(0.0, f32::max);
+        if self.interpolation != Interpolation::CubicSpline {
+            return values;
+        }
+        // The weights of the tangents, t³ − 2t² + t and t³ − t², reach 4/27; together they never exceed 1/4.
+        let tangent = |key: usize, part: usize| self.values[(3 * key + part) * self.targets + target].abs();
+        let bends = (1..self.times.len())
+            .map(|key| (self.times[key] - self.times[key - 1]) * tangent(key - 1, 2).max(tangent(key, 0)));
+        values + 0.25 * bends.fold(0.0, f32::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(values: &[f32], interpolation: Interpolation) -> Result<WeightKeys, InputError> {
+        WeightKeys::new(["t", "v"], vec![0.0, 2.0], values.to_vec(), interpolation, 2)
+    }
+
+    #[test]
+    fn weights_follow_their_keys() {
+        let values = [0.0, 1.0, 4.0, -1.0];
+        let linear = keys(&values, Interpolation::Linear).expect("valid");
+        assert_eq!(
+            (linear.at(0.5), linear.at(2.0), linear.at(9.0)),
+            (vec![1.0, 0.5], vec![4.0, -1.0], vec![4.0, -1.0])
+        );
+        assert_eq!((linear.largest(0), linear.largest(1)), (4.0, 1.0));
+        let step = keys(&values, Interpolation::Step).expect("valid");
+        assert_eq!((step.at(1.9), step.at(2.0)), (vec![0.0, 1.0], vec![4.0, -1.0]));
+        // In, value, out; the second target bends.
+        let spline = [0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.0, -6.0, 4.0, 1.0, 0.0, 0.0];
+        let spline = keys(&spline, Interpolation::CubicSpline).expect("valid");
+        assert_eq!(
+            (spline.at(0.0), spline.at(1.0)),
+            (vec![0.0, 1.0], vec![2.0, 1.0 + 0.125 * 12.0 + 0.125 * 12.0])
+        );
+        assert_eq!((spline.largest(0), spline.largest(1)), (4.0, 1.0 + 0.25 * 12.0));
+    }
+
+    #[test]
+    fn keys_are_checked() {
+        let refused = |values: &[f32]| keys(values, Interpolation::Linear).expect_err("refused").field;
+        assert_eq!(refused(&[0.0; 3]), "v.len");
+        assert_eq!(refused(&[0.0, 0.0, f32::NAN, 0.0]), "v[2]");
+        let descending = WeightKeys::new(["t", "v"], vec![1.0, 0.0], vec![0.0; 2], Interpolation::Step, 1);
+        assert_eq!(descending.expect_err("refused").field, "t[1]");
+    }
+
+    #[test]
+    fn targets_keep_what_moves() {
+        let moving = MorphDelta { normal: [0.0, 1.0, 0.0], ..MorphDelta::default() };
+        let target = MorphTarget::new(&[MorphDelta::default(), moving, MorphDelta::default()]);
+        assert_eq!(target, MorphTarget { vertices: vec![1], deltas: vec![moving] });
+    }
+}
