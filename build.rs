@@ -2,25 +2,28 @@
 //! writes it, with a manifest of entry points and bindings, to `OUT_DIR`. An unknown import, an unused
 //! binding or an invalid shader fails the build and names file and line.
 
+#[path = "build/bindings.rs"]
+mod bindings;
+
 fn main() {
-    #[cfg(feature = "gpu")]
     shaders::build();
 }
 
-#[cfg(feature = "gpu")]
 mod shaders {
     use std::fmt::Write as _;
     use std::path::{Path, PathBuf};
 
     use naga::{AddressSpace, ShaderStage, StorageAccess, TypeInner};
 
+    use crate::bindings::Bindings;
+
     pub fn build() {
         let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
         let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets it"));
-        for folder in ["kernels", "wgsl"] {
-            println!("cargo::rerun-if-changed={folder}");
+        for input in ["kernels", "wgsl", "build", "build.rs"] {
+            println!("cargo::rerun-if-changed={input}");
         }
-        println!("cargo::rerun-if-changed=build.rs");
+        let mut bindings = Bindings::default();
         let mut manifest = String::new();
         let mut all = Vec::new();
         for (folder, prefix) in [("kernels", ""), ("wgsl/render", "render/")] {
@@ -31,9 +34,13 @@ mod shaders {
                 let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
                 std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
                 shader.describe(&mut manifest, &path);
+                if folder == "kernels" {
+                    bindings.add(&root, &file, &shader);
+                }
                 all.push(shader);
             }
         }
+        bindings.write(&out);
         refuse_unused_module_bindings(&root, &all);
         write_modules(&root, &out, &mut manifest);
         let list = all.iter().map(|shader| format!("&{}", shader.constant())).collect::<Vec<_>>().join(", ");
@@ -148,10 +155,10 @@ mod shaders {
         refuse(relative, &format!("line {}: nothing uses the binding `{name}`", line_of(file, name)))
     }
 
-    struct Shader {
-        name: String,
+    pub struct Shader {
+        pub name: String,
         flat: String,
-        module: naga::Module,
+        pub module: naga::Module,
         info: naga::valid::ModuleInfo,
     }
 
@@ -197,7 +204,8 @@ mod shaders {
             })
         }
 
-        fn constant(&self) -> String {
+        /// Its name as a Rust constant.
+        pub fn constant(&self) -> String {
             self.name.replace('/', "_").to_uppercase()
         }
 
@@ -314,7 +322,7 @@ mod shaders {
         found.1
     }
 
-    fn refuse(file: &Path, what: &str) -> ! {
+    pub fn refuse(file: &Path, what: &str) -> ! {
         eprintln!("{}: {what}", file.display());
         std::process::exit(1)
     }

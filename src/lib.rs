@@ -67,6 +67,7 @@ pub mod mesh;
 #[cfg(feature = "gpu")]
 pub mod render;
 pub mod samples;
+mod shared;
 pub mod skinning;
 pub mod srgb;
 pub mod surface;

@@ -15,7 +15,7 @@ use crate::InputError;
 /// destination.
 #[derive(Debug, Clone)]
 pub struct Buffer<T> {
-    raw: wgpu::Buffer,
+    pub(super) raw: wgpu::Buffer,
     _held: Arc<Held>,
     len: usize,
     element: PhantomData<T>,

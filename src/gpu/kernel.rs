@@ -55,6 +55,34 @@ impl Kernel {
         bind(gpu, self.shader, &self.layouts, group, resources)
     }
 
+    /// Binds resources of one group by their numbers.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] when the kernel is another shader's, and when they do not fit the shader.
+    pub(crate) fn bind_group(
+        &self,
+        gpu: &Gpu,
+        shader: &'static Shader,
+        group: u32,
+        resources: &[(u32, Resource<'_>)],
+    ) -> Result<Group, GpuError> {
+        if self.shader.name != shader.name {
+            let reason = format!("resources of {} for the kernel {}", shader.name, self.shader.name);
+            return Err(GpuError::Internal { reason });
+        }
+        let entries: Vec<_> = resources
+            .iter()
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .collect();
+        gpu.scoped(|| {
+            gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(shader.name),
+                layout: &self.layouts[group as usize],
+                entries: &entries,
+            })
+        })
+    }
+
     /// Workgroups for `invocations` in one row, spread over x and y where they exceed the limit of a dimension.
     pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))

@@ -5,6 +5,8 @@
 //! panics or aborts.
 
 mod adapter;
+pub(crate) mod bind;
+pub(crate) mod bindings;
 mod buffer;
 mod error;
 mod job;

@@ -1,23 +1,11 @@
 //! `kernels/terrain/pad.wgsl`.
 
-use encase::ShaderType;
-
 use super::{Surround, validate};
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::pad as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::pad::{ELSEWHERE, NONE, PadParams};
 use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
-
-/// `PadParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct PadParams {
-    pub size: u32,
-    pub reach: u32,
-}
-
-/// What the kernel takes for a tile without a patch.
-const NONE: u32 = u32::MAX;
-/// What the kernel takes for a patch in another buffer.
-const ELSEWHERE: u32 = u32::MAX - 1;
 
 /// Gathers windows from patches and their neighbours.
 #[derive(Debug, Clone)]
@@ -31,7 +19,7 @@ impl PadPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_PAD, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares windows that reach `reach` samples beyond patches, one for each of `surrounds`, from `parts`, where
@@ -61,15 +49,15 @@ impl PadPass {
         for (part, patches) in parts.iter().enumerate() {
             let Some(around) = tiles_in(part, &tiles) else { continue };
             let around = Buffer::from_slice(gpu, "surroundings", &around)?;
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                patches.heights.raw().as_entire_binding(),
-                around.raw().as_entire_binding(),
-                windows.raw().as_entire_binding(),
-            ];
+            let group = bindings::Group {
+                params: &uniform,
+                patches: patches.heights.slice(),
+                around: around.slice(),
+                windows: windows.slice(),
+            };
             steps.push(Step {
                 kernel: self.kernel.clone(),
-                groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+                groups: vec![group.bind(gpu, &self.kernel)?],
                 workgroups: [self.kernel.groups_for(width), width, surrounds.len() as u32],
             });
         }
@@ -107,12 +95,4 @@ fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputErro
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(pad_params_layout: PadParams = TERRAIN_PAD "PadParams");
 }

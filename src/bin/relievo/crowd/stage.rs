@@ -61,7 +61,7 @@ impl<'a> Stage<'a> {
         // Up, so that it reaches all the points.
         let reaches: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
         let meshes = if plan.drawn.is_some() { &plan.model.meshes[..] } else { &[] };
-        let vertices = skinning::reaches(skeleton.len(), &plan.model.skins, meshes);
+        let vertices = relievo::asset::reaches(skeleton.len(), &plan.model.skins, meshes);
         Ok(Self {
             order: Order::new(skeleton),
             set,

@@ -1,0 +1,49 @@
+//! What generated bindings are made of: see `gpu::bindings`.
+
+use std::marker::PhantomData;
+
+use super::Buffer;
+
+/// What generated code uses.
+pub(crate) mod prelude {
+    pub(crate) use super::Slice;
+    pub(crate) use crate::gpu::{Gpu, GpuError, Group as BindGroup, Kernel, Uniform, shaders};
+}
+
+/// A storage buffer to bind, by the type of its elements.
+#[derive(Debug)]
+pub(crate) struct Slice<'a, T> {
+    raw: &'a wgpu::Buffer,
+    element: PhantomData<T>,
+}
+
+impl<T> Clone for Slice<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Slice<'_, T> {}
+
+impl<'a, T> Slice<'a, T> {
+    /// The whole buffer.
+    pub(crate) fn resource(&self) -> wgpu::BindingResource<'a> {
+        self.raw.as_entire_binding()
+    }
+
+    /// The same bytes as elements of another type: rows of a matrix, say. One size must be a multiple of the other.
+    pub(crate) fn cast<U>(self) -> Slice<'a, U> {
+        const {
+            let (from, to) = (size_of::<T>(), size_of::<U>());
+            assert!(from.is_multiple_of(to) || to.is_multiple_of(from), "elements do not fit each other");
+        }
+        Slice { raw: self.raw, element: PhantomData }
+    }
+}
+
+impl<T> Buffer<T> {
+    /// The buffer as a resource to bind.
+    pub(crate) fn slice(&self) -> Slice<'_, T> {
+        Slice { raw: &self.raw, element: PhantomData }
+    }
+}
