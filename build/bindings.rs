@@ -174,7 +174,9 @@ impl KernelBindings<'_> {
         let module = &self.shader.module;
         for (_, constant) in module.constants.iter() {
             let Some(name) = &constant.name else { continue };
-            let naga::Expression::Literal(literal) = module.global_expressions[constant.init] else { continue };
+            let naga::Expression::Literal(literal) = module.global_expressions[constant.init] else {
+                continue;
+            };
             let Some(declaration) = self.sources.declaring("const", name) else { continue };
             let Some((ty, value)) = literal_text(literal) else { continue };
             let text = doc("", &declaration.comment, &format!("`{name}` of the shader."))
@@ -212,7 +214,8 @@ impl KernelBindings<'_> {
                 TypeInner::Scalar(scalar) => scalar_name(scalar),
                 _ => self.refuse(&format!("override {name}: must be a scalar")),
             };
-            let comment = self.sources.declaring("override", &name).map(|found| found.comment).unwrap_or_default();
+            let comment =
+                self.sources.declaring("override", &name).map(|found| found.comment).unwrap_or_default();
             fields += &doc("    ", &comment, &format!("`{name}` of the kernel."));
             writeln!(fields, "    pub {field}: {ty},").expect("a string");
             let init = constant.init.map(|init| &shader.module.global_expressions[init]);
@@ -221,7 +224,8 @@ impl KernelBindings<'_> {
             };
             let value = literal_text(*literal).map(|(_, value)| value).unwrap_or_default();
             writeln!(defaults, "            {field}: {value},").expect("a string");
-            let number = if ty == "f32" { format!("f64::from(self.{field})") } else { format!("self.{field}.into()") };
+            let number =
+                if ty == "f32" { format!("f64::from(self.{field})") } else { format!("self.{field}.into()") };
             writeln!(list, "            ({name:?}, {number}),").expect("a string");
         }
         let constant = shader.constant();
@@ -264,9 +268,10 @@ impl KernelBindings<'_> {
                     let ty = self.element(variable.ty, shared);
                     (format!("Slice<'a, {ty}>"), format!("self.{name}.resource()"))
                 }
-                (_, TypeInner::Image { .. }) => {
-                    ("&'a wgpu::TextureView".to_owned(), format!("wgpu::BindingResource::TextureView(self.{name})"))
-                }
+                (_, TypeInner::Image { .. }) => (
+                    "&'a wgpu::TextureView".to_owned(),
+                    format!("wgpu::BindingResource::TextureView(self.{name})"),
+                ),
                 (_, TypeInner::Sampler { .. }) => {
                     ("&'a wgpu::Sampler".to_owned(), format!("wgpu::BindingResource::Sampler(self.{name})"))
                 }
@@ -318,7 +323,9 @@ impl KernelBindings<'_> {
         match &of.inner {
             TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => scalar_name(*scalar).to_owned(),
             TypeInner::Vector { size, scalar } => used.vector(*size, *scalar),
-            TypeInner::Matrix { columns: VectorSize::Quad, rows: VectorSize::Quad, .. } if used == Use::Uniform => {
+            TypeInner::Matrix { columns: VectorSize::Quad, rows: VectorSize::Quad, .. }
+                if used == Use::Uniform =>
+            {
                 "glam::Mat4".to_owned()
             }
             TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
@@ -363,15 +370,22 @@ impl KernelBindings<'_> {
             let comment = comments.get(&field).cloned().unwrap_or_default();
             fields += &doc("    ", &comment, &format!("`{field}` of the shader."));
             // An aligned member of a uniform: encase must know.
-            if used == Use::Uniform && declaration.text.lines().any(|line| {
-                line.trim().starts_with("@align(16)") && line.contains(&format!(" {field}:"))
-            }) {
+            if used == Use::Uniform
+                && declaration
+                    .text
+                    .lines()
+                    .any(|line| line.trim().starts_with("@align(16)") && line.contains(&format!(" {field}:")))
+            {
                 fields += "    #[shader(align(16))]\n";
             }
             writeln!(fields, "    pub {field}: {ty},").expect("a string");
         }
         let derive = match used {
             Use::Uniform => "#[cfg(feature = \"gpu\")]\n#[derive(Debug, Clone, Copy, encase::ShaderType)]\n",
+            Use::Storage if members.iter().all(|member| is_whole(&module.types[member.ty].inner)) => {
+                "#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\n\
+                 #[cfg_attr(feature = \"gpu\", derive(bytemuck::Pod, bytemuck::Zeroable))]\n#[repr(C)]\n"
+            }
             Use::Storage => {
                 "#[derive(Debug, Clone, Copy, PartialEq)]\n\
                  #[cfg_attr(feature = \"gpu\", derive(bytemuck::Pod, bytemuck::Zeroable))]\n#[repr(C)]\n"
@@ -387,6 +401,16 @@ impl KernelBindings<'_> {
         }
         items.insert(name.to_owned(), text);
         format!("crate::shared::{}::{name}", path.replace('/', "::"))
+    }
+}
+
+/// Whether a type holds whole numbers alone.
+fn is_whole(ty: &TypeInner) -> bool {
+    match ty {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) | TypeInner::Vector { scalar, .. } => {
+            matches!(scalar.kind, ScalarKind::Sint | ScalarKind::Uint)
+        }
+        _ => false,
     }
 }
 

@@ -62,7 +62,7 @@ fn main(
         return;
     }
     let timeline = timelines[clip.first_timeline + timeline_index];
-    var time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * params.elapsed);
+    var time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * params.elapsed);
     if COMPACTED && (is_ahead || entry < params.instances) {
         // To the bit what the gate decided by: a key is passed for both or for neither.
         let seen = history[playing];

@@ -67,7 +67,7 @@ fn main(
     }
     let instance = instances[index];
     let entry = entries[instance.clip];
-    let time = inside_clip(instance.wrap, entry.duration, instance.start + instance.rate * params.elapsed);
+    let time = inside_clip(instance.wrap_code, entry.duration, instance.start + instance.rate * params.elapsed);
     let found = place(entry.first_time, entry.keys, time);
     let t = bitcast<f32>(found.y);
     let first = entry.first_value + pair - index * params.targets;

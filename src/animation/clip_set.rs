@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use crate::InputError;
 use crate::asset::clip::Clip;
+pub use crate::shared::animation::clip::ClipEntry;
 
 /// A track's timeline when its value never changes.
 pub const CONSTANT: u32 = (1 << 30) - 1;
@@ -18,21 +19,6 @@ pub struct Timeline {
     pub first_time: u32,
     /// How many, at least 1.
     pub keys: u32,
-}
-
-/// A clip's place in a set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct ClipEntry {
-    /// Its first timeline.
-    pub first_timeline: u32,
-    /// How many it has.
-    pub timelines: u32,
-    /// Seconds.
-    pub duration: f32,
-    /// Its first row in tables that have one for each time of its first timeline, and one more.
-    pub first_row: u32,
 }
 
 /// A track of a set: 8 bytes.

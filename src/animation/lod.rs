@@ -2,24 +2,10 @@
 //! missed before it shows. Quantized on the host, so that every device decides alike.
 
 use crate::InputError;
+pub use crate::shared::animation::gating::Lod;
 
 /// [`Lod::omega`] at full detail.
 pub const OMEGA_ONE: u32 = 1 << 16;
-
-/// An instance's level of detail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Lod {
-    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], where nothing is skipped. See [`Range::omega`].
-    pub omega: u32,
-    /// Motion that may be missed, in units of the gate's table: see [`Lens::allowed`].
-    pub allowed: u32,
-    /// How much motion counts against that of other instances, 0 to 65535: in proportion to its size on screen.
-    pub weight: u32,
-    /// [`Lod::HIDDEN`], [`Lod::REFRESH`].
-    pub flags: u32,
-}
 
 impl Lod {
     /// Not in view: costs nothing, and is sampled in full when it comes back.

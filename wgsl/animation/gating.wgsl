@@ -1,13 +1,14 @@
 // What gates know of an instance.
 
-// From the host.
+// An instance's level of detail.
 struct Lod {
-    // Level of detail by distance, 0 to 65536.
+    // Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], where nothing is skipped. See [`Range::omega`].
     omega: u32,
-    // Motion that may be missed, in units of the table.
+    // Motion that may be missed, in units of the gate's table: see [`Lens::allowed`].
     allowed: u32,
-    // How much motion counts, relative to other instances, 0 to 65535.
+    // How much motion counts against that of other instances, 0 to 65535: in proportion to its size on screen.
     weight: u32,
+    // [`Lod::HIDDEN`], [`Lod::REFRESH`].
     flags: u32,
 }
 
@@ -15,14 +16,17 @@ const LOD_HIDDEN = 1u;
 const LOD_REFRESH = 2u;
 const OMEGA_ONE = 65536u;
 
-// Where it stands in its clip.
+// Where an instance stands.
 struct Phase {
+    // Row of the gate's table: the clip's first, and the key before.
     row: u32,
-    // The way to the next row, 0 to 65536; above 20 bits what else asks for a pose.
+    // In the lower 20 bits the way to the next row, 0 to 65536; above them the [`Verdict`].
     fraction_and_verdict: u32,
+    // The clip.
     clip: u32,
-    // Where it will stand when bones may be sampled ahead of their time; else as above.
+    // The row where it will stand when bones may be sampled ahead of their time; else as above.
     ahead_row: u32,
+    // The way to the row after it, 0 to 65536.
     ahead_fraction: u32,
 }
 

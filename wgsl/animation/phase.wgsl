@@ -52,14 +52,14 @@ fn whole_fraction(bits: u32) -> u32 {
 fn phase_of(index: u32, flags: u32) -> Phase {
     let instance = instances[index];
     let clip = clips[instance.clip];
-    let time = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * phase_params.elapsed);
+    let time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * phase_params.elapsed);
     let timeline = timelines[clip.first_timeline];
     let found = place(timeline.x, timeline.y, time);
     var later = time;
     var ahead = found;
     if phase_params.ahead != 0.0 {
         let seconds = phase_params.elapsed + phase_params.ahead;
-        later = inside_clip(instance.wrap, clip.duration, instance.start + instance.rate * seconds);
+        later = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
         ahead = place(timeline.x, timeline.y, later);
     }
     let above = clips_above(index);

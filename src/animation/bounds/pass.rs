@@ -1,18 +1,11 @@
 //! `kernels/animation/bounds.wgsl`.
 
-use encase::ShaderType;
-
 use super::{Bounds, check_reaches};
 use crate::animation::crowd::Crowd;
+use crate::gpu::bindings::animation::bounds as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::shared::animation::bounds::BoundsParams;
 use crate::{Error, InputError};
-
-/// `BoundsParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct BoundsParams {
-    pub instances: u32,
-    pub bones: u32,
-}
 
 /// What takes the bones of an instance together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,29 +60,21 @@ impl BoundsPass {
         let params = BoundsParams { instances: crowd.len() as u32, bones: crowd.bones as u32 };
         let uniform = Uniform::new(gpu, "bounds", &params)?;
         let reaches = Buffer::from_slice(gpu, "reaches", reaches)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            crowd.models.raw().as_entire_binding(),
-            reaches.raw().as_entire_binding(),
-            bounds.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            models: crowd.models.slice().cast(),
+            reaches: reaches.slice(),
+            bounds: bounds.slice().cast(),
+        };
         let threads = match self.share {
             Share::Workgroup => 64 * params.instances,
             Share::Whole => params.instances,
         };
         let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, threads),
             kernel: self.kernel.clone(),
         };
         Ok(Job::new(gpu, "animation/bounds", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(bounds_params_layout: BoundsParams = ANIMATION_BOUNDS "BoundsParams");
 }

@@ -1,26 +1,16 @@
 //! `kernels/animation/budget.wgsl`.
 
-use encase::ShaderType;
-
 use crate::Error;
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::Gating;
 use crate::animation::gate_table::Kind;
+use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::shared::animation::budget::BudgetParams;
 
 /// Words of the tally before those of the instances.
 const TALLY: usize = 1027;
-
-/// `BudgetParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct BudgetParams {
-    pub instances: u32,
-    pub bones: u32,
-    pub words: u32,
-    pub stride: u32,
-    pub budget: u32,
-}
 
 /// Decides which bones are sampled.
 #[derive(Debug, Clone)]
@@ -62,20 +52,20 @@ impl BudgetPass {
         let uniform = Uniform::new(gpu, "budget", &params)?;
         let ranks: Buffer<u32> = Buffer::new(gpu, "ranks", 17 * words as usize)?;
         let tally: Buffer<u32> = Buffer::new(gpu, "tally", TALLY + gating.lods.len())?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            gating.lods.raw().as_entire_binding(),
-            gating.phases.raw().as_entire_binding(),
-            gating.movers.raw().as_entire_binding(),
-            gating.table.raw().as_entire_binding(),
-            gating.sampled.raw().as_entire_binding(),
-            active.bits.raw().as_entire_binding(),
-            ranks.raw().as_entire_binding(),
-            tally.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            lods: gating.lods.slice(),
+            phases: gating.phases.slice(),
+            movers: gating.movers.slice(),
+            table: gating.table.slice(),
+            sampled: gating.sampled.slice(),
+            bits: active.bits.slice(),
+            ranks: ranks.slice(),
+            tally: tally.slice(),
+        };
         let step = |(kernel, threads): (&Kernel, u32)| {
             Ok(Step {
-                groups: vec![kernel.bind(gpu, 0, &resources)?],
+                groups: vec![group.bind(gpu, kernel)?],
                 workgroups: kernel.spread(gpu, threads),
                 kernel: kernel.clone(),
             })
@@ -117,9 +107,6 @@ impl BudgetJob {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(budget_params_layout: BudgetParams = ANIMATION_BUDGET "BudgetParams");
 
     #[test]
     fn ties_begin_behind_the_tally() {

@@ -1,23 +1,13 @@
 //! `kernels/animation/concat.wgsl`.
 
-use encase::ShaderType;
-
 use super::{Order, Slot};
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::asset::skeleton::Skeleton;
+use crate::gpu::bindings::animation::concat as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, shaders};
+use crate::shared::animation::concat::ConcatParams;
 use crate::{Error, InputError};
-
-/// `ConcatParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct ConcatParams {
-    pub instances: u32,
-    pub bones: u32,
-    pub words: u32,
-    pub first_chain: u32,
-    pub chains: u32,
-}
 
 /// How threads share the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -172,24 +162,16 @@ impl<'a> Binder<'a> {
             chains: level[1] - level[0],
         };
         let uniform = Uniform::new(gpu, "concat", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            self.slots.raw().as_entire_binding(),
-            self.chains.raw().as_entire_binding(),
-            lists.dirty.raw().as_entire_binding(),
-            lists.instances.raw().as_entire_binding(),
-            lists.dispatches.raw().as_entire_binding(),
-            crowd.locals.raw().as_entire_binding(),
-            crowd.models.raw().as_entire_binding(),
-        ];
-        kernel.bind(gpu, 0, &resources)
+        let group = bindings::Group {
+            params: &uniform,
+            slots: self.slots.slice().cast(),
+            chains: self.chains.slice().cast(),
+            dirty: lists.dirty.slice(),
+            dirty_instances: lists.instances.slice(),
+            dispatches: lists.dispatches.slice(),
+            locals: crowd.locals.slice().cast(),
+            models: crowd.models.slice().cast(),
+        };
+        group.bind(gpu, kernel)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(concat_params_layout: ConcatParams = ANIMATION_CONCAT "ConcatParams");
 }

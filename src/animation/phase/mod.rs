@@ -4,6 +4,8 @@
 //! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
 //! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
+pub use crate::shared::animation::gating::Phase;
+
 #[cfg(feature = "gpu")]
 pub mod bench;
 #[cfg(feature = "gpu")]
@@ -37,23 +39,6 @@ impl Verdict {
     pub fn forces_motion(self) -> bool {
         matches!(self, Self::Forced | Self::Blended)
     }
-}
-
-/// Where an instance stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Phase {
-    /// Row of the gate's table: the clip's first, and the key before.
-    pub row: u32,
-    /// In the lower 20 bits the way to the next row, 0 to 65536; above them the [`Verdict`].
-    pub fraction_and_verdict: u32,
-    /// The clip.
-    pub clip: u32,
-    /// The row where it will stand when bones may be sampled ahead of their time; else as above.
-    pub ahead_row: u32,
-    /// The way to the row after it, 0 to 65536.
-    pub ahead_fraction: u32,
 }
 
 impl Phase {

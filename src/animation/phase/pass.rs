@@ -1,21 +1,12 @@
 //! `kernels/animation/phase.wgsl`.
 
-use encase::ShaderType;
-
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
 use crate::animation::place::{check_elapsed, check_seconds};
+use crate::gpu::bindings::animation::phase as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
+use crate::shared::animation::phase::PhaseParams;
 use crate::{Error, InputError};
-
-/// `PhaseParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct PhaseParams {
-    pub instances: u32,
-    pub elapsed: f32,
-    pub layers: u32,
-    pub ahead: f32,
-}
 
 /// Finds phases.
 #[derive(Debug, Clone)]
@@ -29,7 +20,7 @@ impl PhasePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_PHASE, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the phases of a crowd.
@@ -135,9 +126,6 @@ impl PhaseJob {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(phase_params_layout: PhaseParams = ANIMATION_PHASE "PhaseParams");
 
     #[test]
     fn the_mark_of_layers_is_the_kernel_s() {

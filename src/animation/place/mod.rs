@@ -6,6 +6,7 @@
 
 use super::sample::Wrap;
 use crate::InputError;
+pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
 #[cfg(feature = "gpu")]
 pub mod bench;
@@ -41,21 +42,6 @@ pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
         return Ok(());
     }
     Err(InputError::new(field, value, format!("must be finite, and within ±{MOST_SECONDS:e}")))
-}
-
-/// What one character plays.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Instance {
-    /// Which clip of the set.
-    pub clip: u32,
-    /// What becomes of times outside the clip: see [`Wrap`].
-    pub wrap_code: u32,
-    /// Where in the clip it stands when nothing has elapsed, in seconds.
-    pub start: f32,
-    /// Clip seconds a second; negative plays backwards.
-    pub rate: f32,
 }
 
 impl Instance {

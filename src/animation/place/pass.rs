@@ -1,25 +1,16 @@
 //! `kernels/animation/place.wgsl`.
 
-use encase::ShaderType;
-
 use super::{Instance, check_elapsed};
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
+use crate::gpu::bindings::animation::place as bindings;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass, shaders,
 };
-
-/// `PlaceParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct PlaceParams {
-    pub entries: u32,
-    pub instances: u32,
-    pub timelines: u32,
-    pub elapsed: f32,
-}
+use crate::shared::animation::place::PlaceParams;
 
 /// Finds where instances stand in their clips.
 #[derive(Debug, Clone)]
@@ -108,18 +99,18 @@ fn bind(
     crowd: &Crowd,
     listed: &Listed<'_>,
 ) -> Result<Group, GpuError> {
-    let resources = [
-        uniform.raw().as_entire_binding(),
-        crowd.instances.raw().as_entire_binding(),
-        clips.clips.raw().as_entire_binding(),
-        clips.timelines.raw().as_entire_binding(),
-        clips.times.raw().as_entire_binding(),
-        crowd.places.raw().as_entire_binding(),
-        listed.instances.raw().as_entire_binding(),
-        listed.dispatches.raw().as_entire_binding(),
-        listed.history.raw().as_entire_binding(),
-    ];
-    kernel.bind(gpu, 0, &resources)
+    let group = bindings::Group {
+        params: &uniform,
+        instances: crowd.instances.slice(),
+        clips: clips.clips.slice(),
+        timelines: clips.timelines.slice().cast(),
+        times: clips.times.slice(),
+        places: crowd.places.slice().cast(),
+        dirty_instances: listed.instances.slice(),
+        dispatches: listed.dispatches.slice(),
+        history: listed.history.slice(),
+    };
+    group.bind(gpu, kernel)
 }
 
 #[derive(Debug, Clone)]
@@ -169,12 +160,4 @@ impl Crowd {
     pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
         Self::layered(gpu, set, instances, &[])
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(place_params_layout: PlaceParams = ANIMATION_PLACE "PlaceParams");
 }

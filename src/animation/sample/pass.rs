@@ -1,23 +1,13 @@
 //! `kernels/animation/sample.wgsl`.
 
-use encase::ShaderType;
-
 use super::RotationPath;
 use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::gpu::bindings::animation::sample as bindings;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
+use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
-
-/// `SampleParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SampleParams {
-    pub bones: u32,
-    pub timelines: u32,
-    pub pairs: u32,
-    pub instances: u32,
-    pub layers: u32,
-}
 
 /// The pairs of instance and bone that are to be sampled, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
@@ -150,24 +140,16 @@ fn bind(
         layers: crowd.layers as u32,
     };
     let uniform = Uniform::new(gpu, "sample", &params)?;
-    let resources = [
-        uniform.raw().as_entire_binding(),
-        crowd.instances.raw().as_entire_binding(),
-        clips.tracks.raw().as_entire_binding(),
-        clips.values.raw().as_entire_binding(),
-        crowd.places.raw().as_entire_binding(),
-        active.pairs.raw().as_entire_binding(),
-        active.dispatched.raw().as_entire_binding(),
-        crowd.locals.raw().as_entire_binding(),
-        crowd.shares.raw().as_entire_binding(),
-    ];
-    kernel.bind(gpu, 0, &resources)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(sample_params_layout: SampleParams = ANIMATION_SAMPLE "SampleParams");
+    let group = bindings::Group {
+        params: &uniform,
+        instances: crowd.instances.slice(),
+        tracks: clips.tracks.slice().cast(),
+        values: clips.values.slice(),
+        places: crowd.places.slice().cast(),
+        pairs: active.pairs.slice(),
+        dispatched: active.dispatched.slice().cast(),
+        locals: crowd.locals.slice().cast(),
+        shares: crowd.shares.slice(),
+    };
+    group.bind(gpu, kernel)
 }

@@ -6,16 +6,10 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod verify;
 
-use encase::ShaderType;
-
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::baseline::copy as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::baseline::copy::CopyParams;
 use crate::{Error, InputError};
-
-/// `CopyParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct CopyParams {
-    pub vectors: u32,
-}
 
 /// Copies one buffer to another.
 #[derive(Debug, Clone)]
@@ -29,7 +23,7 @@ impl CopyPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_COPY, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares a copy of the first `words` words; a multiple of four.
@@ -49,24 +43,16 @@ impl CopyPass {
         }
         let vectors = (words / 4) as u32;
         let uniform = Uniform::new(gpu, "copy", &CopyParams { vectors })?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            source.raw().as_entire_binding(),
-            destination.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            source: source.slice().cast(),
+            destination: destination.slice().cast(),
+        };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, vectors),
         };
         Ok(Job::new(gpu, "baseline/copy", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(copy_params_layout: CopyParams = BASELINE_COPY "CopyParams");
 }

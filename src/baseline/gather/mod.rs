@@ -6,19 +6,11 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod verify;
 
-use encase::ShaderType;
-
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::baseline::gather as bindings;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::baseline::gather::GatherParams;
 use crate::{Error, InputError};
-
-/// `GatherParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct GatherParams {
-    pub pairs: u32,
-    pub bones: u32,
-    pub keys: u32,
-}
 
 /// What a copy of sampling's bytes reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,8 +36,8 @@ impl GatherPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
-        let overrides = [("TABLES", f64::from(reads == Reads::Everything))];
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_GATHER, &overrides)?, reads })
+        let constants = bindings::Constants { tables: reads == Reads::Everything };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, reads })
     }
 
     /// Prepares a crowd that stands at its places, before the last keys. Overwrites its local transforms.
@@ -62,27 +54,19 @@ impl GatherPass {
         clips.values.check_holds("clips.values", 3 * crowd.bones * keys as usize)?;
         let params = GatherParams { pairs: crowd.pairs() as u32, bones: crowd.bones as u32, keys };
         let uniform = Uniform::new(gpu, "gather", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            crowd.instances.raw().as_entire_binding(),
-            clips.tracks.raw().as_entire_binding(),
-            crowd.places.raw().as_entire_binding(),
-            clips.values.raw().as_entire_binding(),
-            crowd.locals.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            instances: crowd.instances.slice(),
+            tracks: clips.tracks.slice().cast(),
+            places: crowd.places.slice().cast(),
+            values: clips.values.slice().cast(),
+            gathered: crowd.locals.slice().cast(),
+        };
         let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, params.pairs),
             kernel: self.kernel.clone(),
         };
         Ok(Job::new(gpu, "baseline/gather", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(gather_params_layout: GatherParams = BASELINE_GATHER "GatherParams");
 }

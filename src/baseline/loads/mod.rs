@@ -6,18 +6,12 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod verify;
 
-use encase::ShaderType;
 use glam::UVec2;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::baseline::loads as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::baseline::loads::LoadsParams;
 use crate::{Error, InputError};
-
-/// `LoadsParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct LoadsParams {
-    pub threads: UVec2,
-    pub loads: u32,
-}
 
 /// Loads texels along rows and adds them up.
 #[derive(Debug, Clone)]
@@ -31,7 +25,7 @@ impl LoadsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_LOADS, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares `threads` (columns, rows) that load `loads` texels each of a float texture: one sum a thread.
@@ -53,25 +47,13 @@ impl LoadsPass {
         let params = LoadsParams { threads: UVec2::from(threads), loads };
         let uniform = Uniform::new(gpu, "loads", &params)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            wgpu::BindingResource::TextureView(&view),
-            sums.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group { params: &uniform, texels: &view, sums: sums.slice() };
         let [x, y] = threads.map(|threads| threads.div_ceil(8));
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: [x, y, 1],
         };
         Ok(Job::new(gpu, "baseline/loads", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(loads_params_layout: LoadsParams = BASELINE_LOADS "LoadsParams");
 }

@@ -6,19 +6,12 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod verify;
 
-use encase::ShaderType;
 use glam::UVec2;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::baseline::words as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::baseline::words::WordsParams;
 use crate::{Error, InputError};
-
-/// `WordsParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct WordsParams {
-    pub key: UVec2,
-    pub vectors: u32,
-    pub vectors_per_row: u32,
-}
 
 /// Draws the words of counters (x, y), row by row.
 #[derive(Debug, Clone)]
@@ -32,7 +25,7 @@ impl WordsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::BASELINE_WORDS, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares `rows` rows of `width` words, a multiple of four.
@@ -53,20 +46,12 @@ impl WordsPass {
         let params =
             WordsParams { key: UVec2::from(key), vectors: width / 4 * rows, vectors_per_row: width / 4 };
         let uniform = Uniform::new(gpu, "words", &params)?;
-        let resources = [uniform.raw().as_entire_binding(), words.raw().as_entire_binding()];
+        let group = bindings::Group { params: &uniform, words: words.slice().cast() };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, params.vectors),
         };
         Ok(Job::new(gpu, "baseline/words", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(words_params_layout: WordsParams = BASELINE_WORDS "WordsParams");
 }

@@ -1,24 +1,14 @@
 //! `kernels/surface/cone_map.wgsl`.
 
-use encase::ShaderType;
 use glam::UVec2;
 
 use super::OPENING;
+use crate::gpu::bindings::surface::cone_map as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::shared::surface::cone_map::ConeParams;
 use crate::surface::height_pyramid::Pyramids;
 use crate::surface::texture::{HeightBatch, with_remedy};
 use crate::{Error, InputError};
-
-/// `ConeParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct ConeParams {
-    pub size: UVec2,
-    pub cells: UVec2,
-    pub pitch: u32,
-    pub rows: u32,
-    pub cone_pitch: u32,
-    pub address: u32,
-}
 
 /// Cone maps of a batch, one after another.
 #[derive(Debug, Clone)]
@@ -89,26 +79,18 @@ impl ConeMapPass {
             address: pyramids.address.code(),
         };
         let uniform = Uniform::new(gpu, "cones", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            maps.heights.raw().as_entire_binding(),
-            pyramids.nodes.raw().as_entire_binding(),
-            cones.cones.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            heights: maps.heights.slice(),
+            pyramids: pyramids.nodes.slice(),
+            cones: cones.cones.slice(),
+        };
         let [x, y] = layout.cells.map(|cells| cells.div_ceil(8));
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: [x, y, maps.count],
         };
         Ok(Job::new(gpu, "surface/cone_map", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(cone_params_layout: ConeParams = SURFACE_CONE_MAP "ConeParams");
 }

@@ -1,25 +1,14 @@
 //! `kernels/surface/height_pyramid.wgsl`.
 
-use encase::ShaderType;
 use glam::UVec2;
 
 use super::PyramidLayout;
+use crate::gpu::bindings::surface::height_pyramid as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::shared::surface::height_pyramid::PyramidParams;
 use crate::surface::map::Address;
 use crate::surface::texture::{HeightBatch, with_remedy};
 use crate::{Error, InputError};
-
-/// `PyramidParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct PyramidParams {
-    pub size: UVec2,
-    pub cells: UVec2,
-    pub pitch: u32,
-    pub rows: u32,
-    pub address: u32,
-    pub levels: u32,
-    pub level: u32,
-}
 
 /// Pyramids of a batch of height maps, one after another.
 #[derive(Debug, Clone)]
@@ -116,24 +105,16 @@ impl HeightPyramidPass {
             level,
         };
         let uniform = Uniform::new(gpu, "pyramid", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            maps.heights.raw().as_entire_binding(),
-            pyramids.nodes.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            heights: maps.heights.slice().cast(),
+            pyramids: pyramids.nodes.slice(),
+        };
         let [x, y, _] = kernel.spread(gpu, rows * columns.next_power_of_two());
         Ok(Step {
             kernel: kernel.clone(),
-            groups: vec![kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, kernel)?],
             workgroups: [x, y, maps.count],
         })
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(pyramid_params_layout: PyramidParams = SURFACE_HEIGHT_PYRAMID "PyramidParams");
 }

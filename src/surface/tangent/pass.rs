@@ -1,16 +1,10 @@
 //! `kernels/surface/tangent.wgsl`.
 
-use encase::ShaderType;
-
 use super::{Adjacency, Mesh};
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::surface::tangent as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::surface::tangent::TangentParams;
 use crate::{Error, InputError};
-
-/// `TangentParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct TangentParams {
-    pub vertices: u32,
-}
 
 /// A mesh on the device. Positions, normals and uv may be rewritten, by other kernels too, as long as positions
 /// and uv keep [`Mesh`]'s bounds.
@@ -58,7 +52,7 @@ impl TangentPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::SURFACE_TANGENT, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the frames of `mesh` into `tangents`: tangent x, y, z and handedness for each vertex. A vertex
@@ -79,29 +73,21 @@ impl TangentPass {
         }
         let vertices = vertices as u32;
         let uniform = Uniform::new(gpu, "tangent", &TangentParams { vertices })?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            mesh.positions.raw().as_entire_binding(),
-            mesh.normals.raw().as_entire_binding(),
-            mesh.uv.raw().as_entire_binding(),
-            mesh.indices.raw().as_entire_binding(),
-            mesh.offsets.raw().as_entire_binding(),
-            mesh.corners.raw().as_entire_binding(),
-            tangents.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            positions: mesh.positions.slice().cast(),
+            normals: mesh.normals.slice().cast(),
+            texture_coordinates: mesh.uv.slice().cast(),
+            indices: mesh.indices.slice(),
+            offsets: mesh.offsets.slice(),
+            corners: mesh.corners.slice(),
+            tangents: tangents.slice(),
+        };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, vertices),
         };
         Ok(Job::new(gpu, "surface/tangent", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(tangent_params_layout: TangentParams = SURFACE_TANGENT "TangentParams");
 }

@@ -1,21 +1,12 @@
 //! `kernels/terrain/border.wgsl`, wave by wave, over the buffers that a batch lies in.
 
-use encase::ShaderType;
-
 use super::Neighbours;
 use super::visits::{Visit, visits};
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::border as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::border::BorderParams;
 use crate::terrain::fields::{Fields, places};
 use crate::{Error, InputError};
-
-/// `BorderParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct BorderParams {
-    pub size: u32,
-    pub width: u32,
-    pub points: u32,
-    pub start: u32,
-}
 
 /// Moves border samples of patches towards patches that exist already.
 #[derive(Debug, Clone)]
@@ -30,8 +21,8 @@ impl BorderPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |others: f64| Kernel::new(gpu, &shaders::TERRAIN_BORDER, &[("OTHERS", others)]);
-        Ok(Self { within: kernel(0.0)?, across: kernel(1.0)? })
+        let kernel = |others| bindings::kernel(gpu, &bindings::Constants { others });
+        Ok(Self { within: kernel(false)?, across: kernel(true)? })
     }
 
     /// Prepares the transition of `width` samples for patches that lie in `parts` one after the other; `neighbours`
@@ -71,18 +62,18 @@ impl BorderPass {
             let Entries { neighbours, order } = &entries[*part];
             // A buffer that is written cannot be bound once more; what stands in for it is never read.
             let (kernel, others) = if source == part {
-                (&self.within, order.raw())
+                (&self.within, order.slice().cast())
             } else {
-                (&self.across, parts[*source].heights.raw())
+                (&self.across, parts[*source].heights.slice())
             };
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                parts[*part].heights.raw().as_entire_binding(),
-                neighbours.raw().as_entire_binding(),
-                order.raw().as_entire_binding(),
-                others.as_entire_binding(),
-            ];
-            let groups = vec![kernel.bind(gpu, 0, &resources)?];
+            let group = bindings::Group {
+                params: &uniform,
+                heights: parts[*part].heights.slice(),
+                neighbours: neighbours.slice(),
+                order: order.slice(),
+                others,
+            };
+            let groups = vec![group.bind(gpu, kernel)?];
             let workgroups = [kernel.groups_for(size), size, count];
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
@@ -105,12 +96,4 @@ impl Entries {
             order: Buffer::from_slice(gpu, "blend order", &order)?,
         })
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(border_params_layout: BorderParams = TERRAIN_BORDER "BorderParams");
 }

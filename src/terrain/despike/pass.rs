@@ -1,20 +1,12 @@
 //! `kernels/terrain/despike.wgsl`.
 
-use encase::ShaderType;
-
 use super::Despike;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::terrain::features::{FeatureGrid, FeatureIndex};
+use crate::gpu::bindings::terrain::despike as bindings;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::despike::DespikeParams;
+use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
-
-/// `DespikeParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct DespikeParams {
-    pub features: FeatureGrid,
-    pub in_width: u32,
-    pub threshold: i32,
-}
 
 /// Removes spikes.
 #[derive(Debug, Clone)]
@@ -28,8 +20,8 @@ impl DespikePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, with_features: bool) -> Result<Self, GpuError> {
-        let constants = [("FEATURES", f64::from(u8::from(with_features)))];
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_DESPIKE, &constants)? })
+        let constants = bindings::Constants { features: with_features.into() };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)? })
     }
 
     /// Prepares despiking of `windows` into `cropped`, one sample smaller on every side. Grid 0 of
@@ -57,27 +49,18 @@ impl DespikePass {
         let params =
             DespikeParams { features: grid, in_width: windows.width, threshold: despike.fixed_threshold() };
         let uniform = Uniform::new(gpu, "despike", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            windows.heights.raw().as_entire_binding(),
-            cropped.heights.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            windows: windows.heights.slice(),
+            cropped: cropped.heights.slice(),
+        };
+        let injected =
+            bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![
-                self.kernel.bind(gpu, 0, &resources)?,
-                self.kernel.bind(gpu, 1, &features.resources())?,
-            ],
+            groups: vec![group.bind(gpu, &self.kernel)?, injected.bind(gpu, &self.kernel)?],
             workgroups: windows.workgroups(&self.kernel, 1),
         };
         Ok(Job::new(gpu, "terrain/despike", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(despike_params_layout: DespikeParams = TERRAIN_DESPIKE "DespikeParams");
 }

@@ -1,26 +1,18 @@
 //! Features on the device: a bit a point and the rank of its value, a grid a level
 //! (`wgsl/terrain/features.wgsl`).
 
+use crate::gpu::bind::Slice;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// One grid of the index, as shaders see it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, encase::ShaderType)]
-pub struct FeatureGrid {
-    /// Points along an edge of the window.
-    pub width: u32,
-    /// Words a row; a row covers one point more than the window on both sides.
-    pub words_per_row: u32,
-    /// Words a window.
-    pub words_per_window: u32,
-    /// The first window's first word.
-    pub start: u32,
-}
+/// One grid of the index.
+pub use crate::shared::terrain::features::FeatureGrid;
+use crate::shared::terrain::features::FeatureWord;
 
 /// The index of a batch of windows: several grids of different widths, and the values.
 #[derive(Debug, Clone)]
 pub struct FeatureIndex {
     grids: Vec<FeatureGrid>,
-    words: Buffer<[u32; 2]>,
+    words: Buffer<FeatureWord>,
     heights: Buffer<i32>,
 }
 
@@ -71,17 +63,17 @@ impl FeatureIndex {
         if self.words.is_empty() {
             return Ok(());
         }
-        let mut words = vec![[0_u32; 2]; self.words.len()];
+        let mut words = vec![FeatureWord { mask: 0, first_value: 0 }; self.words.len()];
         let mut heights = Vec::new();
         for (index, grid) in self.grids.iter().enumerate() {
             for window in 0..windows {
                 let start = grid.start + window * grid.words_per_window;
                 for (column, row, height) in points(index, window) {
                     let word = &mut words[(start + row * grid.words_per_row + column / 32) as usize];
-                    if word[0] == 0 {
-                        word[1] = heights.len() as u32;
+                    if word.mask == 0 {
+                        word.first_value = heights.len() as u32;
                     }
-                    word[0] |= 1 << (column % 32);
+                    word.mask |= 1 << (column % 32);
                     heights.push(height);
                 }
             }
@@ -101,12 +93,16 @@ impl FeatureIndex {
 
     /// Grid `index`, in the order of the widths; one without points where there is none.
     pub fn grid(&self, index: usize) -> FeatureGrid {
-        self.grids.get(index).copied().unwrap_or_default()
+        let none = FeatureGrid { width: 0, words_per_row: 0, words_per_window: 0, start: 0 };
+        self.grids.get(index).copied().unwrap_or(none)
     }
 
-    /// The resources of bind group 1.
-    pub fn resources(&self) -> [wgpu::BindingResource<'_>; 2] {
-        [self.words.raw().as_entire_binding(), self.heights.raw().as_entire_binding()]
+    pub(crate) fn words(&self) -> Slice<'_, FeatureWord> {
+        self.words.slice()
+    }
+
+    pub(crate) fn heights(&self) -> Slice<'_, i32> {
+        self.heights.slice()
     }
 
     /// Bytes on the device.

@@ -1,14 +1,13 @@
 //! `kernels/terrain/height.wgsl` over the levels of a batch of windows.
 
-use encase::ShaderType;
-use glam::UVec2;
-
 use super::Window;
 use crate::Error;
 use crate::InputError;
-use crate::gpu::{AdapterSummary, Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::height as bindings;
+use crate::gpu::{AdapterSummary, Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::height::Level;
 use crate::terrain::config::{Border, Config, Offset};
-use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features, Lattice};
+use crate::terrain::features::{FeatureIndex, FeatureMode, Features, Lattice};
 use crate::terrain::fields::Fields;
 
 /// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
@@ -17,27 +16,6 @@ const CELL_ROWS_HARDWARE: u32 = 2;
 
 /// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in two threads, the 33 of 129 in one.
 const CELL_ROWS_TWO_LEVELS: u32 = 33;
-
-/// `Level` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct Level {
-    pub key: UVec2,
-    pub fine_width: u32,
-    pub fine_points: u32,
-    pub coarse_width: u32,
-    pub coarse_points: u32,
-    pub fine_spacing: u32,
-    pub fine_range: u32,
-    pub middle_range: u32,
-    pub base_range: u32,
-    pub blocks_per_row: u32,
-    pub blocks: u32,
-    pub windows: u32,
-    #[shader(align(16))]
-    pub fine_features: FeatureGrid,
-    #[shader(align(16))]
-    pub base_features: FeatureGrid,
-}
 
 /// How a dispatch is cut into threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,14 +80,14 @@ impl HeightPass {
             return Err(InputError::new("blocks.cell_rows", 0, "must be at least 1").into());
         }
         let kernel = |levels: u32, first: bool| {
-            let constants = [
-                ("CELL_ROWS", f64::from(blocks.cell_rows)),
-                ("LEVELS", f64::from(levels)),
-                ("FIRST", f64::from(u8::from(first))),
-                ("DISTRIBUTION", f64::from(offset.code())),
-                ("FEATURES", features.map_or(0.0, |mode| f64::from(mode.code()))),
-            ];
-            Kernel::new(gpu, &shaders::TERRAIN_HEIGHT, &constants)
+            let constants = bindings::Constants {
+                cell_rows: blocks.cell_rows,
+                levels,
+                first,
+                distribution: offset.code(),
+                features: features.map_or(0, FeatureMode::code),
+            };
+            bindings::kernel(gpu, &constants)
         };
         let stages = (1..=blocks.levels)
             .map(|levels| Ok(Stage { first: kernel(levels, true)?, next: kernel(levels, false)? }))
@@ -160,13 +138,15 @@ impl HeightPass {
             let kernel = if level == 0 { &stage.first } else { &stage.next };
             let params = self.level(config, &widths, [level, levels], &features, count);
             let uniform = Uniform::new(gpu, "terrain level", &params)?;
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                origins[level + levels].raw().as_entire_binding(),
-                coarse.raw().as_entire_binding(),
-                fine.raw().as_entire_binding(),
-            ];
-            let groups = vec![kernel.bind(gpu, 0, &resources)?, kernel.bind(gpu, 1, &features.resources())?];
+            let group = bindings::Group {
+                level: &uniform,
+                origins: origins[level + levels].slice(),
+                coarse: coarse.slice(),
+                fine: fine.slice(),
+            };
+            let injected =
+                bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
+            let groups = vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?];
             let workgroups = kernel.spread(gpu, params.blocks * count);
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }

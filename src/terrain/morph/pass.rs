@@ -1,17 +1,10 @@
 //! `kernels/terrain/morph.wgsl`.
 
-use encase::ShaderType;
-
 use super::Morph;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::morph as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
-
-/// `MorphParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct MorphParams {
-    pub points: u32,
-    pub time: u32,
-}
 
 /// Blends two height fields.
 #[derive(Debug, Clone)]
@@ -25,7 +18,7 @@ impl MorphPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_MORPH, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the blend of `from` and `to` into `heights`, all of one length.
@@ -45,13 +38,13 @@ impl MorphPass {
         }
         let points = from.len() as u32;
         let params = Uniform::new(gpu, "morph", &MorphParams { points, time: 0 })?;
-        let resources = [
-            params.raw().as_entire_binding(),
-            from.raw().as_entire_binding(),
-            to.raw().as_entire_binding(),
-            heights.raw().as_entire_binding(),
-        ];
-        let groups = vec![self.kernel.bind(gpu, 0, &resources)?];
+        let group = bindings::Group {
+            params: &params,
+            start_heights: from.slice(),
+            target_heights: to.slice(),
+            heights: heights.slice(),
+        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
         let workgroups = self.kernel.spread(gpu, points);
         let step = Step { kernel: self.kernel.clone(), groups, workgroups };
         Ok(MorphJob { params, points, job: Job::new(gpu, "terrain/morph", vec![step])? })
@@ -80,12 +73,4 @@ impl MorphJob {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(morph_params_layout: MorphParams = TERRAIN_MORPH "MorphParams");
 }

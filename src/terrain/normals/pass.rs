@@ -1,18 +1,11 @@
 //! `kernels/terrain/normals.wgsl`.
 
-use encase::ShaderType;
-
 use crate::Error;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::normals as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::normals::NormalsParams;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
-
-/// `NormalsParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct NormalsParams {
-    pub in_width: u32,
-    pub run: f32,
-}
 
 /// Computes slopes and unit normals.
 #[derive(Debug, Clone)]
@@ -26,7 +19,7 @@ impl NormalsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_NORMALS, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the slopes of `windows`, whose samples are `terrain_scale` apart: for every sample but the
@@ -50,25 +43,17 @@ impl NormalsPass {
         let params =
             NormalsParams { in_width: windows.width, run: (2.0 * terrain_scale * HEIGHT_ONE) as f32 };
         let uniform = Uniform::new(gpu, "normals", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            windows.heights.raw().as_entire_binding(),
-            gradients.raw().as_entire_binding(),
-            normals.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            windows: windows.heights.slice(),
+            gradients: gradients.slice(),
+            normals: normals.slice(),
+        };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: windows.workgroups(&self.kernel, 1),
         };
         Ok(Job::new(gpu, "terrain/normals", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(normals_params_layout: NormalsParams = TERRAIN_NORMALS "NormalsParams");
 }

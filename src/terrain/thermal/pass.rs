@@ -1,19 +1,12 @@
 //! `kernels/terrain/thermal.wgsl`, an iteration a dispatch.
 
-use encase::ShaderType;
-
 use super::Thermal;
 use crate::Error;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::thermal as bindings;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::thermal::ThermalParams;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
-
-/// `ThermalParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct ThermalParams {
-    pub in_width: u32,
-    pub threshold: i32,
-}
 
 /// Erodes slopes.
 #[derive(Debug, Clone)]
@@ -27,7 +20,7 @@ impl ThermalPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_THERMAL, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares all iterations, in turn between `windows` and `other`, which is as large. An iteration crops
@@ -54,12 +47,12 @@ impl ThermalPass {
             let (from, to) = if iteration % 2 == 0 { (windows, other) } else { (other, windows) };
             let at = windows.cropped(iteration);
             let uniform = Uniform::new(gpu, "thermal", &ThermalParams { in_width: at.width, threshold })?;
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                from.heights.raw().as_entire_binding(),
-                to.heights.raw().as_entire_binding(),
-            ];
-            let groups = vec![self.kernel.bind(gpu, 0, &resources)?];
+            let group = bindings::Group {
+                params: &uniform,
+                windows: from.heights.slice(),
+                cropped: to.heights.slice(),
+            };
+            let groups = vec![group.bind(gpu, &self.kernel)?];
             steps.push(Step {
                 kernel: self.kernel.clone(),
                 groups,
@@ -68,12 +61,4 @@ impl ThermalPass {
         }
         Ok(Job::new(gpu, "terrain/thermal", steps)?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(thermal_params_layout: ThermalParams = TERRAIN_THERMAL "ThermalParams");
 }

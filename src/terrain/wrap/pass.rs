@@ -1,29 +1,13 @@
 //! `kernels/terrain/wrap.wgsl` over the levels of a batch of patches.
 
-use encase::ShaderType;
-use glam::{IVec4, UVec2};
-
 use crate::Error;
 use crate::InputError;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::terrain::wrap as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::wrap::WrapLevel;
 use crate::terrain::config::{Border, Config, Offset, PATCH_EDGE};
-use crate::terrain::features::{FeatureGrid, FeatureIndex, FeatureMode, Features, Lattice};
+use crate::terrain::features::{FeatureIndex, FeatureMode, Features, Lattice};
 use crate::terrain::height::Window;
-
-/// `WrapLevel` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct WrapLevel {
-    pub corners: IVec4,
-    pub fine_features: FeatureGrid,
-    pub base_features: FeatureGrid,
-    pub key: UVec2,
-    pub fine_width: u32,
-    pub coarse_width: u32,
-    pub fine_spacing: u32,
-    pub range: u32,
-    pub fine_points: u32,
-    pub coarse_points: u32,
-}
 
 /// Diamond-square heights of patches by themselves. Compiled for one distribution and one way of injection.
 #[derive(Debug, Clone)]
@@ -40,12 +24,9 @@ impl WrapPass {
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
         let kernel = |first: bool| {
-            let constants = [
-                ("FIRST", f64::from(u8::from(first))),
-                ("DISTRIBUTION", f64::from(offset.code())),
-                ("FEATURES", features.map_or(0.0, |mode| f64::from(mode.code()))),
-            ];
-            Kernel::new(gpu, &shaders::TERRAIN_WRAP, &constants)
+            let features = features.map_or(0, FeatureMode::code);
+            let constants = bindings::Constants { first, distribution: offset.code(), features };
+            bindings::kernel(gpu, &constants)
         };
         Ok(Self { first: kernel(true)?, next: kernel(false)?, with_features: features.is_some() })
     }
@@ -95,13 +76,15 @@ impl WrapPass {
                 coarse_points: widths[level].pow(2),
             };
             let uniform = Uniform::new(gpu, "terrain level", &params)?;
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                origins.raw().as_entire_binding(),
-                coarse.raw().as_entire_binding(),
-                fine.raw().as_entire_binding(),
-            ];
-            let groups = vec![kernel.bind(gpu, 0, &resources)?, kernel.bind(gpu, 1, &features.resources())?];
+            let group = bindings::Group {
+                level: &uniform,
+                origins: origins.slice(),
+                coarse: coarse.slice(),
+                fine: fine.slice(),
+            };
+            let injected =
+                bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
+            let groups = vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?];
             let workgroups = [kernel.groups_for(widths[level]), widths[level], count];
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
@@ -156,12 +139,4 @@ impl WrapJob {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(wrap_level_layout: WrapLevel = TERRAIN_WRAP "WrapLevel");
 }
