@@ -3,7 +3,7 @@
 use super::{Bounds, check_reaches};
 use crate::animation::crowd::Crowd;
 use crate::gpu::bindings::animation::bounds as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::bounds::BoundsParams;
 use crate::{Error, InputError};
 
@@ -36,8 +36,8 @@ impl BoundsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
-        let whole = f64::from(share == Share::Whole);
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_BOUNDS, &[("WHOLE", whole)])?, share })
+        let whole = share == Share::Whole;
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, share })
     }
 
     /// Prepares the bounds of a crowd's instances from its palettes, with a reach a bone in metres.

@@ -6,8 +6,8 @@ use crate::animation::crowd::Crowd;
 use crate::animation::gate::Gating;
 use crate::animation::gate_table::Kind;
 use crate::gpu::bindings::animation::budget as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::shared::animation::budget::BudgetParams;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM};
 
 /// Words of the tally before those of the instances.
 const TALLY: usize = 1027;
@@ -24,8 +24,8 @@ impl BudgetPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let stage = |stage| Kernel::new(gpu, &shaders::ANIMATION_BUDGET, &[("STAGE", stage)]);
-        Ok(Self { stages: [stage(0.0)?, stage(1.0)?, stage(2.0)?, stage(3.0)?, stage(4.0)?] })
+        let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
+        Ok(Self { stages: [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?] })
     }
 
     /// Prepares the decision, from a crowd's phases. The gating's table is one of expectations. The budget is that of

@@ -1,22 +1,12 @@
 //! `kernels/animation/compact.wgsl`.
 
-use encase::ShaderType;
-
 use crate::animation::concat::Order;
 use crate::animation::crowd::Crowd;
 use crate::animation::sample::ActivePairs;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
+use crate::gpu::bindings::animation::compact as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::animation::compact::{ALL, CompactParams, SCAN, SCATTER, SPREAD};
 use crate::{Error, InputError};
-
-/// `CompactParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct CompactParams {
-    pub instances: u32,
-    pub bones: u32,
-    pub words: u32,
-    pub served: u32,
-    pub most_groups: u32,
-}
 
 /// What is to be done for a crowd in a frame. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
@@ -104,8 +94,8 @@ impl CompactPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let stage = |stage| Kernel::new(gpu, &shaders::ANIMATION_COMPACT, &[("STAGE", stage)]);
-        Ok(Self { stages: [stage(0.0)?, stage(1.0)?, stage(2.0)?], all: stage(3.0)? })
+        let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
+        Ok(Self { stages: [stage(SPREAD)?, stage(SCAN)?, stage(SCATTER)?], all: stage(ALL)? })
     }
 
     /// Prepares the lists of a crowd's active bits.
@@ -121,11 +111,20 @@ impl CompactPass {
     ) -> Result<CompactJob, Error> {
         let params = CompactParams::new(gpu, crowd, active);
         let uniform = Uniform::new(gpu, "compact", &params)?;
-        let bits = active.bits.raw().as_entire_binding();
-        let resources: Vec<_> = [bits].into_iter().chain(resources(&uniform, active)).collect();
+        let group = bindings::Group {
+            bits: active.bits.slice(),
+            compact_params: &uniform,
+            slots: active.slots.slice().cast(),
+            dirty: active.dirty.slice(),
+            counts: active.counts.slice(),
+            pairs: active.pairs.pairs.slice(),
+            pair_dispatch: active.pairs.dispatched.slice().cast(),
+            dirty_instances: active.instances.slice(),
+            instance_dispatches: active.dispatches.slice(),
+        };
         let step = |kernel: &Kernel, threads: u32| {
             Ok::<_, GpuError>(Step {
-                groups: vec![kernel.bind(gpu, 0, &resources)?],
+                groups: vec![group.bind(gpu, kernel)?],
                 workgroups: kernel.spread(gpu, threads),
                 kernel: kernel.clone(),
             })
@@ -153,26 +152,4 @@ impl CompactParams {
             most_groups: gpu.device().limits().max_compute_workgroups_per_dimension,
         }
     }
-}
-
-/// What is bound besides the bits, in the order of `wgsl/animation/compact.wgsl`.
-pub(crate) fn resources<'a>(uniform: &'a Uniform<CompactParams>, active: &'a Active) -> [Resource<'a>; 8] {
-    [
-        uniform.raw().as_entire_binding(),
-        active.slots.raw().as_entire_binding(),
-        active.dirty.raw().as_entire_binding(),
-        active.counts.raw().as_entire_binding(),
-        active.pairs.pairs.raw().as_entire_binding(),
-        active.pairs.dispatched.raw().as_entire_binding(),
-        active.instances.raw().as_entire_binding(),
-        active.dispatches.raw().as_entire_binding(),
-    ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(compact_params_layout: CompactParams = ANIMATION_COMPACT "CompactParams");
 }

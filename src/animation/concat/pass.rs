@@ -5,7 +5,7 @@ use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::bindings::animation::concat as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::concat::ConcatParams;
 use crate::{Error, InputError};
 
@@ -46,12 +46,9 @@ impl ConcatPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
-        let whole = f64::from(walk == Walk::Whole);
-        let kernel = |compacted| {
-            let overrides = [("WHOLE", whole), ("COMPACTED", compacted)];
-            Kernel::new(gpu, &shaders::ANIMATION_CONCAT, &overrides)
-        };
-        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)?, walk })
+        let whole = walk == Walk::Whole;
+        let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { whole, compacted });
+        Ok(Self { all: kernel(false)?, compacted: kernel(true)?, walk })
     }
 
     /// Prepares the model-space matrices of a crowd from its local transforms.

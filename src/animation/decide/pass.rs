@@ -2,15 +2,16 @@
 
 use super::Choice;
 use crate::animation::budget::{BudgetJob, BudgetPass};
-use crate::animation::compact::pass::{self as compact, CompactParams};
 use crate::animation::compact::{Active, CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass, Gating};
-use crate::animation::phase::pass::{self as phase, PhaseTime};
+use crate::animation::phase::pass::PhaseTime;
 use crate::animation::phase::{PhaseJob, PhasePass};
+use crate::gpu::bindings::animation::decide as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
+use crate::shared::animation::compact::CompactParams;
 use crate::{Error, InputError};
 
 /// How many dispatches share the work.
@@ -123,7 +124,7 @@ fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
             remedy: "take Dispatches::Each, as Dispatches::of would",
         });
     }
-    Kernel::new(gpu, &shaders::ANIMATION_DECIDE, &[("MODE", gate::mode(gate))])
+    bindings::kernel(gpu, &bindings::Constants { mode: gate::mode(gate) })
 }
 
 fn one(
@@ -138,12 +139,32 @@ fn one(
     let phase = PhaseTime::new(gpu, clips, crowd, gating)?;
     let gate = GateTime::new(gpu, gate, crowd, gating)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
-    let resources: Vec<_> = (phase::resources(&phase, clips, crowd, gating).into_iter())
-        .chain(gate::resources(&gate, gating, active))
-        .chain(compact::resources(&compact, active))
-        .collect();
-    let step =
-        Step { groups: vec![kernel.bind(gpu, 0, &resources)?], workgroups: [1; 3], kernel: kernel.clone() };
+    let group = bindings::Group {
+        phase_params: &phase.uniform,
+        instances: crowd.instances.slice(),
+        clips: clips.clips.slice(),
+        timelines: clips.timelines.slice().cast(),
+        times: clips.times.slice(),
+        lods: gating.lods.slice(),
+        shares: crowd.shares.slice(),
+        history: gating.history.slice(),
+        phases: gating.phases.slice(),
+        gate_params: &gate.uniform,
+        movers: gating.movers.slice(),
+        table: gating.table.slice(),
+        sampled: gating.sampled.slice(),
+        kept: gating.kept.slice(),
+        bits: active.bits.slice(),
+        compact_params: &compact,
+        slots: active.slots.slice().cast(),
+        dirty: active.dirty.slice(),
+        counts: active.counts.slice(),
+        pairs: active.pairs.pairs.slice(),
+        pair_dispatch: active.pairs.dispatched.slice().cast(),
+        dirty_instances: active.instances.slice(),
+        instance_dispatches: active.dispatches.slice(),
+    };
+    let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
     Ok(Work::One { phase, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
 }
 

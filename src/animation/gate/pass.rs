@@ -1,29 +1,15 @@
 //! `kernels/animation/gate.wgsl`.
 
-use encase::ShaderType;
-
 use super::{Frame, Gate};
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate_table::{GateTable, Kind};
 use crate::animation::lod::Lod;
 use crate::animation::phase::Phase;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
+use crate::gpu::bindings::animation::gate as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::animation::gate::{self as modes, GateParams};
 use crate::{Error, InputError};
-
-/// `GateParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct GateParams {
-    pub instances: u32,
-    pub bones: u32,
-    pub words: u32,
-    pub stride: u32,
-    pub ticks: u32,
-    pub frame_ticks: u32,
-    pub period: u32,
-    pub frame: u32,
-    pub first_above: u32,
-}
 
 /// What gates know of a crowd. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
@@ -89,7 +75,7 @@ impl GatePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, gate: Gate) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::ANIMATION_GATE, &[("MODE", mode(gate))])?, gate })
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { mode: mode(gate) })?, gate })
     }
 
     /// Prepares the decision, from a crowd's phases.
@@ -104,11 +90,18 @@ impl GatePass {
         active: &Active,
     ) -> Result<GateJob, Error> {
         let time = GateTime::new(gpu, self.gate, crowd, gating)?;
-        let [params, rest @ ..] = resources(&time, gating, active);
-        let shared = [&gating.lods.raw().as_entire_binding(), &gating.phases.raw().as_entire_binding()];
-        let resources: Vec<_> = shared.into_iter().chain([&params]).chain(&rest).cloned().collect();
+        let group = bindings::Group {
+            lods: gating.lods.slice(),
+            phases: gating.phases.slice(),
+            gate_params: &time.uniform,
+            movers: gating.movers.slice(),
+            table: gating.table.slice(),
+            sampled: gating.sampled.slice(),
+            kept: gating.kept.slice(),
+            bits: active.bits.slice(),
+        };
         let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, time.threads(self.gate)),
             kernel: self.kernel.clone(),
         };
@@ -117,33 +110,21 @@ impl GatePass {
 }
 
 /// `MODE` of the kernel.
-pub(crate) fn mode(gate: Gate) -> f64 {
+pub(crate) fn mode(gate: Gate) -> u32 {
     match gate {
-        Gate::Off => 0.0,
-        Gate::SkipPeriod { .. } => 1.0,
-        Gate::Uniform => 2.0,
-        Gate::Random => 3.0,
-        Gate::Bounded => 4.0,
+        Gate::Off => modes::OFF,
+        Gate::SkipPeriod { .. } => modes::SKIP_PERIOD,
+        Gate::Uniform => modes::UNIFORM,
+        Gate::Random => modes::RANDOM,
+        Gate::Bounded => modes::BOUNDED,
     }
-}
-
-/// What is bound besides levels of detail and phases, in the order of `wgsl/animation/gate.wgsl`.
-pub(crate) fn resources<'a>(time: &'a GateTime, gating: &'a Gating, active: &'a Active) -> [Resource<'a>; 6] {
-    [
-        time.uniform.raw().as_entire_binding(),
-        gating.movers.raw().as_entire_binding(),
-        gating.table.raw().as_entire_binding(),
-        gating.sampled.raw().as_entire_binding(),
-        gating.kept.raw().as_entire_binding(),
-        active.bits.raw().as_entire_binding(),
-    ]
 }
 
 /// The frame of the next submission.
 #[derive(Debug, Clone)]
 pub(crate) struct GateTime {
     params: GateParams,
-    uniform: Uniform<GateParams>,
+    pub(crate) uniform: Uniform<GateParams>,
 }
 
 impl GateTime {
@@ -204,12 +185,4 @@ impl GateJob {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.job.dispatch(pass);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(gate_params_layout: GateParams = ANIMATION_GATE "GateParams");
 }

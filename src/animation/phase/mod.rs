@@ -5,6 +5,7 @@
 //! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
 pub use crate::shared::animation::gating::Phase;
+pub use crate::shared::animation::phase::BLENDED;
 
 #[cfg(feature = "gpu")]
 pub mod bench;
@@ -16,9 +17,6 @@ pub mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{PhaseJob, PhasePass};
-
-/// In an instance's history: layers lay above its clip.
-pub const BLENDED: u32 = 1 << 31;
 
 /// What asks for a pose besides the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
 use crate::animation::place::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::phase as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Resource, Step, Uniform, shaders};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::phase::PhaseParams;
 use crate::{Error, InputError};
 
@@ -35,8 +35,19 @@ impl PhasePass {
         gating: &Gating,
     ) -> Result<PhaseJob, Error> {
         let time = PhaseTime::new(gpu, clips, crowd, gating)?;
+        let group = bindings::Group {
+            phase_params: &time.uniform,
+            instances: crowd.instances.slice(),
+            clips: clips.clips.slice(),
+            timelines: clips.timelines.slice().cast(),
+            times: clips.times.slice(),
+            lods: gating.lods.slice(),
+            shares: crowd.shares.slice(),
+            history: gating.history.slice(),
+            phases: gating.phases.slice(),
+        };
         let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources(&time, clips, crowd, gating))?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, time.params.instances),
             kernel: self.kernel.clone(),
         };
@@ -44,31 +55,11 @@ impl PhasePass {
     }
 }
 
-/// What is bound, in the order of `wgsl/animation/phase.wgsl`.
-pub(crate) fn resources<'a>(
-    time: &'a PhaseTime,
-    clips: &'a ClipBuffers,
-    crowd: &'a Crowd,
-    gating: &'a Gating,
-) -> [Resource<'a>; 9] {
-    [
-        time.uniform.raw().as_entire_binding(),
-        crowd.instances.raw().as_entire_binding(),
-        clips.clips.raw().as_entire_binding(),
-        clips.timelines.raw().as_entire_binding(),
-        clips.times.raw().as_entire_binding(),
-        gating.lods.raw().as_entire_binding(),
-        crowd.shares.raw().as_entire_binding(),
-        gating.history.raw().as_entire_binding(),
-        gating.phases.raw().as_entire_binding(),
-    ]
-}
-
 /// The time of the next submission.
 #[derive(Debug, Clone)]
 pub(crate) struct PhaseTime {
     params: PhaseParams,
-    uniform: Uniform<PhaseParams>,
+    pub(crate) uniform: Uniform<PhaseParams>,
 }
 
 impl PhaseTime {
@@ -120,16 +111,5 @@ impl PhaseJob {
     /// Adds the pass to a compute pass that is being recorded.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.job.dispatch(pass);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_mark_of_layers_is_the_kernel_s() {
-        let shader = &crate::gpu::shaders::ANIMATION_PHASE;
-        assert_eq!(crate::gpu::layout::constant(shader, "BLENDED"), Some(crate::animation::phase::BLENDED));
     }
 }

@@ -7,9 +7,7 @@ use crate::animation::compact::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::Gating;
 use crate::gpu::bindings::animation::place as bindings;
-use crate::gpu::{
-    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass, shaders,
-};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::place::PlaceParams;
 
 /// Finds where instances stand in their clips.
@@ -25,8 +23,8 @@ impl PlacePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |compacted| Kernel::new(gpu, &shaders::ANIMATION_PLACE, &[("COMPACTED", compacted)]);
-        Ok(Self { all: kernel(0.0)?, compacted: kernel(1.0)? })
+        let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
+        Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
     /// Prepares the places of a crowd.

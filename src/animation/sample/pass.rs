@@ -3,9 +3,7 @@
 use super::RotationPath;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::gpu::bindings::animation::sample as bindings;
-use crate::gpu::{
-    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
-};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups};
 use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
 
@@ -71,14 +69,12 @@ impl SamplePass {
     }
 
     fn compile(gpu: &Gpu, path: RotationPath, is_layered: bool) -> Result<Self, GpuError> {
-        let (nlerp, layered) = (f64::from(path == RotationPath::Nlerp), f64::from(is_layered));
+        let nlerp = path == RotationPath::Nlerp;
         let kernel = |compacted, splines| {
-            let overrides =
-                [("COMPACTED", compacted), ("LAYERED", layered), ("NLERP", nlerp), ("SPLINES", splines)];
-            Kernel::new(gpu, &shaders::ANIMATION_SAMPLE, &overrides)
+            bindings::kernel(gpu, &bindings::Constants { compacted, layered: is_layered, nlerp, splines })
         };
-        let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, 0.0)?, kernel(compacted, 1.0)?]);
-        Ok(Self { all: kernels(0.0)?, compacted: kernels(1.0)?, is_layered })
+        let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, false)?, kernel(compacted, true)?]);
+        Ok(Self { all: kernels(false)?, compacted: kernels(true)?, is_layered })
     }
 
     /// Prepares sampling of every bone of every instance, at the crowd's places.

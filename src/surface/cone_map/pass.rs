@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use super::OPENING;
 use crate::gpu::bindings::surface::cone_map as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::cone_map::ConeParams;
 use crate::surface::height_pyramid::Pyramids;
 use crate::surface::texture::{HeightBatch, with_remedy};
@@ -35,8 +35,7 @@ impl ConeMapPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let overrides = [("OPENING", OPENING.into())];
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::SURFACE_CONE_MAP, &overrides)? })
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { opening: OPENING })? })
     }
 
     /// Room for the cone maps of a batch with these pyramids.

@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use super::PyramidLayout;
 use crate::gpu::bindings::surface::height_pyramid as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::height_pyramid::PyramidParams;
 use crate::surface::map::Address;
 use crate::surface::texture::{HeightBatch, with_remedy};
@@ -59,11 +59,13 @@ impl HeightPyramidPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let shader = &shaders::SURFACE_HEIGHT_PYRAMID;
+        let kernel = |from_heights, is_aligned| {
+            bindings::kernel(gpu, &bindings::Constants { from_heights, is_aligned })
+        };
         Ok(Self {
-            leaves: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 1.0)])?,
-            aligned_leaves: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 1.0), ("IS_ALIGNED", 1.0)])?,
-            nodes: Kernel::new(gpu, shader, &[("FROM_HEIGHTS", 0.0)])?,
+            leaves: kernel(true, false)?,
+            aligned_leaves: kernel(true, true)?,
+            nodes: kernel(false, false)?,
         })
     }
 
