@@ -269,6 +269,14 @@ impl Clip {
         layout.finish(name.into(), duration)
     }
 
+    /// A clip without keys, 0 seconds long: every bone stays at rest. For models that have no clip.
+    ///
+    /// # Errors
+    /// [`InputError`] for a skeleton of so many bones that values do not fit a buffer.
+    pub fn at_rest(name: impl Into<String>, skeleton: &Skeleton) -> Result<Self, InputError> {
+        Self::new(name, skeleton, &vec![BoneKeys::default(); skeleton.len()], 0.0)
+    }
+
     /// As the file has it; names need not differ.
     pub fn name(&self) -> &str {
         &self.name

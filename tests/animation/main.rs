@@ -22,4 +22,5 @@ mod rigid;
 mod root_motion;
 mod sampling;
 mod scene;
+mod scenes;
 mod textures;

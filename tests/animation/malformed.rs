@@ -83,7 +83,7 @@ fn nodes_and_skins() {
     refused("/skins", json!([]), "nodes[2].skin", &[]);
     let mut bare = Scene::new();
     bare.push("nodes", json!({"name": "lamp"}));
-    assert_eq!(Model::from_gltf(&bare.gltf(), None).expect_err("refused").field, "skins");
+    assert_eq!(Model::from_gltf(&bare.gltf(), None).expect_err("refused").field, "nodes");
 }
 
 #[test]
@@ -216,11 +216,6 @@ fn containers() {
     for text in ["", "glTF", "{", "[]", "null", "{}", "\u{feff}{}", r#"{"asset": {"version": "2.0"}}"#] {
         assert!(Model::from_gltf(text.as_bytes(), None).is_err(), "{text}");
     }
-    let compressed = r#"{"asset": {"version": "2.0"}, "extensionsRequired": ["EXT_meshopt_compression"]}"#;
-    assert_eq!(
-        Model::from_gltf(compressed.as_bytes(), None).expect_err("refused").field,
-        "extensionsRequired"
-    );
 }
 
 /// Cut off anywhere, and with bytes changed at random: a model or an error, and a model can be played.

@@ -11,6 +11,7 @@ mod crowd_drawn;
 mod pose;
 mod priorities;
 mod relief;
+mod rest;
 #[allow(dead_code, reason = "only the tests of the import write GLBs")]
 #[path = "../animation/scene.rs"]
 mod scene;

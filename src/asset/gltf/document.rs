@@ -23,27 +23,31 @@ pub struct Document<'a> {
     buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
 }
 
-/// Extensions without which nothing of the document's buffers can be read.
-const UNREADABLE: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+/// The extensions that a document may require. Of what Draco compressed, meshes alone are left out.
+const READ: [&str; 3] = [DRACO, "KHR_mesh_quantization", "KHR_texture_transform"];
+
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+/// What a document may require besides, where neither materials nor images are read: other images.
+const OF_IMAGES: [&str; 4] =
+    ["EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"];
+
+/// And other materials.
+const OF_MATERIALS: &str = "KHR_materials_";
 
 impl<'a> Document<'a> {
-    /// Parses and validates.
-    pub fn new(bytes: &'a [u8], folder: Option<&'a Path>) -> Result<Self, InputError> {
+    /// Parses and validates. `is_bare`: materials and images do not matter.
+    pub fn new(bytes: &'a [u8], folder: Option<&'a Path>, is_bare: bool) -> Result<Self, InputError> {
         let Container { json, binary } = Container::new(bytes)?;
         let mut value: Value = serde_json::from_slice(json).map_err(|error| {
             let place = format!("line {} column {}", error.line(), error.column());
             InputError::new("JSON", place, error.to_string())
         })?;
-        if let Some(name) = required_names(&value).find(|name| UNREADABLE.contains(name)) {
-            return Err(InputError::new(
-                "extensionsRequired",
-                name,
-                "is not read: decompress the file first",
-            ));
-        }
-        let is_draco = (required_names(&value)).any(|name| name == "KHR_draco_mesh_compression");
+        check_required(&value, is_bare)?;
+        let is_draco = required_names(&value).any(|name| name == DRACO);
         leave_out_channels_without_node(&mut value);
         leave_out_own_attributes(&mut value);
+        add_nodes_of_scenes(&mut value);
         let root: Root = serde_path_to_error::deserialize(value).map_err(|error| {
             let path = error.path().to_string();
             let field = if path == "." { "glTF".to_owned() } else { path };
@@ -146,6 +150,20 @@ const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::n
         .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
 );
 
+/// Refuses extensions without which the document would be another one.
+fn check_required(value: &Value, is_bare: bool) -> Result<(), InputError> {
+    let is_read = |name: &str| {
+        READ.contains(&name) || is_bare && (OF_IMAGES.contains(&name) || name.starts_with(OF_MATERIALS))
+    };
+    match required_names(value).enumerate().find(|(_, name)| !is_read(name)) {
+        None => Ok(()),
+        Some((at, name)) => {
+            let bound = format!("is not read: must be one of {}", READ.join(", "));
+            Err(InputError::new(format!("extensionsRequired[{at}]"), name, bound))
+        }
+    }
+}
+
 fn required_names(value: &Value) -> impl Iterator<Item = &str> {
     let required = value.pointer("/extensionsRequired").and_then(Value::as_array);
     required.into_iter().flatten().filter_map(Value::as_str)
@@ -157,6 +175,14 @@ fn leave_out_own_attributes(value: &mut Value) {
     let primitives = meshes.filter_map(|mesh| mesh.get_mut("primitives")?.as_array_mut()).flatten();
     for attributes in primitives.filter_map(|primitive| primitive.get_mut("attributes")?.as_object_mut()) {
         attributes.retain(|name, _| !name.starts_with('_'));
+    }
+}
+
+/// glTF lets scenes be empty, gltf-json does not.
+fn add_nodes_of_scenes(value: &mut Value) {
+    let scenes = value.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten();
+    for scene in scenes.filter_map(Value::as_object_mut) {
+        scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
 }
 
@@ -192,12 +218,17 @@ fn positions_exist(root: &Root) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The first thing that gltf-json finds wrong. Extensions that materials or meshes need do not matter here.
+/// The first thing that gltf-json finds wrong. Accessors without a buffer view are zeros, as glTF has it, and extensions
+/// have been looked at.
 fn validate(root: &Root) -> Result<(), InputError> {
     let mut first = None;
     root.validate(root, gltf_json::Path::new, &mut |path, fault| {
-        if fault != Fault::Unsupported && first.is_none() {
-            first = Some((path().to_string(), fault));
+        if fault == Fault::Unsupported || first.is_some() {
+            return;
+        }
+        let path = path().to_string();
+        if fault != Fault::Missing || !(path.starts_with("accessors[") && path.ends_with("].bufferView")) {
+            first = Some((path, fault));
         }
     });
     let Some((path, fault)) = first else { return Ok(()) };

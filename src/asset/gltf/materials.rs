@@ -69,6 +69,10 @@ impl Materials {
             }
             None => Sampling::default(),
         };
+        if texture.source.value() >= document.root.images.len() {
+            let bound = "must be given: images of extensions are not read";
+            return Err(InputError::new(format!("textures[{at}].source"), "missing", bound));
+        }
         Ok(Texture { image: self.image(document, texture.source)?, sampling })
     }
 

@@ -18,15 +18,14 @@ use crate::asset::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals, solved_t
 use crate::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use crate::asset::skeleton::Skin;
 
-/// Every primitive of every node with a skin, in the order of the nodes; then of those without.
+/// Every primitive of every node of the scene with a skin, in the order of the nodes; then of those without.
 pub fn meshes(
     document: &Document<'_>,
     nodes: &Nodes,
     materials: &mut Materials,
 ) -> Result<Vec<Mesh>, InputError> {
-    let all = document.root.nodes.iter().enumerate();
-    let skinned = all.filter_map(|(node, of_node)| Some((node, of_node.skin?.value(), None)));
-    let rigid = nodes.rigid.iter().zip(document.root.skins.len()..);
+    let skinned = nodes.skinned.iter().map(|(node, skin)| (*node, *skin, None));
+    let rigid = nodes.rigid.iter().zip(nodes.own_skins()..);
     let rigid = rigid.map(|(rigid, skin)| (rigid.node, skin, Some(rigid)));
     let mut meshes = Vec::new();
     for (node, skin, rigid) in skinned.chain(rigid) {

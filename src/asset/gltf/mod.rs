@@ -1,12 +1,19 @@
-//! Import of glTF 2.0, as JSON or GLB: skins, the nodes they need, animations, and the meshes that follow skins.
+//! Import of glTF 2.0, as JSON or GLB: the nodes of the default scene that meshes follow, skins, animations, and meshes.
 //!
-//! - Bones are the joints of every skin, each once, and all nodes above them: a joint's place in the scene is the
-//!   product of every node from the root, whether or not a skin uses it, and animations may move any of them.
+//! - Only the default scene is imported: the one that the document names, or its first; every node where it has no
+//!   scene.
+//! - Bones are the joints of every skin that the scene's nodes have, each once, and all nodes above them: a joint's place
+//!   in the scene is the product of every node from the root, whether or not a skin uses it, and animations may move any
+//!   of them. glTF asks that such joints lie in the same scene; where they lie outside, they are bones all the same,
+//!   posed as they stand below their own root, since vertices follow them. Skins that no node has count where all their
+//!   joints lie in the scene.
+//! - Without a skin, bones are the nodes that carry meshes (see below), those that an animation moves, and all above
+//!   them; and all of these are [joints](crate::asset::Skeleton::joints).
 //! - Matrix nodes are taken apart into translation, rotation and scale.
 //! - Accessors may be sparse, interleaved, and of normalized integers. Buffers lie in the GLB, in `data:` URIs, or in
 //!   files beside the document.
 //! - Channels that move no node, or one that is no bone, are left out, but count for the clip's duration.
-//! - Meshes are those of nodes with a skin, a [`Mesh`](crate::asset::Mesh) a primitive, in the order of the nodes,
+//! - Meshes are those of the scene's nodes with a skin, a [`Mesh`](crate::asset::Mesh) a primitive, in the order of the nodes,
 //!   vertices in the file's order; behind them those of nodes without one, in the same order. The latter follow one
 //!   bone, by a skin of their own: the lowest node at or above them that is a joint, lies above joints, or is animated;
 //!   where there is none, the root of their tree, which never moves. Such a node becomes a bone with all above it, as
@@ -18,6 +25,10 @@
 //!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Screen). Colours of
 //!   vertices, everything else of materials, and materials of no mesh are left out.
 //!
+//! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and
+//! `KHR_texture_transform` are read, and every other one is refused; those of materials and images matter only where
+//! these are read.
+//!
 //! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic.
 
 mod accessor;
@@ -28,6 +39,7 @@ mod materials;
 mod meshes;
 mod nodes;
 mod rigid;
+mod scene;
 
 use std::path::Path;
 
@@ -46,7 +58,8 @@ impl Model {
         Self::read(path, Materials::default())
     }
 
-    /// As [`Model::from_file`], without materials and images: for those who draw nothing, whatever textures lack.
+    /// As [`Model::from_file`], without materials and images: for those who draw nothing, whatever textures lack, and
+    /// whichever extensions they require.
     ///
     /// # Errors
     /// As [`Model::from_file`], but for materials and images.
@@ -70,7 +83,7 @@ impl Model {
     }
 
     fn import(bytes: &[u8], folder: Option<&Path>, mut materials: Materials) -> Result<Self, InputError> {
-        let document = Document::new(bytes, folder)?;
+        let document = Document::new(bytes, folder, materials.is_unread)?;
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
         // What Draco compressed has no vertices here.
@@ -79,8 +92,8 @@ impl Model {
             false => meshes::meshes(&document, &nodes, &mut materials)?,
         };
         let Materials { materials, images, .. } = materials;
-        let with_skin = document.root.skins.len();
-        let skinned = meshes.iter().take_while(|mesh| mesh.skin < with_skin).count();
+        let own = nodes.own_skins();
+        let skinned = meshes.iter().take_while(|mesh| mesh.skin < own).count();
         Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, skinned, materials, images })
     }
 }

@@ -1,20 +1,25 @@
 //! Nodes and skins: the skeleton, and a skin for every mesh that has none.
 
 use gltf_json::Root;
+use gltf_json::animation::Property;
 use gltf_json::scene::Node;
+use gltf_json::validation::Checked;
 
 use super::document::Document;
 use super::rigid::{Rigid, rigid};
+use super::scene::Scene;
 use crate::InputError;
 use crate::asset::skeleton::{Bone, Skeleton, Skin, inverse_bind};
 use crate::asset::transform::{Transform, decomposed};
 
-/// The skeleton of all skins, and which node became which bone.
+/// The skeleton of the scene, and which node became which bone.
 pub struct Nodes {
     pub skeleton: Skeleton,
-    /// The document's, then one for each of [`Nodes::rigid`].
+    /// Those of the document that the scene needs, then one for each of [`Nodes::rigid`].
     pub skins: Vec<Skin>,
-    /// Nodes with a mesh and no skin.
+    /// Nodes of the scene with a mesh and a skin: the node, and the place of its skin in [`Nodes::skins`].
+    pub skinned: Vec<(usize, usize)>,
+    /// Nodes of the scene with a mesh and no skin.
     pub rigid: Vec<Rigid>,
     bones: Vec<Option<u32>>,
 }
@@ -22,38 +27,40 @@ pub struct Nodes {
 impl Nodes {
     pub fn new(document: &Document<'_>) -> Result<Self, InputError> {
         let root = &document.root;
-        if root.skins.is_empty() {
-            return Err(InputError::new(
-                "skins",
-                "none",
-                "must be at least one: nothing here is articulated",
-            ));
+        let scene = Scene::new(root)?;
+        let used = used_skins(root, &scene);
+        let joints = joints(root, &used)?;
+        let animated = animated(root);
+        let rigid = rigid(root, &scene, &joints, &animated)?;
+        let mut needed = joints.clone();
+        needed.extend(rigid.iter().map(|rigid| rigid.anchor));
+        if used.is_empty() {
+            needed.extend((0..root.nodes.len()).filter(|node| animated[*node] && scene.contains[*node]));
         }
-        let parents = parents(&root.nodes)?;
-        let joints = joints(document)?;
-        let rigid = rigid(document, &parents, &joints)?;
-        let needed: Vec<_> = joints.iter().copied().chain(rigid.iter().map(|rigid| rigid.anchor)).collect();
-        let order = order(&root.nodes, &parents, &needed)?;
+        if needed.is_empty() {
+            let bound = "must have a mesh, a skin or an animated node in the default scene";
+            return Err(InputError::new("nodes", format!("[{} nodes]", root.nodes.len()), bound));
+        }
+        let order = order(&root.nodes, &scene.parents, &needed);
         let mut bones = vec![None; root.nodes.len()];
         for (node, bone) in order.iter().zip(0..) {
             bones[*node] = Some(bone);
         }
-        let bone = |node: &usize| {
-            let parent = parents[*node].and_then(|parent| bones[parent]);
-            Ok(Bone { name: node_name(root, *node), parent, rest: rest(*node, &root.nodes[*node])? })
-        };
-        let all = order.iter().map(bone).collect::<Result<Vec<_>, InputError>>()?;
-        let joints = joints.iter().filter_map(|node| bones[*node]).collect();
-        let skeleton = Skeleton::new(all, joints)?;
-        let mut skins = (0..root.skins.len())
-            .map(|skin| read_skin(document, skin, &bones))
-            .collect::<Result<Vec<_>, _>>()?;
+        let skeleton = skeleton(root, &scene, &order, &joints, &bones)?;
+        let mut skins =
+            used.iter().map(|skin| read_skin(document, *skin, &bones)).collect::<Result<Vec<_>, _>>()?;
         skins.extend(rigid.iter().map(|rigid| Skin {
             name: node_name(root, rigid.node),
             bones: bones[rigid.anchor].into_iter().collect(),
             inverse_binds: vec![rigid.bind],
         }));
-        Ok(Self { skeleton, skins, rigid, bones })
+        let skinned = skinned(root, &scene, &used);
+        Ok(Self { skeleton, skins, skinned, rigid, bones })
+    }
+
+    /// How many of [`Nodes::skins`] are the document's.
+    pub fn own_skins(&self) -> usize {
+        self.skins.len() - self.rigid.len()
     }
 
     /// The bone that a node became, if it did.
@@ -67,17 +74,27 @@ pub fn node_name(root: &Root, node: usize) -> String {
     root.nodes[node].name.clone().unwrap_or_else(|| format!("node_{node}"))
 }
 
-/// The joints of every skin, each once, as nodes.
-fn joints(document: &Document<'_>) -> Result<Vec<usize>, InputError> {
-    let mut seen = vec![false; document.root.nodes.len()];
+/// The skins of the scene's nodes; and those that no node has, where all their joints lie in the scene.
+fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
+    let (mut here, mut anywhere) = (vec![false; root.skins.len()], vec![false; root.skins.len()]);
+    for (node, skin) in root.nodes.iter().enumerate().filter_map(|(at, node)| Some((at, node.skin?.value())))
+    {
+        anywhere[skin] = true;
+        here[skin] |= scene.contains[node];
+    }
+    let lies_here = |skin: usize| root.skins[skin].joints.iter().all(|joint| scene.contains[joint.value()]);
+    (0..root.skins.len()).filter(|skin| here[*skin] || !anywhere[*skin] && lies_here(*skin)).collect()
+}
+
+/// The joints of these skins, each once, as nodes.
+fn joints(root: &Root, skins: &[usize]) -> Result<Vec<usize>, InputError> {
+    let mut seen = vec![false; root.nodes.len()];
     let mut joints = Vec::new();
-    for (index, skin) in document.root.skins.iter().enumerate() {
+    for index in skins {
+        let skin = &root.skins[*index];
         if skin.joints.is_empty() {
-            return Err(InputError::new(
-                format!("skins[{index}].joints"),
-                "[]",
-                "must have at least one joint",
-            ));
+            let bound = "must have at least one joint";
+            return Err(InputError::new(format!("skins[{index}].joints"), "[]", bound));
         }
         let mut here = std::collections::HashSet::new();
         for (at, joint) in skin.joints.iter().enumerate() {
@@ -94,27 +111,28 @@ fn joints(document: &Document<'_>) -> Result<Vec<usize>, InputError> {
     Ok(joints)
 }
 
-/// The parent of each node; glTF's nodes are trees.
-fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
-    let mut parents = vec![None; nodes.len()];
-    for (parent, node) in nodes.iter().enumerate() {
-        for (at, child) in node.children.iter().flatten().enumerate() {
-            let child = child.value();
-            if let Some(other) = parents[child].replace(parent) {
-                let path = format!("nodes[{parent}].children[{at}]");
-                return Err(InputError::new(
-                    path,
-                    child,
-                    format!("must have one parent, and nodes[{other}] is it"),
-                ));
-            }
+/// Whether an animation moves, turns or scales each node.
+fn animated(root: &Root) -> Vec<bool> {
+    let mut animated = vec![false; root.nodes.len()];
+    for channel in root.animations.iter().flat_map(|animation| &animation.channels) {
+        let is_of_weights = channel.target.path == Checked::Valid(Property::MorphTargetWeights);
+        if let Some(node) = animated.get_mut(channel.target.node.value()).filter(|_| !is_of_weights) {
+            *node = true;
         }
     }
-    Ok(parents)
+    animated
+}
+
+/// Nodes of the scene with a mesh and one of these skins, and the skin's place among them.
+fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
+    let mut place = vec![None; root.skins.len()];
+    skins.iter().enumerate().for_each(|(at, skin)| place[*skin] = Some(at));
+    let nodes = root.nodes.iter().enumerate().filter(|(at, node)| scene.contains[*at] && node.mesh.is_some());
+    nodes.filter_map(|(at, node)| Some((at, place[node.skin?.value()]?))).collect()
 }
 
 /// These nodes and all above them, each with what lies below it behind it.
-fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Result<Vec<usize>, InputError> {
+fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Vec<usize> {
     let mut needed = vec![false; nodes.len()];
     let mut roots = Vec::new();
     for wanted in wanted {
@@ -135,14 +153,25 @@ fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Result<
         let children = nodes[node].children.iter().flatten().map(|child| child.value());
         waiting.extend(children.filter(|child| needed[*child]).rev());
     }
-    // Who is its own ancestor hangs below no root.
-    let mut reached = vec![false; nodes.len()];
-    order.iter().for_each(|node| reached[*node] = true);
-    match wanted.iter().find(|node| !reached[**node]) {
-        None => Ok(order),
-        Some(node) => {
-            Err(InputError::new(format!("nodes[{node}]"), node, "must not lie below itself: nodes are trees"))
-        }
+    order
+}
+
+/// Of these nodes; without skins all bones are joints.
+fn skeleton(
+    root: &Root,
+    scene: &Scene,
+    order: &[usize],
+    joints: &[usize],
+    bones: &[Option<u32>],
+) -> Result<Skeleton, InputError> {
+    let bone = |node: &usize| {
+        let parent = scene.parents[*node].and_then(|parent| bones[parent]);
+        Ok(Bone { name: node_name(root, *node), parent, rest: rest(*node, &root.nodes[*node])? })
+    };
+    let all = order.iter().map(bone).collect::<Result<Vec<_>, InputError>>()?;
+    match joints.is_empty() {
+        true => Skeleton::of_joints(all),
+        false => Skeleton::new(all, joints.iter().filter_map(|node| bones[*node]).collect()),
     }
 }
 

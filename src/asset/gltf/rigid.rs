@@ -1,11 +1,10 @@
 //! Meshes without a skin: each follows the lowest node above it that may move, as a whole.
 
 use glam::{DMat4, DQuat, DVec3};
-use gltf_json::animation::Property;
-use gltf_json::validation::Checked;
+use gltf_json::Root;
 
-use super::document::Document;
 use super::nodes::rest;
+use super::scene::Scene;
 use crate::InputError;
 use crate::asset::skeleton::inverse_bind;
 
@@ -20,78 +19,81 @@ pub struct Rigid {
     pub is_mirrored: bool,
 }
 
-/// All of them, in the order of the nodes. An anchor is a joint, a node above joints, or an animated one; else a root.
+/// All of the scene's, in the order of the nodes. An anchor is a joint, a node above joints, or an animated one; else a
+/// root.
 pub fn rigid(
-    document: &Document<'_>,
-    parents: &[Option<usize>],
+    root: &Root,
+    scene: &Scene,
     joints: &[usize],
+    animated: &[bool],
 ) -> Result<Vec<Rigid>, InputError> {
-    // What Draco compressed has no vertices here.
-    if document.is_draco {
-        return Ok(Vec::new());
-    }
-    let nodes = &document.root.nodes;
-    let movable = movable(document, parents, joints);
-    let is_rigid = |node: &usize| nodes[*node].mesh.is_some() && nodes[*node].skin.is_none();
-    (0..nodes.len()).filter(is_rigid).map(|node| follow(document, parents, &movable, node)).collect()
+    let is_rigid = |node: &usize| {
+        let of_node = &root.nodes[*node];
+        scene.contains[*node] && of_node.mesh.is_some() && of_node.skin.is_none()
+    };
+    let nodes: Vec<usize> = (0..root.nodes.len()).filter(is_rigid).collect();
+    let above_joints = with_ancestors(scene, joints);
+    let followed = Followed::new(root, scene, &with_ancestors(scene, &nodes), |node| {
+        above_joints[node] || animated[node] || scene.parents[node].is_none()
+    })?;
+    nodes.into_iter().map(|node| followed.rigid(node)).collect()
 }
 
-fn movable(document: &Document<'_>, parents: &[Option<usize>], joints: &[usize]) -> Vec<bool> {
-    let mut movable = vec![false; parents.len()];
-    for joint in joints {
-        let mut next = Some(*joint);
-        while let Some(node) = next.filter(|node| !std::mem::replace(&mut movable[*node], true)) {
-            next = parents[node];
+/// Whether each node is one of these, or lies above one.
+fn with_ancestors(scene: &Scene, nodes: &[usize]) -> Vec<bool> {
+    let mut marked = vec![false; scene.parents.len()];
+    for node in nodes {
+        let mut next = Some(*node);
+        while let Some(node) = next.filter(|node| !std::mem::replace(&mut marked[*node], true)) {
+            next = scene.parents[node];
         }
     }
-    for channel in document.root.animations.iter().flat_map(|animation| &animation.channels) {
-        let is_of_weights = channel.target.path == Checked::Valid(Property::MorphTargetWeights);
-        if let Some(node) = movable.get_mut(channel.target.node.value()).filter(|_| !is_of_weights) {
-            *node = true;
-        }
-    }
-    movable
+    marked
 }
 
-fn follow(
-    document: &Document<'_>,
-    parents: &[Option<usize>],
-    movable: &[bool],
-    node: usize,
-) -> Result<Rigid, InputError> {
-    let (mut anchor, mut bind, mut is_mirrored) = (None, DMat4::IDENTITY, false);
-    let mut above = node;
-    // Who is its own ancestor has more than there are nodes.
-    for _ in 0..parents.len() {
-        let local = local(document, above)?;
-        if anchor.is_none() && (movable[above] || parents[above].is_none()) {
-            anchor = Some(above);
+/// What nodes follow: the anchor, what takes the node's space into its, and whether the node is mirrored.
+struct Followed(Vec<Option<(usize, DMat4, bool)>>);
+
+impl Followed {
+    /// Of these nodes, which have all that lies above them.
+    fn new(
+        root: &Root,
+        scene: &Scene,
+        wanted: &[bool],
+        is_anchor: impl Fn(usize) -> bool,
+    ) -> Result<Self, InputError> {
+        let mut followed = Self(vec![None; wanted.len()]);
+        let mut waiting: Vec<usize> =
+            (0..wanted.len()).filter(|node| wanted[*node] && scene.parents[*node].is_none()).collect();
+        while let Some(node) = waiting.pop() {
+            let local = local(root, node)?;
+            let above = scene.parents[node].and_then(|parent| followed.0[parent]);
+            let is_mirrored = (local.determinant() < 0.0) != above.is_some_and(|(.., mirrored)| mirrored);
+            followed.0[node] = Some(match above {
+                Some((anchor, bind, _)) if !is_anchor(node) => (anchor, bind * local, is_mirrored),
+                _ => (node, DMat4::IDENTITY, is_mirrored),
+            });
+            let children = root.nodes[node].children.iter().flatten().map(|child| child.value());
+            waiting.extend(children.filter(|child| wanted[*child]));
         }
-        if anchor.is_none() {
-            bind = local * bind;
-        }
-        is_mirrored ^= local.determinant() < 0.0;
-        match (parents[above], anchor) {
-            (Some(parent), _) => above = parent,
-            (None, Some(anchor)) => {
-                let bind = bind.to_cols_array().map(|x| x as f32);
-                inverse_bind(&format!("nodes[{node}].matrix"), &bind)?;
-                return Ok(Rigid { node, anchor, bind, is_mirrored });
-            }
-            (None, None) => break,
-        }
+        Ok(followed)
     }
-    let bound = "must not lie below itself: nodes are trees";
-    Err(InputError::new(format!("nodes[{node}]"), node, bound))
+
+    fn rigid(&self, node: usize) -> Result<Rigid, InputError> {
+        let (anchor, bind, is_mirrored) = self.0[node].unwrap_or((node, DMat4::IDENTITY, false));
+        let bind = bind.to_cols_array().map(|x| x as f32);
+        inverse_bind(&format!("nodes[{node}].matrix"), &bind)?;
+        Ok(Rigid { node, anchor, bind, is_mirrored })
+    }
 }
 
 /// A node's matrix as the file has it, sheared or not, or the product of its parts.
-fn local(document: &Document<'_>, node: usize) -> Result<DMat4, InputError> {
-    if let Some(matrix) = &document.root.nodes[node].matrix {
+fn local(root: &Root, node: usize) -> Result<DMat4, InputError> {
+    if let Some(matrix) = &root.nodes[node].matrix {
         inverse_bind(&format!("nodes[{node}].matrix"), matrix)?;
         return Ok(DMat4::from_cols_array(&matrix.map(f64::from)));
     }
-    let rest = rest(node, &document.root.nodes[node])?;
+    let rest = rest(node, &root.nodes[node])?;
     let rotation = DQuat::from_array(rest.rotation.map(f64::from)).normalize();
     let [scale, translation] = [rest.scale, rest.translation].map(|all| DVec3::from(all.map(f64::from)));
     Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))

@@ -26,33 +26,59 @@ use serde::Serialize;
 use crate::Context;
 use crate::output::{json, write_file};
 
-/// Writes where every bone of a model is at a moment of a clip, as JSON.
+/// Writes where every bone of a model is at a moment of a clip, or at rest, as JSON.
 ///
 /// {"clip", "time", "bones": [{"name", "parent", "local": {"translation": [3], "rotation": [4], "scale": [3]},
-/// "model": [16]}]}: the joints of every skin, each once, in the file's order. "parent" is the place in that list of
+/// "model": [16]}]}: the joints of every skin, each once, in the file's order; in a file without skins, every node that
+/// moves or that meshes follow, and all above these, parents first. "parent" is the place in that list of
 /// the nearest joint above, -1 at a root. "local" is the joint's node in its parent node's space (rotation x, y, z,
 /// w). "model" is its global transform in the scene, all nodes above it included, column by column. "time" is the
-/// time inside the clip.
+/// time inside the clip. Both are null at rest.
 #[derive(Args)]
 pub struct Pose {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long, value_name = "FILE|builtin")]
     model: PathBuf,
-    /// The clip: its name, or its number, counted from 0.
-    #[arg(long, value_name = "NAME|INDEX")]
-    clip: String,
-    /// Seconds since the clip's start.
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
-    time: f64,
-    /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
-    #[arg(long, value_name = "MODE", default_value = "loop")]
-    wrap: WrapName,
+    #[command(flatten)]
+    moment: MomentArgs,
     /// What computes; both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
     /// The file.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+}
+
+/// Which moment of which clip.
+#[derive(Args)]
+pub struct MomentArgs {
+    /// The clip: its name, or its number, counted from 0. Without it the model is at rest.
+    #[arg(long, value_name = "NAME|INDEX")]
+    clip: Option<String>,
+    /// Seconds since the clip's start. Default: 0.
+    #[arg(long, value_name = "SECONDS", requires = "clip", allow_hyphen_values = true)]
+    time: Option<f64>,
+    /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
+    #[arg(long, value_name = "MODE", default_value = "loop")]
+    wrap: WrapName,
+}
+
+impl MomentArgs {
+    /// The place of the clip among the model's, and the time inside it. At rest, the model gets a clip without keys.
+    pub fn find(&self, model: &mut Model, path: &Path) -> Result<(usize, f32), Error> {
+        let Some(name) = &self.clip else {
+            model.clips.push(Clip::at_rest("rest", &model.skeleton)?);
+            return Ok((model.clips.len() - 1, 0.0));
+        };
+        let clip = find(model, path, name)?;
+        let time = self.wrap.wrap().inside(clip.duration(), self.time.unwrap_or(0.0))?;
+        Ok((place(model, clip), time))
+    }
+
+    /// Whether no clip is asked for.
+    pub fn is_rest(&self) -> bool {
+        self.clip.is_none()
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -81,8 +107,8 @@ impl WrapName {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    clip: &'a str,
-    time: f32,
+    clip: Option<&'a str>,
+    time: Option<f32>,
     bones: Vec<BoneReport<'a>>,
 }
 
@@ -97,16 +123,17 @@ struct BoneReport<'a> {
 impl Pose {
     #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let model = open_bare(&self.model)?;
-        let clip = find(&model, &self.model, &self.clip)?;
-        let time = self.wrap.wrap().inside(clip.duration(), self.time)?;
+        let mut model = open_bare(&self.model)?;
+        let (clip, time) = self.moment.find(&mut model, &self.model)?;
+        let clip = &model.clips[clip];
         let (locals, models) = match self.backend {
             #[cfg(feature = "gpu")]
             Backend::Gpu => on_gpu(&context.gpu()?, &model, clip, time)?,
             Backend::Cpu => on_cpu(&model, clip, time),
         };
         check_range(&models)?;
-        write_file(&self.out, &json(&report(&model, clip, time, &locals, &models))?)?;
+        let moment = (!self.moment.is_rest()).then_some((clip.name(), time));
+        write_file(&self.out, &json(&report(&model, moment, &locals, &models))?)?;
         Ok(ExitCode::SUCCESS)
     }
 }
@@ -150,8 +177,7 @@ fn check_range(models: &[Affine]) -> Result<(), InputError> {
 
 fn report<'a>(
     model: &'a Model,
-    clip: &'a Clip,
-    time: f32,
+    moment: Option<(&'a str, f32)>,
     locals: &[Transform],
     models: &[Affine],
 ) -> Report<'a> {
@@ -166,7 +192,8 @@ fn report<'a>(
         }
     };
     let bones = skeleton.joints().iter().zip(skeleton.joint_parents()).map(bone).collect();
-    Report { clip: clip.name(), time, bones }
+    let (clip, time) = moment.unzip();
+    Report { clip, time, bones }
 }
 
 /// As [`open`], without materials and images.

@@ -21,10 +21,10 @@ use relievo::{Error, InputError};
 
 use crate::Context;
 use crate::output::{Staged, say};
-use crate::pose::{Backend, WrapName, find, on_cpu, open, place, poses};
+use crate::pose::{Backend, MomentArgs, on_cpu, open, poses};
 use crate::progress::during;
 
-/// Writes the meshes of a model at a moment of a clip: where every vertex is, and a picture.
+/// Writes the meshes of a model at a moment of a clip, or at rest: where every vertex is, and a picture.
 ///
 /// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. attached.obj, where
 /// there are any: those of nodes without one, which follow the node that they hang on. Positions and normals are in the
@@ -34,15 +34,8 @@ pub struct Skin {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long, value_name = "FILE|builtin")]
     model: PathBuf,
-    /// The clip: its name, or its number, counted from 0.
-    #[arg(long, value_name = "NAME|INDEX")]
-    clip: String,
-    /// Seconds since the clip's start.
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
-    time: f64,
-    /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
-    #[arg(long, value_name = "MODE", default_value = "loop")]
-    wrap: WrapName,
+    #[command(flatten)]
+    moment: MomentArgs,
     /// Which bones a vertex follows: all of its own (up to 8); the K strongest; or all, fading to the strongest alone as
     /// LAMBDA goes from 0 to 1.
     #[arg(long, value_name = "full|truncate:K|fade:LAMBDA", default_value = "full")]
@@ -51,7 +44,7 @@ pub struct Skin {
     #[arg(long)]
     dual_quaternion: bool,
     /// Leaves triangles out: each mesh is the coarsest of its levels of detail whose surface is never further off than
-    /// this, in any pose of the clip, and says what is left. Vertices stay in the file's order.
+    /// this, in any pose of the clip or at rest, and says what is left. Vertices stay in the file's order.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     within: Option<f32>,
     /// What computes and draws; both agree within rounding.
@@ -100,7 +93,7 @@ impl Skin {
     #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     fn made(&self, context: &Context) -> Result<Made, Error> {
         let reduction = reduction(&self.influences)?;
-        let model = open(&self.model)?;
+        let mut model = open(&self.model)?;
         if model.meshes.is_empty() {
             let bound = "must be at least one that is not compressed with Draco";
             return Err(Error::InputFile {
@@ -108,11 +101,12 @@ impl Skin {
                 source: InputError::new("meshes", "none", bound),
             });
         }
-        let model = match self.within {
-            None => model,
-            Some(metres) => self.coarse(model, metres)?,
-        };
-        let moment = Moment::new(self, &model, reduction)?;
+        let (clip, time) = self.moment.find(&mut model, &self.model)?;
+        if let Some(metres) = self.within {
+            coarsen(&mut model, clip, metres)?;
+        }
+        let blend = if self.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
+        let moment = Moment { model: &model, clip, time, reduction, blend };
         let (vertices, picture) = match self.backend {
             #[cfg(feature = "gpu")]
             Backend::Gpu => device::skinned(&context.gpu()?, &moment)?,
@@ -123,27 +117,24 @@ impl Skin {
     }
 }
 
-impl Skin {
-    /// The model with the triangles of its levels.
-    fn coarse(&self, mut model: Model, metres: f32) -> Result<Model, Error> {
-        if !(metres >= 0.0 && metres.is_finite()) {
-            return Err(InputError::new("within", metres, "must be finite, and not negative").into());
-        }
-        let clip = find(&model, &self.model, &self.clip)?;
-        let (index, poses) = (place(&model, clip), poses(clip));
-        during("simplifying", || add_levels(&mut model, &[index], poses))?;
-        for mesh in &mut model.meshes {
-            let all = mesh.indices.len() / 3;
-            let level = std::mem::take(&mut mesh.levels).into_iter().rfind(|level| level.error <= metres);
-            let error = level.as_ref().map_or(0.0, |level| level.error);
-            if let Some(level) = level {
-                mesh.indices = level.indices;
-            }
-            let left = mesh.indices.len() / 3;
-            say(format_args!("{}: {left} of {all} triangles, {error} metres off", mesh.name))?;
-        }
-        Ok(model)
+/// Gives meshes the triangles of their levels.
+fn coarsen(model: &mut Model, clip: usize, metres: f32) -> Result<(), Error> {
+    if !(metres >= 0.0 && metres.is_finite()) {
+        return Err(InputError::new("within", metres, "must be finite, and not negative").into());
     }
+    let poses = poses(&model.clips[clip]);
+    during("simplifying", || add_levels(model, &[clip], poses))?;
+    for mesh in &mut model.meshes {
+        let all = mesh.indices.len() / 3;
+        let level = std::mem::take(&mut mesh.levels).into_iter().rfind(|level| level.error <= metres);
+        let error = level.as_ref().map_or(0.0, |level| level.error);
+        if let Some(level) = level {
+            mesh.indices = level.indices;
+        }
+        let left = mesh.indices.len() / 3;
+        say(format_args!("{}: {left} of {all} triangles, {error} metres off", mesh.name))?;
+    }
+    Ok(())
 }
 
 /// What is written.
@@ -176,15 +167,7 @@ struct Moment<'a> {
     blend: Blend,
 }
 
-impl<'a> Moment<'a> {
-    fn new(skin: &Skin, model: &'a Model, reduction: Reduction) -> Result<Self, Error> {
-        let clip = find(model, &skin.model, &skin.clip)?;
-        let time = skin.wrap.wrap().inside(clip.duration(), skin.time)?;
-        let index = place(model, clip);
-        let blend = if skin.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
-        Ok(Self { model, clip: index, time, reduction, blend })
-    }
-
+impl Moment<'_> {
     fn weights(&self, mesh: &Mesh) -> Vec<f32> {
         mesh.weights_at(self.clip, self.time)
     }

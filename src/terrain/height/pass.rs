@@ -387,7 +387,6 @@ mod tests {
     use super::*;
 
     crate::gpu::layout::layout_test!(level_layout: Level = TERRAIN_HEIGHT "Level");
-    crate::gpu::layout::layout_test!(feature_grid_layout: FeatureGrid = TERRAIN_HEIGHT "FeatureGrid");
     use crate::terrain::height::Span;
 
     #[test]

@@ -1,0 +1,68 @@
+//! The scene: which nodes are imported, and the trees that all nodes form (glTF 2.0, section 3.5.2).
+
+use gltf_json::Root;
+use gltf_json::scene::Node;
+
+use crate::InputError;
+
+/// The nodes of the default scene.
+pub struct Scene {
+    /// The parent of each of the document's nodes.
+    pub parents: Vec<Option<usize>>,
+    /// Whether each of the document's nodes lies in the scene.
+    pub contains: Vec<bool>,
+}
+
+impl Scene {
+    /// The scene that the document names, or its first; all nodes where it has none.
+    ///
+    /// # Errors
+    /// [`InputError`] for nodes that are no trees, and a scene that begins below a root.
+    pub fn new(root: &Root) -> Result<Self, InputError> {
+        let parents = parents(&root.nodes)?;
+        let roots: Vec<usize> = (0..parents.len()).filter(|node| parents[*node].is_none()).collect();
+        let reached = below(&root.nodes, &roots);
+        // Who is its own ancestor hangs below no root.
+        if let Some(node) = reached.iter().position(|reached| !reached) {
+            let bound = "must not lie below itself: nodes are trees";
+            return Err(InputError::new(format!("nodes[{node}]"), node, bound));
+        }
+        let default = root.scene.map_or(0, |scene| scene.value());
+        let Some(scene) = root.scenes.get(default) else { return Ok(Self { parents, contains: reached }) };
+        let roots: Vec<usize> = scene.nodes.iter().map(|node| node.value()).collect();
+        if let Some(at) = roots.iter().position(|node| parents[*node].is_some()) {
+            let bound = "must be a root, and no node's child";
+            return Err(InputError::new(format!("scenes[{default}].nodes[{at}]"), roots[at], bound));
+        }
+        let contains = below(&root.nodes, &roots);
+        Ok(Self { parents, contains })
+    }
+}
+
+/// The parent of each node; none has two.
+fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
+    let mut parents = vec![None; nodes.len()];
+    for (parent, node) in nodes.iter().enumerate() {
+        for (at, child) in node.children.iter().flatten().enumerate() {
+            let child = child.value();
+            if let Some(other) = parents[child].replace(parent) {
+                let path = format!("nodes[{parent}].children[{at}]");
+                let bound = format!("must have one parent, and nodes[{other}] is it");
+                return Err(InputError::new(path, child, bound));
+            }
+        }
+    }
+    Ok(parents)
+}
+
+/// Whether each node is one of these, or lies below one.
+fn below(nodes: &[Node], roots: &[usize]) -> Vec<bool> {
+    let mut reached = vec![false; nodes.len()];
+    let mut waiting = roots.to_vec();
+    while let Some(node) = waiting.pop() {
+        if !std::mem::replace(&mut reached[node], true) {
+            waiting.extend(nodes[node].children.iter().flatten().map(|child| child.value()));
+        }
+    }
+    reached
+}
