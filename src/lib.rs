@@ -53,26 +53,27 @@
 
 pub mod animation;
 pub mod asset;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod baseline;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod harness;
 pub mod hash;
 pub mod mesh;
 #[cfg(feature = "gpu")]
 pub mod render;
+#[cfg(feature = "samples")]
 pub mod samples;
 mod shared;
 pub mod skinning;
 pub mod srgb;
 pub mod surface;
 pub mod terrain;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 pub use error::{Error, InputError};

@@ -190,7 +190,7 @@ impl ClipSet {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::samples::creature;

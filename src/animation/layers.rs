@@ -14,7 +14,9 @@
 //! the mask of the arm ([`mask_below`]).
 //!
 //! ```
-//! use relievo::animation::{ClipSet, Instance, Layer, Wrap, creature, layers::mask_below};
+//! # #[cfg(feature = "samples")] {
+//! use relievo::animation::{ClipSet, Instance, Layer, Wrap, layers::mask_below};
+//! use relievo::samples::creature;
 //!
 //! let model = creature()?;
 //! let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
@@ -24,6 +26,7 @@
 //! let layers = [wave.masked(mask_below(&model.skeleton, arm)?)];
 //! // Crowd::layered(&gpu, &set, &walk, &layers)?, sampled by SamplePass::layered; later crowd.set_weights(&gpu, 1, …)?
 //! layers[0].validate("layers[0]", 100, set.clips().len(), set.bones())?;
+//! # }
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
@@ -119,7 +122,7 @@ pub fn all_instances(base: &[Instance], layers: &[Layer]) -> Vec<Instance> {
     base.iter().chain(layers.iter().flat_map(|layer| &layer.instances)).copied().collect()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::animation::sample::Wrap;

@@ -1,7 +1,7 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
 //! to 14); crowds of them on the device, with layers, bounds, and root motion for the host.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod bounds;
 pub mod budget;
@@ -24,7 +24,7 @@ pub mod place;
 pub mod priority;
 pub mod root_motion;
 pub mod sample;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 pub use bounds::Bounds;

@@ -1,11 +1,11 @@
 //! Kernels that others are measured against: what moving the same bytes costs, and the arithmetic that
 //! cannot be avoided. Every speed figure of relievo is a ratio to one of them in the same run.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod copy;
 pub mod gather;
 pub mod loads;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 pub mod words;

@@ -55,7 +55,7 @@ fn followed(model: &Model) -> Vec<bool> {
     followed
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::skinning::Blend;

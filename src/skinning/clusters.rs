@@ -196,7 +196,7 @@ fn mask(mesh: &Mesh, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usi
     mask
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::mesh::MeshLevel;

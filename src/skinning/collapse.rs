@@ -254,7 +254,7 @@ fn followers(model: &Model) -> (Vec<Vec<Follower>>, usize) {
     (followers, first)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::skinning::morph::reference::morph;

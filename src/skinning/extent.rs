@@ -136,7 +136,7 @@ fn stray(influences: &[Influence], places: &[Vec3]) -> f32 {
     influences[1..].iter().map(|other| off(other.weight / second.weight)).fold(0.0, f32::max)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::skinning::lod::LevelRanges;

@@ -196,7 +196,7 @@ fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
     distances.into_iter().filter_map(level).collect()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::{Influence, Influences};

@@ -1,7 +1,7 @@
 //! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
 
 pub mod ball;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 pub mod buffers;
@@ -21,7 +21,7 @@ mod pose;
 pub mod reduction;
 pub mod select;
 pub mod skin;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 pub use extent::Extent;

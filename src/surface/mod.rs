@@ -1,7 +1,7 @@
 //! Surface mapping: every ray-height method over one result, the maps that accelerate them, and tangent frames
 //! (B sections 3.1 and 4.2).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod cone_map;
 pub mod exact;
@@ -17,7 +17,7 @@ pub mod relief;
 pub mod tangent;
 #[cfg(feature = "gpu")]
 pub mod texture;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 pub mod view;
 

@@ -1,6 +1,6 @@
 //! Seeded terrain: integer heights that are the same bits on every device (B section 3.3 and 4.4).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod blend;
 pub mod border;
@@ -23,6 +23,6 @@ pub mod pad;
 pub mod recipe;
 pub mod texture;
 pub mod thermal;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 pub mod wrap;

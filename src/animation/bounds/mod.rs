@@ -21,12 +21,12 @@
 use crate::InputError;
 use crate::asset::skeleton::Skeleton;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]
@@ -79,7 +79,7 @@ pub fn check_reaches(reaches: &[f32], bones: usize) -> Result<(), InputError> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
 

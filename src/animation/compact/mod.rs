@@ -2,12 +2,12 @@
 //! above them is sampled, and the arguments of the indirect dispatches that do it. By prefix sums, in the same order on
 //! every device.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -10,12 +10,12 @@
 
 use crate::asset::skeleton::Skeleton;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]
@@ -151,7 +151,7 @@ fn heirs(skeleton: &Skeleton) -> Vec<Option<u32>> {
     heir
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::skeleton::Bone;

@@ -6,12 +6,12 @@
 //!
 //! What precedes and follows it in a frame: `animation::frame`.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

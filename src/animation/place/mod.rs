@@ -8,12 +8,12 @@ use super::sample::Wrap;
 use crate::InputError;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -169,7 +169,7 @@ fn solve(normal: &[[f64; 5]; 5], right: &[f64; 5], subset: u32) -> Option<[f64; 
     Some(x)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::clip::{BoneKeys, Interpolation, Keys};

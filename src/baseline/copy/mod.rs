@@ -1,9 +1,9 @@
 //! A copy of bytes (`kernels/baseline/copy.wgsl`).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 use crate::gpu::bindings::baseline::copy as bindings;

@@ -1,9 +1,9 @@
 //! Reads of keys as sampling reads them, and its writes (`kernels/baseline/gather.wgsl`).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 use crate::animation::crowd::{ClipBuffers, Crowd};

@@ -1,9 +1,9 @@
 //! Texel loads (`kernels/baseline/loads.wgsl`).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 use glam::UVec2;

@@ -1,9 +1,9 @@
 //! Random words, drawn and stored (`kernels/baseline/words.wgsl`).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 use glam::UVec2;

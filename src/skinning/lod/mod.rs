@@ -12,12 +12,12 @@ use crate::asset::mesh::MOST_LEVELS;
 use crate::asset::transform::Affine;
 use crate::skinning::reduction::Reduction;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -1,12 +1,12 @@
 //! Morph targets: how vertices move before they are skinned, and the keys of the targets' weights (glTF 2.0, sections
 //! 3.7.2.2 and 3.11).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -5,12 +5,12 @@ use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::asset::Mesh;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]
@@ -83,7 +83,7 @@ impl WeightSet {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::Interpolation;

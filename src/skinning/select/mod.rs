@@ -6,12 +6,12 @@
 //! An instance that is not seen keeps the vertices that it had. Seen again, all of it is skinned, whatever moved.
 //! Clusters beyond its level keep their vertices likewise, and are skinned once the level is a finer one.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -5,12 +5,12 @@
 //! and a mirrored frame changes its handedness. *Dual-quaternion* blending turns about the mean of the bones' motions
 //! instead, so that twisted limbs keep their volume: see [`super::palette`].
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

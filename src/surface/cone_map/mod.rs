@@ -6,12 +6,12 @@
 //!
 //! A radius is at most the shorter edge of the map in cells: on maps of a few rows `quadtree` is far cheaper.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -1,12 +1,12 @@
 //! Max-mip pyramids of height maps (B section 2.3.4): a leaf is the highest corner of a bilinear cell, a node the
 //! highest of its four children. What `quadtree` traverses, and what cone maps are made from.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

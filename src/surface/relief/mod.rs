@@ -3,12 +3,12 @@
 //! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them flat. The kernel here
 //! runs them on lists of rays.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

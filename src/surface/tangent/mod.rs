@@ -26,12 +26,12 @@
 use crate::InputError;
 use crate::asset::mesh::check_triangles;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

@@ -1,11 +1,11 @@
 //! Height zones and the top-down colour map of a patch (B section 3.3.1, equations 3.6 and 3.7).
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 use std::path::{Path, PathBuf};

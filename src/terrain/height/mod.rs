@@ -1,12 +1,12 @@
 //! Heights of a window onto the diamond-square of the whole plane (B section 3.3.1; spec section 1.2,
 //! `seamless`). Integers throughout: the same bits on every device.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]

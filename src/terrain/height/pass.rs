@@ -386,7 +386,6 @@ impl HeightJob {
 mod tests {
     use super::*;
 
-    crate::gpu::layout::layout_test!(level_layout: Level = TERRAIN_HEIGHT "Level");
     use crate::terrain::height::Span;
 
     #[test]

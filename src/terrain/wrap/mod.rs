@@ -1,12 +1,12 @@
 //! Heights of a patch by itself, whose neighbours wrap around (B section 3.3.1; spec section 1.2, `wrap`). A
 //! patch with equal corners tiles with itself bit for bit.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 pub mod verify;
 
 #[cfg(feature = "gpu")]
