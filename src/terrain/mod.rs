@@ -10,6 +10,7 @@ pub mod features;
 pub mod fields;
 #[cfg(feature = "gpu")]
 pub mod generator;
+pub mod ground;
 pub mod height;
 mod json;
 pub mod mesh;

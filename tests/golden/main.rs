@@ -13,6 +13,7 @@ mod figure;
 #[allow(dead_code, reason = "only some of it is needed here")]
 #[path = "../animation/scene.rs"]
 mod gltf;
+mod ground;
 mod levels;
 mod materials;
 mod scene;
