@@ -18,6 +18,7 @@ mod levels;
 mod materials;
 mod scene;
 mod skinned;
+mod tiling;
 
 use harness::{Tolerance, check_golden, relievo};
 
