@@ -8,6 +8,7 @@ use relievo::render::{Camera, Materials, Style, TerrainRenderer};
 use relievo::terrain::blend::Shading;
 use relievo::terrain::config::{Config, Offset};
 use relievo::terrain::features::Features;
+use relievo::terrain::ground::Ground;
 use relievo::terrain::height::{HeightBatch, HeightPass};
 use relievo::terrain::texture::Texture;
 
@@ -36,9 +37,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     batch.record(&mut encoder);
     queue.submit([encoder.finish()]);
 
-    let eye = glam::Vec3::new(40.0, 150.0, 420.0);
+    // The same ground on the CPU, to stand somebody on: height and normal of the triangle that is drawn.
+    let fields = &batch.fields()[0];
+    let heights = fields.heights.read_blocking(&gpu)?;
+    let mut ground = Ground::new(&config)?;
+    for (patch, window) in patches.iter().zip(heights.chunks_exact((fields.width * fields.width) as usize)) {
+        ground.insert(*patch, window, 1)?;
+    }
+    let (x, z) = (60.5, 370.25);
+    let feet = ground.point_from(patches[0], x, z).ok_or("nobody stands outside of the patches")?;
+    println!("({x}, {z}): {:.2} high, the ground's normal is {:.2?}", feet.height, feet.normal);
+
     let camera = Camera {
-        eye,
+        eye: glam::DVec3::new(x, feet.height + 40.0, z).as_vec3(),
         target: glam::Vec3::new(192.0, 0.0, 160.0),
         field_of_view: 0.8,
         near: 1.0,

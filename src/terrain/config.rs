@@ -18,6 +18,9 @@ pub const PATCH_EDGE: i64 = 4096;
 /// No height ever exceeds this (2^30 − 1): sums of two and differences still fit `i32`.
 pub const HEIGHT_LIMIT: i64 = (1 << 30) - 1;
 
+/// The most texture tiles along a patch's edge: `f32` texture coordinates then tell a quarter of a texel.
+const MAX_TILES: f64 = 16_384.0;
+
 /// The distribution of random offsets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -78,6 +81,9 @@ pub struct Config {
     pub corners: [f64; 4],
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
+    /// World units that a zone's texture covers before it repeats, at least 1/16384 of a patch's edge. Default
+    /// `None`: (patchSize − 1) / 10, which is B's 10 · terrainScale tiles a patch.
+    pub texture_tile: Option<f64>,
     /// Height zones for colouring, 1 to 32. Default four: sand, grass, hill and snow.
     pub zones: Vec<Zone>,
 }
@@ -98,6 +104,7 @@ impl Config {
             border: Border::Seamless,
             corners: [0.0; 4],
             terrain_scale: 1.0,
+            texture_tile: None,
             zones: Zone::defaults(scale_factor, Offset::Signed),
         };
         config.validate()?;
@@ -138,6 +145,9 @@ impl Config {
             return Err(InputError::new("coarseLevels", self.coarse_levels, "must be in 0..=8"));
         }
         check_terrain_scale(self.terrain_scale)?;
+        if let Some(tile) = self.texture_tile {
+            finite("textureTile", tile, self.edge_length() / MAX_TILES, f64::MAX)?;
+        }
         let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
         for (index, &corner) in self.corners.iter().enumerate() {
             finite(&format!("corners[{index}]"), corner, -most, most)?;
@@ -208,6 +218,16 @@ impl Config {
     /// Subdivisions from the coarsest lattice to the samples: L = n + k.
     pub fn levels(&self) -> u32 {
         self.exponent() + self.coarse_levels
+    }
+
+    /// World units along a patch's edge.
+    pub fn edge_length(&self) -> f64 {
+        f64::from(self.patch_size - 1) * self.terrain_scale
+    }
+
+    /// Texture tiles along a patch's edge.
+    pub fn tiles_per_patch(&self) -> f64 {
+        self.texture_tile.map_or(10.0 * self.terrain_scale, |tile| self.edge_length() / tile)
     }
 
     /// World coordinates between neighbouring samples.

@@ -32,6 +32,8 @@ struct Raw {
     #[serde(default)]
     terrain_scale: Option<f64>,
     #[serde(default)]
+    texture_tile: Option<f64>,
+    #[serde(default)]
     zones: Option<Vec<Object<Zone>>>,
 }
 
@@ -143,6 +145,7 @@ impl Config {
                 RawCorners::Each(heights) => heights,
             }),
             terrain_scale: raw.terrain_scale.unwrap_or(1.0),
+            texture_tile: raw.texture_tile,
             zones: raw.zones.map_or_else(
                 || Zone::defaults(raw.scale_factor, raw.offset),
                 |zones| zones.into_iter().map(|zone| zone.0).collect(),

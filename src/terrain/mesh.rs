@@ -1,10 +1,24 @@
 //! Explicit meshes of height fields (B section 4.4), for those who want one: relievo itself draws straight from
-//! the heights. And height queries on the CPU.
+//! the heights. And height queries on the CPU: [`HeightField::triangle_at`] answers the triangles that are drawn,
+//! [`HeightField::height_at`] a bilinear surface. [`crate::terrain::ground::Ground`] answers for many patches.
 
 use std::fmt::Display;
 use std::io::{self, Write};
 
 use crate::terrain::config::HEIGHT_ONE;
+
+/// The distance between samples as a fraction of itself: positions are rounded to 2⁻³⁰ of it. A fraction times any
+/// height fits `i64`.
+pub(crate) const FRACTION_ONE: i64 = 1 << 30;
+
+/// A point of the ground as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundPoint {
+    /// Height in units.
+    pub height: f64,
+    /// Unit normal of the triangle: x east, y up, z south. `y` is above 0.
+    pub normal: [f64; 3],
+}
 
 /// A square field of heights on the CPU.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +46,57 @@ impl HeightField {
         (x < self.size && y < self.size).then(|| f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE)
     }
 
+    /// The height and the normal of the triangle at world position (x, z) relative to the first sample; `None`
+    /// outside the field. Use it to stand something on the ground.
+    ///
+    /// The triangles are those of the drawing pass, of [`HeightField::mesh`] and of
+    /// [`HeightField::write_obj`]: the diagonal of each cell runs from its north-eastern to its south-western
+    /// corner, (1, 0) to (0, 1). On it the north-western triangle answers, and between two cells the eastern or
+    /// southern cell does, where the field has one.
+    ///
+    /// The position is rounded to 2⁻³⁰ of the distance between samples. The height is exact there, and then
+    /// rounded to `f64`; the normal is computed in `f64`.
+    pub fn triangle_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
+        let last = self.size as i64 - 1;
+        let along = |position: f64| {
+            let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
+            // Nothing lies east or south of the last sample: it ends the last cell.
+            let (cell, fraction) =
+                if sample == last { (last - 1, fraction + FRACTION_ONE) } else { (sample, fraction) };
+            ((0..last).contains(&cell) && fraction <= FRACTION_ONE).then_some((cell as usize, fraction))
+        };
+        let ((column, u), (row, v)) = (along(x)?, along(z)?);
+        Some(self.triangle([column, row], [u, v]))
+    }
+
+    /// The triangle of the cell (column, row) at a place in it, 0 to [`FRACTION_ONE`] east and south of its first
+    /// corner.
+    pub(crate) fn triangle(&self, [column, row]: [usize; 2], [u, v]: [i64; 2]) -> GroundPoint {
+        let corner = |dx: usize, dy: usize| i64::from(self.heights[(row + dy) * self.size + column + dx]);
+        let (east, south) = (corner(1, 0), corner(0, 1));
+        // Weights are whole and sum to one, so sums are exact, and equal wherever two triangles meet.
+        let beyond = u + v - FRACTION_ONE;
+        let (sum, rise) = if beyond <= 0 {
+            let first = corner(0, 0);
+            (first * -beyond + east * u + south * v, [east - first, south - first])
+        } else {
+            let last = corner(1, 1);
+            let sum = last * beyond + south * (FRACTION_ONE - u) + east * (FRACTION_ONE - v);
+            (sum, [last - south, last - east])
+        };
+        let run = self.spacing * HEIGHT_ONE;
+        let [x, z] = rise.map(|rise| -(rise as f64) / run);
+        let length = (x * x + 1.0 + z * z).sqrt();
+        GroundPoint {
+            height: sum as f64 / (FRACTION_ONE as f64 * HEIGHT_ONE),
+            normal: [x / length, 1.0 / length, z / length],
+        }
+    }
+
     /// The height at world position (x, z) relative to the first sample, bilinear between samples; `None`
-    /// outside the field.
+    /// outside the field. It is the smoother surface, without the creases of triangles, but not what is drawn:
+    /// over a cell with corner heights h₀₀, h₁₀, h₀₁ and h₁₁ it differs from [`HeightField::triangle_at`] by up to
+    /// |h₀₀ − h₁₀ − h₀₁ + h₁₁| / 4, which it reaches in the middle of the cell, and always to the same side.
     pub fn height_at(&self, x: f64, z: f64) -> Option<f64> {
         let last = (self.size - 1) as f64;
         let (column, row) = (x / self.spacing, z / self.spacing);
@@ -83,6 +146,17 @@ impl HeightField {
         let mesh = self.mesh();
         write_obj(out, positions, &mesh.uvs, &mesh.triangles())
     }
+}
+
+/// A position, counted in samples, as a whole sample and a fraction below [`FRACTION_ONE`]; `None` for what is not
+/// finite or so large that `f64` has no fractions there.
+pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
+    let whole = position.floor();
+    let has_fractions = whole.abs() < (1_i64 << f64::MANTISSA_DIGITS) as f64;
+    has_fractions.then(|| {
+        let fraction = ((position - whole) * FRACTION_ONE as f64).round() as i64;
+        (whole as i64 + fraction / FRACTION_ONE, fraction % FRACTION_ONE)
+    })
 }
 
 /// Indices of one triangle strip over a grid of `size`² points: rows are joined by degenerate triangles. Front

@@ -14,6 +14,7 @@ pub mod fields;
 pub mod fixed;
 #[cfg(feature = "gpu")]
 pub mod generator;
+pub mod ground;
 pub mod height;
 mod json;
 pub mod mesh;

@@ -43,6 +43,7 @@ impl Texture {
             border: Border::Wrap,
             corners: [0.0; 4],
             terrain_scale: 1.0,
+            texture_tile: None,
             zones: Vec::new(),
         };
         let noise = wrap(&config, &Features::default(), [0, 0]);

@@ -13,10 +13,12 @@ mod figure;
 #[allow(dead_code, reason = "only some of it is needed here")]
 #[path = "../animation/scene.rs"]
 mod gltf;
+mod ground;
 mod levels;
 mod materials;
 mod scene;
 mod skinned;
+mod tiling;
 
 use harness::{Tolerance, check_golden, relievo};
 

@@ -5,6 +5,7 @@
 mod harness;
 
 mod borders;
+mod ground;
 #[cfg(feature = "gpu")]
 mod jobs;
 mod known_heights;

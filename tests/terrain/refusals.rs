@@ -64,7 +64,7 @@ fn defaults_are_those_of_the_specification() {
     let config = accepted(&[]);
     assert_eq!((config.roughness, config.coarse_levels, config.terrain_scale), (1.0, 0, 1.0));
     assert_eq!((config.offset, config.border, config.corners), (Offset::Signed, Border::Seamless, [0.0; 4]));
-    assert_eq!(config.zones.len(), 4);
+    assert_eq!((config.zones.len(), config.texture_tile), (4, None));
 }
 
 #[test]
@@ -119,6 +119,24 @@ fn numbers_below_their_bound_are_refused() {
     }
     accepted(&[("terrainScale", "1e-6")]);
     accepted(&[("terrainScale", "1e6")]);
+    // A patch of 33 samples is 16 units wide here, and may hold 16,384 tiles.
+    for tile in ["0", "-2.5", "0.0009765624"] {
+        refused(
+            &[("terrainScale", "0.5"), ("textureTile", tile)],
+            &[&format!("textureTile = {tile}: "), "≥ 0.0009765625"],
+        );
+    }
+    accepted(&[("terrainScale", "0.5"), ("textureTile", "0.0009765625")]);
+}
+
+#[test]
+fn texture_tiles_are_counted_in_world_units() {
+    let tiles = |changes: &[(&str, &str)]| accepted(changes).tiles_per_patch();
+    assert_eq!(tiles(&[]), 10.0);
+    assert_eq!(tiles(&[("terrainScale", "0.25")]), 2.5);
+    assert_eq!(tiles(&[("textureTile", "3.2")]), 10.0);
+    assert_eq!(tiles(&[("textureTile", "64"), ("terrainScale", "0.25")]), 0.125);
+    assert_eq!(tiles(&[("textureTile", "2"), ("terrainScale", "0.25")]), 4.0);
 }
 
 #[test]
@@ -133,6 +151,7 @@ fn numbers_that_are_not_finite_are_refused() {
     refuses_all(|config, value| config.scale_factor = value, "scaleFactor");
     refuses_all(|config, value| config.roughness = value, "roughness");
     refuses_all(|config, value| config.terrain_scale = value, "terrainScale");
+    refuses_all(|config, value| config.texture_tile = Some(value), "textureTile");
     refuses_all(|config, value| config.corners[2] = value, "corners[2]");
     refuses_all(|config, value| config.zones[1].min = value, "zones[1].min");
     refuses_all(|config, value| config.zones[3].max = value, "zones[3].max");
@@ -140,7 +159,9 @@ fn numbers_that_are_not_finite_are_refused() {
 
 #[test]
 fn a_number_beyond_f64_is_refused_and_its_field_is_named() {
-    for field in ["patchSize", "scaleFactor", "roughness", "coarseLevels", "terrainScale", "corners"] {
+    for field in
+        ["patchSize", "scaleFactor", "roughness", "coarseLevels", "terrainScale", "textureTile", "corners"]
+    {
         refused(&[(field, "1e999")], &[field, "out of range"]);
     }
     refused(&[("zones", r#"[{"min": 0, "max": 1e999}]"#)], &["zones[0].max", "out of range"]);

@@ -31,8 +31,8 @@ use crate::progress::bar;
 /// `relievo-heights`) and `heights_<px>_<py>.i32` (little-endian rows, 1/65536 units), and `report.json`.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
-/// coarseLevels, offset, border, corners, terrainScale, zones. A feature file: {"patchCoordinates": [0, 0],
-/// "precomputedHeights": [x, y, height, …]}.
+/// coarseLevels, offset, border, corners, terrainScale, textureTile, zones. A feature file: {"patchCoordinates":
+/// [0, 0], "precomputedHeights": [x, y, height, …]}.
 #[derive(Args)]
 pub struct Terrain {
     /// The configuration.

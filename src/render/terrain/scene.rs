@@ -104,7 +104,7 @@ impl TerrainScene {
             let bound = format!("must be patchSize = {size} and an even margin of at least 2");
             return Err(InputError::new("fields.width", fields.width, bound).into());
         }
-        let tiles = 10.0 * config.terrain_scale;
+        let tiles = config.tiles_per_patch();
         let params = FieldParams {
             in_width: fields.width,
             size,

@@ -1,0 +1,124 @@
+//! The ground of a world of patches, by world position on the CPU: height and normal of the triangles that are
+//! drawn.
+
+use std::collections::HashMap;
+
+use crate::InputError;
+use crate::terrain::config::Config;
+use crate::terrain::export::cropped;
+use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
+
+/// Patches of one configuration on the CPU, any number anywhere, to be asked for the ground at a position.
+///
+/// The answer is that of the triangles that `relievo` draws and exports ([`HeightField::triangle_at`]), so that
+/// what stands on it neither floats nor sinks. A patch costs four bytes a sample.
+///
+/// ```
+/// use relievo::reference::terrain::field::field;
+/// use relievo::terrain::{config::Config, ground::Ground, recipe::Recipe};
+///
+/// let config = Config::new(33, 40.0, "any text")?;
+/// let patches = [[-1, 0], [0, 0]];
+/// let mut ground = Ground::new(&config)?;
+/// for (patch, heights) in patches.iter().zip(field(&Recipe::new(config), &patches, 0)?) {
+///     ground.insert(*patch, &heights, 0)?;
+/// }
+/// let west = ground.point_at(-0.25, 7.5).ok_or("inside")?;
+/// assert!(west.height.abs() < 200.0 && west.normal[1] > 0.0);
+/// assert_eq!(ground.point_at(-0.25, -7.5), None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Ground {
+    /// Samples along an edge of a patch.
+    size: u32,
+    /// World units between neighbouring samples.
+    spacing: f64,
+    patches: HashMap<[i32; 2], HeightField>,
+}
+
+impl Ground {
+    /// No patches yet, of `config`.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Config::validate`].
+    pub fn new(config: &Config) -> Result<Self, InputError> {
+        config.validate()?;
+        Ok(Self { size: config.patch_size, spacing: config.terrain_scale, patches: HashMap::new() })
+    }
+
+    /// Adds the patch at `patch`, or replaces it. `heights` are its heights in 1/65536 units, row by row, with
+    /// `margin` samples around it, as [`crate::reference::terrain::field::field`] gives them and fields on the
+    /// device hold them; the margin is not kept.
+    ///
+    /// # Errors
+    /// [`InputError`] for another number of heights than (patchSize + 2 · margin)².
+    pub fn insert(&mut self, patch: [i32; 2], heights: &[i32], margin: u32) -> Result<(), InputError> {
+        let width = u64::from(self.size) + 2 * u64::from(margin);
+        let refused = || {
+            let bound = format!("must be {width}² heights: patchSize = {} and margin = {margin}", self.size);
+            InputError::new("heights", format!("[{} heights]", heights.len()), bound)
+        };
+        if width.checked_mul(width) != Some(heights.len() as u64) {
+            return Err(refused());
+        }
+        let inner = cropped(heights, width as usize, margin as usize);
+        let field = HeightField::new(inner, self.size as usize, self.spacing).ok_or_else(refused)?;
+        self.patches.insert(patch, field);
+        Ok(())
+    }
+
+    /// Removes a patch. Whether it was there.
+    pub fn remove(&mut self, patch: [i32; 2]) -> bool {
+        self.patches.remove(&patch).is_some()
+    }
+
+    /// The ground at world position (x east, z south), where position 0 is the first sample of patch (0, 0);
+    /// `None` where no patch is.
+    ///
+    /// Patches of `seamless` terrain have the same heights along an edge that they share, so that a point there
+    /// has the same height from either, bit for bit; where both are there, the eastern or southern one answers.
+    /// (`wrap` gives patches edges of their own, and there that choice shows.)
+    pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
+        self.point_from([0, 0], x, z)
+    }
+
+    /// [`Ground::point_at`] where position 0 is the first sample of patch `origin`, as in a
+    /// `render::TerrainScene`. A viewer far from patch (0, 0) takes an origin nearby: positions near 0 are
+    /// precise, however far away the origin is.
+    pub fn point_from(&self, origin: [i32; 2], x: f64, z: f64) -> Option<GroundPoint> {
+        let columns = self.cells(origin[0], x)?;
+        let rows = self.cells(origin[1], z)?;
+        let near = rows
+            .into_iter()
+            .flatten()
+            .flat_map(|row| columns.into_iter().flatten().map(move |column| (column, row)));
+        near.filter_map(|(column, row)| {
+            let field = self.patches.get(&[column.patch, row.patch])?;
+            Some(field.triangle([column.index, row.index], [column.fraction, row.fraction]))
+        })
+        .next()
+    }
+
+    /// The cells along one axis that hold a position: two where patches meet, the one after the edge first.
+    fn cells(&self, origin: i32, position: f64) -> Option<[Option<Cell>; 2]> {
+        let edge = i64::from(self.size) - 1;
+        let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
+        let sample = sample + i64::from(origin) * edge;
+        let cell = |sample: i64, fraction: i64| {
+            let patch = i32::try_from(sample.div_euclid(edge)).ok()?;
+            Some(Cell { patch, index: sample.rem_euclid(edge) as usize, fraction })
+        };
+        let is_edge = fraction == 0 && sample.rem_euclid(edge) == 0;
+        Some([cell(sample, fraction), if is_edge { cell(sample - 1, FRACTION_ONE) } else { None }])
+    }
+}
+
+/// A cell along one axis, and a place in it.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    patch: i32,
+    index: usize,
+    /// 0 to [`FRACTION_ONE`].
+    fraction: i64,
+}
