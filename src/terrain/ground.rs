@@ -14,7 +14,7 @@ use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fr
 /// what stands on it neither floats nor sinks. A patch costs four bytes a sample.
 ///
 /// ```
-/// use relievo::reference::terrain::field::field;
+/// use relievo::terrain::field::field;
 /// use relievo::terrain::{config::Config, ground::Ground, recipe::Recipe};
 ///
 /// let config = Config::new(33, 40.0, "any text")?;
@@ -48,7 +48,7 @@ impl Ground {
     }
 
     /// Adds the patch at `patch`, or replaces it. `heights` are its heights in 1/65536 units, row by row, with
-    /// `margin` samples around it, as [`crate::reference::terrain::field::field`] gives them and fields on the
+    /// `margin` samples around it, as [`crate::terrain::field::field`] gives them and fields on the
     /// device hold them; the margin is not kept.
     ///
     /// # Errors
