@@ -19,7 +19,8 @@ use relievo::samples::creature;
 use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::lod::standing;
 use relievo::skinning::picture::Light;
-use relievo::skinning::{Blend, Extent, add_levels, level_errors};
+use relievo::skinning::vertex::Blend;
+use relievo::skinning::{Extent, add_levels, level_errors};
 use relievo::surface::mips::Mips;
 
 /// Instances of each character.

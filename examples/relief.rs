@@ -6,7 +6,8 @@
 use relievo::gpu::{Gpu, Options, shaders::MODULES};
 use relievo::render::{Target, target::COLOR_FORMAT, target::DEPTH_FORMAT};
 use relievo::samples::BuiltInMap;
-use relievo::surface::{Address, Method, SurfaceTextures};
+use relievo::surface::relief::textures::SurfaceTextures;
+use relievo::surface::{Address, Method};
 
 /// The material: a wall seen at an angle. `surface_ray`, `surface_quadtree` and `surface_normal` are relievo's.
 const MATERIAL: &str = r#"

@@ -20,9 +20,10 @@ use relievo::terrain::config::{Config, Offset};
 use relievo::terrain::features::Features;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::height::reference::height;
-use relievo::terrain::height::{HeightBatch, HeightPass, Window};
+use relievo::terrain::height::{HeightBatch, HeightPass};
 use relievo::terrain::thermal::{Thermal, ThermalPass};
 use relievo::terrain::verify::random_heights;
+use relievo::terrain::window::Window;
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
 fn foreign() -> (wgpu::Device, wgpu::Queue) {

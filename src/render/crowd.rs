@@ -9,12 +9,12 @@ use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
-use crate::skinning::Blend;
 use crate::skinning::ball::ball_in_clips;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, number_at};
 use crate::skinning::picture::Light;
 use crate::skinning::reduction::Reduction;
+use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
 /// Steps of the fade.

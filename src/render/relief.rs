@@ -8,8 +8,8 @@ use crate::render::color::ColorTexture;
 use crate::render::pipeline::Draws;
 use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{March, Method, SurfaceMarch};
-use crate::surface::texture::SurfaceTextures;
 use crate::{Error, InputError};
 
 /// `ReliefView` of the shader.

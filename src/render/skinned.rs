@@ -14,7 +14,7 @@ use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{DRAW_WORDS, list_stride};
 use crate::skinning::picture::Light;
-use crate::skinning::skin::Vertex;
+use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 
 /// `SkinnedView` of the shader.

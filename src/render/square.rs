@@ -13,7 +13,7 @@ use crate::surface::material::Material;
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
-use crate::surface::texture::SurfaceTextures;
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::view::SquareView;
 
 /// How a square is drawn.

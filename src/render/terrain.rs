@@ -9,7 +9,8 @@ pub use scene::{FieldsId, TerrainScene};
 
 use crate::gpu::{Buffer, Gpu, GpuError, Uniform, bind, shaders, storage};
 use crate::render::pipeline::Draws;
-use crate::terrain::blend::{Light, Shading, Zone, ZoneRange};
+use crate::terrain::blend::{Light, Shading, ZoneRange};
+use crate::terrain::config::Zone;
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
 

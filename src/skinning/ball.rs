@@ -58,11 +58,11 @@ fn followed(model: &Model) -> Vec<bool> {
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
-    use crate::skinning::Blend;
     use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::reference::palette_for;
     use crate::skinning::reduction::Reduction;
     use crate::skinning::skin::reference::skin;
+    use crate::skinning::vertex::Blend;
 
     #[test]
     fn the_ball_holds_every_vertex_and_not_much_more() {

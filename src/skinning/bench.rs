@@ -10,8 +10,8 @@ use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::Clusters;
 use crate::skinning::palette::reference::rows;
 use crate::skinning::reduction::Reduction;
-use crate::skinning::skin::Blend;
 use crate::skinning::verify::{Shape, random_model};
+use crate::skinning::vertex::Blend;
 
 /// Vertices of the mesh: 100 rings of 100.
 pub(crate) const RING: usize = 100;

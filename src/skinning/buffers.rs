@@ -4,13 +4,13 @@
 use glam::UVec4;
 
 use super::clusters::{ClusterLevel, Clusters};
-use super::skin::{Blend, Vertex};
 use crate::asset::Model;
 use crate::asset::mesh::{MOST_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::skinning::palette::reference::rows;
 use crate::skinning::reduction::Reduction;
+use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
 /// A mesh on the device, and the skin that it follows. Vertices lie in clusters: see [`Clusters::order`].

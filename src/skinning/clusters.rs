@@ -2,12 +2,12 @@
 
 use std::cmp::Reverse;
 
-use super::skin::Vertex;
 use crate::InputError;
 use crate::animation::concat::Order;
 use crate::asset::mesh::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
 use crate::skinning::morph::reference::morph;
+use crate::skinning::vertex::Vertex;
 
 /// Vertices of a cluster.
 pub const CLUSTER: usize = 64;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::skin::Vertex;
 use crate::asset::mesh::Mesh;
+use crate::skinning::vertex::Vertex;
 
 /// An object a mesh, in order: vertices in the mesh's order with every digit that `f32` needs, texture coordinates
 /// (v up, as OBJ has it), normals, triangles.

@@ -5,10 +5,11 @@ use super::clusters::Clusters;
 use super::morph::MorphPass;
 use super::palette::PalettePass;
 use super::select::{SelectBuffers, SelectPass};
-use super::skin::{Blend, SkinPass, Vertex};
+use super::skin::SkinPass;
 use crate::asset::Model;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
+use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
 /// Prepared skinning of all instances of one mesh.

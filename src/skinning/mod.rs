@@ -23,8 +23,9 @@ pub mod select;
 pub mod skin;
 #[cfg(feature = "verify")]
 pub mod verify;
+pub mod vertex;
 
 pub use extent::Extent;
 pub use levels::{MeshLevels, add_levels, level_errors};
 pub use reduction::Reduction;
-pub use skin::{Blend, Vertex};
+pub use vertex::{Blend, Vertex};

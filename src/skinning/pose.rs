@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use super::Vertex;
 use crate::InputError;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::RotationPath;
@@ -13,6 +12,7 @@ use crate::asset::{Influence, Mesh};
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::reference::palette;
 use crate::skinning::skin::reference::transformed;
+use crate::skinning::vertex::Vertex;
 
 /// A mesh at a moment.
 pub(super) struct Pose {

@@ -9,8 +9,8 @@ use crate::asset::skeleton::Skin;
 use crate::asset::transform::{Affine, Transform};
 use crate::asset::{Influence, Influences, Mesh, MeshLevel, MorphTarget};
 use crate::harness::poison::POISON;
-use crate::skinning::Vertex;
 use crate::skinning::reduction::Reduction;
+use crate::skinning::vertex::Vertex;
 
 /// A random mesh, and the skeleton and skin that it follows.
 #[derive(Debug, Clone, Copy)]

@@ -5,6 +5,7 @@
 pub mod bench;
 pub mod cone_map;
 pub mod exact;
+pub mod height_batch;
 pub mod height_pyramid;
 pub mod linear_image;
 pub mod map;
@@ -15,8 +16,6 @@ pub mod mips;
 pub mod picture;
 pub mod relief;
 pub mod tangent;
-#[cfg(feature = "gpu")]
-pub mod texture;
 #[cfg(feature = "verify")]
 pub mod verify;
 pub mod view;
@@ -28,6 +27,4 @@ pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
 pub use relief::{Hit, March, Method, Outcome, Ray};
-#[cfg(feature = "gpu")]
-pub use texture::{HeightBatch, SurfaceTextures};
 pub use view::SquareView;

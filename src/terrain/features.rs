@@ -9,35 +9,16 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE};
-use crate::terrain::height::Window;
-use crate::terrain::json::{from_json_object, read_text};
+use crate::terrain::config::{from_json_object, read_text};
+use crate::terrain::fixed::FeatureMode;
 use crate::terrain::pad::reference::pad;
 use crate::terrain::pad::surrounds;
+use crate::terrain::window::Lattice;
+use crate::terrain::window::Window;
 use crate::{Error, InputError};
 
 #[cfg(feature = "gpu")]
 pub use index::{FeatureGrid, FeatureIndex};
-
-/// What injection does to a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum FeatureMode {
-    /// Injected points stay as they are.
-    #[default]
-    Keep,
-    /// The computed value is added to them.
-    Additive,
-}
-
-impl FeatureMode {
-    /// The value of the shaders' `FEATURES`; 0 stands for no features.
-    pub fn code(self) -> u32 {
-        match self {
-            Self::Keep => 1,
-            Self::Additive => 2,
-        }
-    }
-}
 
 /// One feature file: B's JSON.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -239,22 +220,4 @@ impl Features {
     pub fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }
-}
-
-impl Lattice {
-    /// The lattice with one point more on every side.
-    pub fn grown(self) -> Self {
-        Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
-    }
-}
-
-/// A square lattice in world coordinates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Lattice {
-    /// The first point, (X, Y); a multiple of `spacing`.
-    pub origin: [i64; 2],
-    /// Points along an edge.
-    pub width: u32,
-    /// World coordinates between neighbours.
-    pub spacing: i64,
 }

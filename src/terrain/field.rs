@@ -7,9 +7,9 @@ use crate::InputError;
 use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, Config};
 use crate::terrain::features::Features;
-use crate::terrain::height::Window;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
+use crate::terrain::window::Window;
 
 /// The final heights of `patches`, each with `margin` samples around it: rows of patchSize + 2·margin.
 /// Patches are made in parallel on rayon's threads.

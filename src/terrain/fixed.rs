@@ -2,7 +2,6 @@
 
 use crate::hash::{LANES, threefry2x32};
 use crate::terrain::config::{Config, Offset};
-use crate::terrain::features::FeatureMode;
 
 /// The mean of four, rounded half up.
 #[inline(always)]
@@ -54,6 +53,27 @@ impl Draw {
             }
         };
         multiply_high(uniform, 2 * range) as i32 - range as i32
+    }
+}
+
+/// What injection does to a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FeatureMode {
+    /// Injected points stay as they are.
+    #[default]
+    Keep,
+    /// The computed value is added to them.
+    Additive,
+}
+
+impl FeatureMode {
+    /// The value of the shaders' `FEATURES`; 0 stands for no features.
+    pub fn code(self) -> u32 {
+        match self {
+            Self::Keep => 1,
+            Self::Additive => 2,
+        }
     }
 }
 

@@ -9,12 +9,14 @@ use crate::gpu::{Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::DespikePass;
-use crate::terrain::features::{FeatureIndex, Lattice};
+use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
-use crate::terrain::height::{HeightJob, HeightPass, HeightScratch, Window};
+use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::ThermalPass;
+use crate::terrain::window::Lattice;
+use crate::terrain::window::Window;
 use crate::terrain::wrap::{WrapJob, WrapPass};
 
 /// Makes the fields of one recipe.

@@ -16,7 +16,6 @@ pub mod fixed;
 pub mod generator;
 pub mod ground;
 pub mod height;
-mod json;
 pub mod mesh;
 pub mod morph;
 pub mod normals;
@@ -26,4 +25,5 @@ pub mod texture;
 pub mod thermal;
 #[cfg(feature = "verify")]
 pub mod verify;
+pub mod window;
 pub mod wrap;

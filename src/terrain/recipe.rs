@@ -4,9 +4,9 @@ use crate::InputError;
 use crate::terrain::config::{Border, Config};
 use crate::terrain::despike::Despike;
 use crate::terrain::features::Features;
-use crate::terrain::height::Window;
 use crate::terrain::pad;
 use crate::terrain::thermal::Thermal;
+use crate::terrain::window::Window;
 
 /// What a field of patches is made of, in order: generation, borders, despiking, erosion.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,9 @@ use image::imageops::FilterType;
 
 use crate::Error;
 use crate::srgb;
-use crate::terrain::blend::{BuiltIn, MapZone, Zone, ZoneTexture};
+use crate::terrain::blend::MapZone;
 use crate::terrain::config::{Border, Config};
+use crate::terrain::config::{BuiltIn, Zone, ZoneTexture};
 use crate::terrain::features::Features;
 use crate::terrain::wrap::reference::wrap;
 

@@ -2,7 +2,8 @@
 
 use crate::hash::threefry2x32;
 use crate::terrain::config::{Config, HEIGHT_LIMIT};
-use crate::terrain::features::{FeatureFile, FeatureMode, Features};
+use crate::terrain::features::{FeatureFile, Features};
+use crate::terrain::fixed::FeatureMode;
 use crate::{Error, InputError};
 
 /// Random words of a test case, the same on every machine.

@@ -236,12 +236,12 @@ fn full() -> Scene {
 fn skin_all(model: &Model) {
     use relievo::animation::concat::reference::concat;
     use relievo::asset::reaches;
-    use relievo::skinning::Blend;
     use relievo::skinning::clusters::Clusters;
     use relievo::skinning::morph::reference::morph;
     use relievo::skinning::palette::reference::palette_for;
     use relievo::skinning::reduction::Reduction;
     use relievo::skinning::skin::reference::skin;
+    use relievo::skinning::vertex::Blend;
     let models = concat(&model.skeleton, &model.skeleton.rest());
     // Scales may drive places out of range; that is the pose's fault.
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
@@ -262,7 +262,7 @@ fn skin_all(model: &Model) {
                 .all(|delta| [delta.position, delta.normal].as_flattened().iter().all(|x| x.abs() < 1e6))
             && model.skins[mesh.skin].inverse_binds.as_flattened().iter().all(|x| x.abs() < 1e6);
         if is_sane && small && !large(&weights) {
-            let finite = |vertex: &relievo::skinning::Vertex| {
+            let finite = |vertex: &relievo::skinning::vertex::Vertex| {
                 vertex.position.iter().chain(&vertex.normal).all(|x| x.is_finite())
             };
             assert!(vertices.iter().all(finite));

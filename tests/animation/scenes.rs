@@ -1,10 +1,11 @@
 //! Which part of a document is imported: the default scene, with or without skins, and extensions that it requires.
 
-use relievo::asset::Model;
-use relievo::asset::transform::Affine;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::reference::sample;
-use relievo::skinning::{Blend, Reduction};
+use relievo::asset::Model;
+use relievo::asset::transform::Affine;
+use relievo::skinning::Reduction;
+use relievo::skinning::vertex::Blend;
 use serde_json::{Value, json};
 
 use crate::meshes::Skinned;

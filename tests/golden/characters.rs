@@ -11,9 +11,9 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::samples::creature;
-use relievo::skinning::Blend;
 use relievo::skinning::lod::standing;
 use relievo::skinning::picture::Light;
+use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
 
 use crate::figure::figure;

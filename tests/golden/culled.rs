@@ -10,12 +10,12 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::samples::creature;
-use relievo::skinning::Blend;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, ball, standing};
 use relievo::skinning::picture::Light;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::select::SKINNED_WORDS;
+use relievo::skinning::vertex::Blend;
 use relievo::surface::mips::Mips;
 
 use crate::harness::gpu;

@@ -5,11 +5,10 @@ use relievo::gpu::Gpu;
 use relievo::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use relievo::render::{ColorTexture, Target, target::COLOR_FORMAT};
 use relievo::samples::BuiltInMap;
+use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::tangent::Mesh;
 use relievo::surface::tangent::reference::tangents;
-use relievo::surface::{
-    Address, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
-};
+use relievo::surface::{Address, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceVertex};
 
 use crate::harness::{self, Tolerance, check_golden};
 

@@ -21,7 +21,7 @@ use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::{skin, transformed};
-use relievo::skinning::{Blend, Vertex};
+use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
 

@@ -15,7 +15,7 @@ use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Vertex};
+use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
 
 use crate::figure::figure;

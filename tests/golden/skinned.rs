@@ -12,11 +12,11 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::samples::creature;
-use relievo::skinning::Blend;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LevelRanges, LodPass, LodView, ball, standing};
 use relievo::skinning::picture::Light;
 use relievo::skinning::reduction::Reduction;
+use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
 

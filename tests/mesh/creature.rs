@@ -7,11 +7,11 @@ use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::mesh::{Options, Stopped, Surface, simplify};
 use relievo::samples::creature;
-use relievo::skinning::Blend;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
+use relievo::skinning::vertex::Blend;
 use relievo::terrain::export::sha256;
 
 use crate::measure::{Topology, distances, topology};

@@ -6,7 +6,7 @@ use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::{dual, palette, palette_for};
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Vertex};
+use relievo::skinning::vertex::{Blend, Vertex};
 
 use crate::shapes::{influences, matrices, model, models, rows};
 

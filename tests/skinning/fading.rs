@@ -3,12 +3,13 @@
 use glam::Vec3;
 use relievo::animation::Lens;
 use relievo::asset::{Influence, Influences};
+use relievo::skinning::Extent;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::palette;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Extent, Vertex};
+use relievo::skinning::vertex::Vertex;
 
 use crate::shapes::{model, models};
 

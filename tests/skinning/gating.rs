@@ -12,9 +12,9 @@ use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::select::reference::{Now, Skinned, select};
-use relievo::skinning::skin::Blend;
-use relievo::skinning::skin::Vertex;
 use relievo::skinning::skin::reference::skin;
+use relievo::skinning::vertex::Blend;
+use relievo::skinning::vertex::Vertex;
 
 use crate::shapes::model;
 

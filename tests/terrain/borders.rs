@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::features::{FeatureFile, Features};
 use relievo::terrain::field::{field, field_with};
+use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;
 

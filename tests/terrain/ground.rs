@@ -1,8 +1,8 @@
 //! The ground by world position, against a ray through every triangle of the meshes that relievo exports.
 
 use glam::DVec3;
-use relievo::terrain::field::field;
 use relievo::terrain::config::{Border, Config};
+use relievo::terrain::field::field;
 use relievo::terrain::ground::Ground;
 use relievo::terrain::mesh::{GroundPoint, HeightField};
 use relievo::terrain::recipe::Recipe;

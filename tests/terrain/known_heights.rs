@@ -3,11 +3,12 @@
 
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::features::{FeatureFile, Features};
 use relievo::terrain::field::{field, generate};
-use relievo::terrain::height::Window;
+use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::reference::thermal;
+use relievo::terrain::window::Window;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 

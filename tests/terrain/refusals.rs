@@ -4,7 +4,8 @@
 use relievo::InputError;
 use relievo::terrain::config::{Border, Config, Offset};
 use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::features::{FeatureFile, Features};
+use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::morph::Morph;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;

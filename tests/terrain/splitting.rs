@@ -2,8 +2,9 @@
 
 use relievo::terrain::config::{Border, Config};
 use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, FeatureMode, Features};
+use relievo::terrain::features::{FeatureFile, Features};
 use relievo::terrain::field::field;
+use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;

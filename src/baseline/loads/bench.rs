@@ -8,7 +8,7 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::surface::map::Address;
 use crate::surface::relief::Method;
-use crate::surface::texture::SurfaceTextures;
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map};
 
 /// 16 loads a thread of a megatexel.

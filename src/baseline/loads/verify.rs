@@ -8,7 +8,7 @@ use crate::harness::compare::absolute;
 use crate::harness::poison::Poisoned;
 use crate::surface::map::Address;
 use crate::surface::relief::Method;
-use crate::surface::texture::SurfaceTextures;
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map};
 
 /// Sizes around the workgroup's, more threads than texels, and no loads at all.

@@ -7,6 +7,7 @@ use clap::Args;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
 use relievo::asset::mesh::COORDINATE_LIMIT;
+use relievo::skinning::add_levels;
 use relievo::skinning::export::obj;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
@@ -15,7 +16,7 @@ use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Vertex, add_levels};
+use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
 use relievo::{Error, InputError};
 

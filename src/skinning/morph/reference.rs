@@ -1,7 +1,7 @@
 //! Morph targets: twin of `kernels/skinning/morph.wgsl`.
 
 use crate::asset::Mesh;
-use crate::skinning::Vertex;
+use crate::skinning::vertex::Vertex;
 
 /// A mesh's vertices with these weights of its targets, before skinning. Normals and tangents keep the length that the
 /// sum has.

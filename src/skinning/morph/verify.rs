@@ -11,8 +11,8 @@ use crate::skinning::clusters::CLUSTER;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::morph::{MORPH_BOUND, MorphPass};
 use crate::skinning::reduction::Reduction;
-use crate::skinning::skin::{Blend, Vertex};
 use crate::skinning::verify::{SHAPES, Shape, flat, poisoned, random_model};
+use crate::skinning::vertex::{Blend, Vertex};
 
 /// Vertices that no, one or every target moves; weights of 0, of either sign and above 1; all clusters, none and some.
 /// The fourth of five instances is not seen: its vertices stay, as those of other clusters do, and those beyond the level

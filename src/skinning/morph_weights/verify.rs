@@ -15,8 +15,8 @@ use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::morph_weights::reference::morph_weights;
 use crate::skinning::morph_weights::{MORPH_WEIGHTS_BOUND, MorphWeightsPass, WeightSet};
 use crate::skinning::reduction::Reduction;
-use crate::skinning::skin::Blend;
 use crate::skinning::verify::{SHAPES, Shape, random_model};
+use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
 /// How near to a key, or to the clip's end, rounding may decide otherwise: times up to 16 s, three roundings.

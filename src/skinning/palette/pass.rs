@@ -6,7 +6,7 @@ use crate::Error;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use crate::skinning::skin::Blend;
+use crate::skinning::vertex::Blend;
 
 /// `PaletteParams` of the kernel.
 #[derive(Debug, Clone, Copy, ShaderType)]

@@ -4,7 +4,7 @@ use crate::animation::concat::reference::product;
 use crate::asset::skeleton::Skin;
 use crate::asset::transform::Affine;
 use crate::skinning::palette::{DualBone, Palette};
-use crate::skinning::skin::Blend;
+use crate::skinning::vertex::Blend;
 
 /// What takes vertices from where they were bound to the model's space: one matrix a bone of the skin.
 ///

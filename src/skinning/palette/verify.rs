@@ -8,8 +8,8 @@ use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::palette::reference::palette_for;
 use crate::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
 use crate::skinning::reduction::Reduction;
-use crate::skinning::skin::Blend;
 use crate::skinning::verify::{SHAPES, poisoned, random_matrices, random_model};
+use crate::skinning::vertex::Blend;
 
 /// Random skins of some of a skeleton's bones, mirrored and stretched, for both kinds of blending. A quaternion may be
 /// the other one of the same rotation, its dual part with it. The second instance is not seen: its palette stays.

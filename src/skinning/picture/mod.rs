@@ -5,8 +5,8 @@ pub mod texture;
 
 use glam::{Mat4, Vec2, Vec3, camera};
 
-use super::skin::Vertex;
 use crate::InputError;
+use crate::skinning::vertex::Vertex;
 
 /// A directional light, in linear light.
 #[derive(Debug, Clone, Copy, PartialEq)]

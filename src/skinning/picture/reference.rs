@@ -6,7 +6,7 @@ use super::texture::Surface;
 use crate::asset::Mesh;
 use crate::asset::material::{Alpha, screen};
 use crate::skinning::picture::Light;
-use crate::skinning::skin::Vertex;
+use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
 
 /// Where and how meshes are seen.

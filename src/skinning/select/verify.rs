@@ -12,8 +12,8 @@ use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::reduction::Reduction;
 use crate::skinning::select::reference::{Now, Skinned, remember, select};
 use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
-use crate::skinning::skin::Blend;
 use crate::skinning::verify::{SHAPES, Shape, random_model, random_reductions};
+use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
 /// Frames in a row; of 64 bones how many move; whether reductions and weights are other ones.

@@ -11,8 +11,9 @@ use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::Palette;
 use crate::skinning::palette::reference::rows;
 use crate::skinning::reduction::Reduction;
+use crate::skinning::skin::SkinPass;
 use crate::skinning::skin::reference::skin;
-use crate::skinning::skin::{Blend, SkinPass, Vertex};
+use crate::skinning::vertex::{Blend, Vertex};
 use crate::terrain::bench::copy_of;
 
 /// Eight, four, two influences and one.

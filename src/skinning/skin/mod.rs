@@ -16,19 +16,6 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{SkinPass, keep_last};
 
-/// A vertex as skinning reads and writes it: 40 bytes, laid out for vertex buffers.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Vertex {
-    /// In the space that it was bound in, then in the model's.
-    pub position: [f32; 3],
-    /// Unit length.
-    pub normal: [f32; 3],
-    /// Unit length, and ±1: see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
-    pub tangent: [f32; 4],
-}
-
 /// How far a component of a position may lie from the twin's, on any device: times the palette's largest component L (at
 /// least 1), times 1 + |x| + |y| + |z| of the vertex.
 ///
@@ -42,13 +29,3 @@ pub const SKIN_BOUND: f32 = 5e-6;
 /// By how much [`SKIN_BOUND`] is larger where influences are cut off: what is lost carries 16ε, which division by what
 /// is left, at least 1/8, makes 128ε of each weight, twice.
 pub const TRUNCATED: f32 = 5.0;
-
-/// How the influences of a vertex are blended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Blend {
-    /// The mean of matrices, as glTF asks.
-    #[default]
-    Linear,
-    /// The mean of rigid motions.
-    DualQuaternion,
-}

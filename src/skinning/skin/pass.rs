@@ -5,12 +5,12 @@ use std::ops::Range;
 use encase::ShaderType;
 use glam::UVec4;
 
-use super::{Blend, Vertex};
 use crate::asset::mesh::MOST_LEVELS;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
 /// `SkinParams` of the kernel.

@@ -15,10 +15,11 @@ use crate::skinning::palette::reference::palette_for;
 use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::skin::reference::{blended, skin_seen};
-use crate::skinning::skin::{Blend, SKIN_BOUND, SkinPass, TRUNCATED, Vertex};
+use crate::skinning::skin::{SKIN_BOUND, SkinPass, TRUNCATED};
 use crate::skinning::verify::{
     SHAPES, Shape, flat, poisoned, random_matrices, random_model, random_reductions,
 };
+use crate::skinning::vertex::{Blend, Vertex};
 
 /// Instances of a case: full, truncated, fading and unseen ones.
 const INSTANCES: usize = 9;

@@ -5,10 +5,10 @@ use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
 use crate::surface::cone_map::ConeMapPass;
 use crate::surface::cone_map::reference::cone_map;
+use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
-use crate::surface::texture::HeightBatch;
 use crate::terrain::bench::copy_of;
 
 /// One map of cobbles at two sizes, pyramid included: a set-up cost.

@@ -6,8 +6,8 @@ use super::OPENING;
 use crate::gpu::bindings::surface::cone_map as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::cone_map::ConeParams;
+use crate::surface::height_batch::{HeightBatch, with_remedy};
 use crate::surface::height_pyramid::Pyramids;
-use crate::surface::texture::{HeightBatch, with_remedy};
 use crate::{Error, InputError};
 
 /// Cone maps of a batch, one after another.

@@ -5,10 +5,10 @@ use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::surface::cone_map::reference::cone_map;
 use crate::surface::cone_map::{ConeMapPass, RADIUS_BOUND};
+use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
-use crate::surface::texture::HeightBatch;
 use crate::surface::verify::{Shape, random_map};
 
 /// Every shape, sizes around the workgroup's, batches, both address modes.

@@ -2,10 +2,10 @@
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
+use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
-use crate::surface::texture::HeightBatch;
 use crate::surface::verify::{Shape, random_map};
 use crate::terrain::bench::copy_of;
 

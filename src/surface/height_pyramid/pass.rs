@@ -6,8 +6,8 @@ use super::PyramidLayout;
 use crate::gpu::bindings::surface::height_pyramid as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::height_pyramid::PyramidParams;
+use crate::surface::height_batch::{HeightBatch, with_remedy};
 use crate::surface::map::Address;
-use crate::surface::texture::{HeightBatch, with_remedy};
 use crate::{Error, InputError};
 
 /// Pyramids of a batch of height maps, one after another.

@@ -3,10 +3,10 @@
 use crate::Error;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
+use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids};
 use crate::surface::map::{Address, HeightMap};
-use crate::surface::texture::HeightBatch;
 use crate::surface::verify::{Shape, random_map};
 
 /// Sizes around every block boundary, batches, both address modes. The padding between levels stays untouched.

@@ -14,8 +14,8 @@ use crate::surface::material::{Material, Shadow};
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::reference::Surface;
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
-use crate::surface::texture::SurfaceTextures;
 
 /// Texels along an edge of the map.
 const TEXELS: u32 = 512;

@@ -4,7 +4,7 @@ use encase::ShaderType;
 
 use super::{Hit, March, Method, Ray};
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
-use crate::surface::texture::SurfaceTextures;
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::{Error, InputError};
 
 /// `SurfaceMarch` of the shaders.

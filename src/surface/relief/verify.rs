@@ -7,8 +7,8 @@ use crate::harness::compare::Comparison;
 use crate::harness::poison::Poisoned;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::reference::Surface;
+use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
-use crate::surface::texture::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map, random_rays};
 
 /// How far the result of a ray may lie from its twin's in texels, where both take the same branches.

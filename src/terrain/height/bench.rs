@@ -9,9 +9,11 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 use crate::terrain::config::{Config, Offset};
-use crate::terrain::features::{FeatureFile, FeatureMode, Features};
+use crate::terrain::features::{FeatureFile, Features};
+use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::reference::height;
-use crate::terrain::height::{HeightBatch, HeightPass, Window};
+use crate::terrain::height::{HeightBatch, HeightPass};
+use crate::terrain::window::Window;
 
 /// Sizes 129 to 1025; a batch with features.
 ///

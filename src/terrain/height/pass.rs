@@ -1,14 +1,16 @@
 //! `kernels/terrain/height.wgsl` over the levels of a batch of windows.
 
-use super::Window;
 use crate::Error;
 use crate::InputError;
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{AdapterSummary, Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::height::Level;
 use crate::terrain::config::{Border, Config, Offset};
-use crate::terrain::features::{FeatureIndex, FeatureMode, Features, Lattice};
+use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::Fields;
+use crate::terrain::fixed::FeatureMode;
+use crate::terrain::window::Lattice;
+use crate::terrain::window::Window;
 
 /// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
 const CELL_ROWS_SOFTWARE: u32 = 43;
@@ -386,7 +388,7 @@ impl HeightJob {
 mod tests {
     use super::*;
 
-    use crate::terrain::height::Span;
+    use crate::terrain::window::Span;
 
     #[test]
     fn blocks_out_of_bounds_are_refused() {

@@ -2,9 +2,10 @@
 //! streamed as in the kernel; what a thread does there for four cells is done here for a whole row.
 
 use crate::terrain::config::Config;
-use crate::terrain::features::{Features, Lattice};
+use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject, mean_of_four};
-use crate::terrain::height::{Span, Window};
+use crate::terrain::window::Lattice;
+use crate::terrain::window::{Span, Window};
 
 /// The heights of a window, rows of `window.width(config)` samples. The window must be valid.
 pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> {

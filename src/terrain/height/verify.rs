@@ -7,10 +7,12 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::terrain::config::{Config, Offset};
-use crate::terrain::features::{FeatureFile, FeatureMode, Features};
+use crate::terrain::features::{FeatureFile, Features};
+use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::reference::height;
-use crate::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch, Window};
+use crate::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch};
 use crate::terrain::verify::{config, scattered};
+use crate::terrain::window::Window;
 
 /// Every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
 /// sizes.

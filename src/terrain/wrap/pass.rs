@@ -6,8 +6,10 @@ use crate::gpu::bindings::terrain::wrap as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::wrap::WrapLevel;
 use crate::terrain::config::{Border, Config, Offset, PATCH_EDGE};
-use crate::terrain::features::{FeatureIndex, FeatureMode, Features, Lattice};
-use crate::terrain::height::Window;
+use crate::terrain::features::{FeatureIndex, Features};
+use crate::terrain::fixed::FeatureMode;
+use crate::terrain::window::Lattice;
+use crate::terrain::window::Window;
 
 /// Diamond-square heights of patches by themselves. Compiled for one distribution and one way of injection.
 #[derive(Debug, Clone)]

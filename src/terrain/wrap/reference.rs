@@ -1,8 +1,9 @@
 //! Heights of a patch by itself, whose neighbours wrap around: twin of `kernels/terrain/wrap.wgsl`.
 
 use crate::terrain::config::{Config, PATCH_EDGE};
-use crate::terrain::features::{Features, Lattice};
+use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject, mean_of_four};
+use crate::terrain::window::Lattice;
 
 /// The heights of one patch, rows of `patch_size` samples.
 pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
@@ -42,7 +43,7 @@ struct Torus {
     origin: [u32; 2],
     spacing: u32,
     features: Vec<Option<i32>>,
-    mode: crate::terrain::features::FeatureMode,
+    mode: crate::terrain::fixed::FeatureMode,
 }
 
 impl Torus {

@@ -10,12 +10,13 @@ use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, ColorTexture};
+use relievo::skinning::Extent;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE, list_words};
 use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
 use relievo::skinning::reduction::Reduction;
-use relievo::skinning::{Blend, Extent};
+use relievo::skinning::vertex::Blend;
 use relievo::surface::mips::Mips;
 use relievo::{Error, InputError};
 

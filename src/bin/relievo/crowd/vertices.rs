@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
+use relievo::skinning::MeshLevels;
 use relievo::skinning::reduction::Reduction;
-use relievo::skinning::{MeshLevels, Vertex};
+use relievo::skinning::vertex::Vertex;
 use serde::Serialize;
 
 use super::errors::{Errors, Tally, View, length};

@@ -84,8 +84,8 @@ mod device {
     use super::*;
     use relievo::gpu::{Buffer, Gpu};
     use relievo::render::SquarePicture;
-    use relievo::surface::SurfaceTextures;
     use relievo::surface::relief::ReliefPass;
+    use relievo::surface::relief::textures::SurfaceTextures;
 
     /// Rays of one list: their hits fit a binding of any device.
     const LIST: usize = 1 << 22;

@@ -8,8 +8,8 @@ use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::palette::reference::{cross, dot, unit_or};
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::reduction::Reduction;
-use crate::skinning::skin::Vertex;
 use crate::skinning::skin::reference::weights::reduced;
+use crate::skinning::vertex::Vertex;
 
 /// Vertices where a palette takes them. `vertices` are a mesh's, morphed or not, and `influences` its own.
 ///

@@ -1,12 +1,17 @@
 //! What terrain is made of: B table 4.6's JSON with relievo's optional fields (spec section 1.1).
 
+mod json;
+mod zones;
+
+pub(crate) use json::{from_json_object, read_text};
+pub(crate) use zones::check_range;
+pub use zones::{BuiltIn, MAX_ZONES, Zone, ZoneTexture};
+
 use std::path::Path;
 
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
-use crate::terrain::blend::{MAX_ZONES, Zone};
-use crate::terrain::json::read_text;
 use crate::{Error, InputError};
 
 /// Bits below the point of a height: 1/65536 of a unit.

@@ -8,7 +8,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{DeserializeOwned, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::terrain::blend::Zone;
+use crate::terrain::config::Zone;
 use crate::terrain::config::{Border, Config, Offset};
 use crate::{Error, InputError};
 

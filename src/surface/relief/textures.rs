@@ -1,51 +1,12 @@
 //! Height maps on the device: batches in buffers, which kernels read, and textures, which shaders march over.
 
-use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError};
 use crate::surface::cone_map::ConeMapPass;
+use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{March, Method};
 use crate::{Error, InputError};
-
-/// Height maps of one size, one after another.
-#[derive(Debug, Clone)]
-pub struct HeightBatch {
-    /// Heights, row by row, map by map; padded to a multiple of four.
-    pub heights: Buffer<f32>,
-    /// Texels of each along x and y.
-    pub size: [u32; 2],
-    /// How many.
-    pub count: u32,
-}
-
-impl HeightBatch {
-    /// Uploads maps of one size.
-    ///
-    /// # Errors
-    /// [`InputError`] for none or different sizes; [`GpuError`].
-    pub fn new(gpu: &Gpu, maps: &[HeightMap]) -> Result<Self, Error> {
-        let size_of = |map: &HeightMap| [map.width(), map.height()];
-        let Some(size) = maps.first().map(size_of) else {
-            return Err(InputError::new("maps.len", 0, "must be at least 1").into());
-        };
-        if let Some(at) = maps.iter().position(|map| size_of(map) != size) {
-            let bound = format!("must be {size:?} texels as the first");
-            return Err(InputError::new(
-                format!("maps[{at}].size"),
-                format!("{:?}", size_of(&maps[at])),
-                bound,
-            )
-            .into());
-        }
-        let texels: usize = size.iter().map(|edge| *edge as usize).product();
-        // Kernels load vectors of four.
-        let heights = Buffer::new(gpu, "height maps", (texels * maps.len()).next_multiple_of(4))
-            .map_err(with_remedy)?;
-        let all: Vec<f32> = maps.iter().flat_map(HeightMap::heights).copied().collect();
-        heights.write(gpu, &all)?;
-        Ok(Self { heights, size, count: maps.len() as u32 })
-    }
-}
 
 /// What a method marches over: the height map, and its acceleration map.
 #[derive(Debug, Clone)]
@@ -85,17 +46,6 @@ impl SurfaceTextures {
             return Err(InputError::new("march.address", march.address.name(), bound));
         }
         Ok(())
-    }
-}
-
-/// What helps where a map is larger than a binding.
-pub(super) fn with_remedy(error: GpuError) -> GpuError {
-    match error {
-        GpuError::Limit { pass, limit, needed, available, .. } => {
-            let remedy = "use smaller or fewer height maps, or compute on the CPU (--backend cpu)";
-            GpuError::Limit { pass, limit, needed, available, remedy }
-        }
-        other => other,
     }
 }
 

@@ -1,0 +1,24 @@
+//! What skinning reads and writes, and how it blends.
+
+/// A vertex as skinning reads and writes it: 40 bytes, laid out for vertex buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Vertex {
+    /// In the space that it was bound in, then in the model's.
+    pub position: [f32; 3],
+    /// Unit length.
+    pub normal: [f32; 3],
+    /// Unit length, and ±1: see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
+    pub tangent: [f32; 4],
+}
+
+/// How the influences of a vertex are blended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Blend {
+    /// The mean of matrices, as glTF asks.
+    #[default]
+    Linear,
+    /// The mean of rigid motions.
+    DualQuaternion,
+}

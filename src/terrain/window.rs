@@ -1,0 +1,119 @@
+//! Windows onto the plane: a patch and the samples around it, level by level.
+
+use crate::InputError;
+use crate::terrain::config::{Border, Config};
+
+/// The most samples that a window may reach beyond its patch.
+pub const MAX_REACH: u32 = 4096;
+
+/// A patch and the samples around it: (patchSize + 2·reach)² of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Window {
+    /// Patch coordinates.
+    pub patch: [i32; 2],
+    /// Samples beyond the patch on every side, at most [`MAX_REACH`].
+    pub reach: u32,
+}
+
+/// Indices of lattice points along one axis, both ends included, in units of the lattice's spacing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// The first index.
+    pub first: i64,
+    /// The last index.
+    pub last: i64,
+}
+
+impl Span {
+    /// What the lattice of twice the spacing must give so that this span can be computed: one cell of halo.
+    pub fn coarser(self) -> Self {
+        Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
+    }
+
+    /// The number of indices.
+    pub fn width(self) -> usize {
+        (self.last - self.first + 1) as usize
+    }
+}
+
+impl Window {
+    /// Samples along an edge.
+    pub fn width(&self, config: &Config) -> u32 {
+        config.patch_size + 2 * self.reach
+    }
+
+    /// The columns and rows of the window, in samples.
+    pub fn spans(&self, config: &Config) -> [Span; 2] {
+        let edge = i64::from(config.patch_size) - 1;
+        self.patch.map(|patch| {
+            let first = i64::from(patch) * edge - i64::from(self.reach);
+            Span { first, last: first + i64::from(self.width(config)) - 1 }
+        })
+    }
+
+    /// The columns and rows at every level, the base lattice first.
+    pub fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
+        let mut levels = vec![self.spans(config)];
+        for _ in 0..config.levels() {
+            let finer = levels[levels.len() - 1];
+            levels.push(finer.map(Span::coarser));
+        }
+        levels.reverse();
+        levels
+    }
+
+    /// The lattice of the window's samples, in the world that its features live in.
+    pub fn lattice(&self, config: &Config) -> Lattice {
+        let spacing = config.sample_spacing();
+        let origin = if config.border == Border::Seamless {
+            self.spans(config).map(|span| span.first * spacing)
+        } else {
+            [-i64::from(self.reach) * spacing; 2]
+        };
+        Lattice { origin, width: self.width(config), spacing }
+    }
+
+    /// Checks reach and patch coordinates.
+    ///
+    /// # Errors
+    /// [`InputError`] when the reach is too large, or world coordinates with their halo leave `i32`.
+    pub fn validate(&self, config: &Config) -> Result<(), InputError> {
+        if self.reach > MAX_REACH {
+            return Err(InputError::new("reach", self.reach, format!("must be at most {MAX_REACH} samples")));
+        }
+        let base_spacing = config.sample_spacing() << config.levels();
+        let base = if config.border == Border::Seamless {
+            self.levels(config)[0]
+        } else {
+            // A patch by itself has no halo.
+            self.patch.map(|patch| Span { first: patch.into(), last: i64::from(patch) + 1 })
+        };
+        for (axis, span) in base.iter().enumerate() {
+            let inside = |index: i64| i32::try_from(index * base_spacing).is_ok();
+            if !inside(span.first) || !inside(span.last) {
+                let field = format!("patchCoordinates[{axis}]");
+                let bound = "world coordinates (4096 a patch) with the patch's halo must fit i32";
+                return Err(InputError::new(field, self.patch[axis], bound));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A square lattice in world coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lattice {
+    /// The first point, (X, Y); a multiple of `spacing`.
+    pub origin: [i64; 2],
+    /// Points along an edge.
+    pub width: u32,
+    /// World coordinates between neighbours.
+    pub spacing: i64,
+}
+
+impl Lattice {
+    /// The lattice with one point more on every side.
+    pub fn grown(self) -> Self {
+        Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
+    }
+}
