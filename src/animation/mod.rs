@@ -21,6 +21,8 @@ pub mod gltf;
 pub mod layers;
 pub mod lod;
 pub mod model;
+#[cfg(feature = "gpu")]
+pub mod model_matrices;
 pub mod motion;
 pub mod phase;
 pub mod place;
@@ -41,6 +43,8 @@ pub use gate_table::GateTable;
 pub use layers::Layer;
 pub use lod::{Lens, Lod, Range};
 pub use model::Model;
+#[cfg(feature = "gpu")]
+pub use model_matrices::ModelMatrices;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;

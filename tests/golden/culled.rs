@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3, camera};
 use relievo::animation::sample::RotationPath;
 use relievo::animation::transform::Affine;
-use relievo::animation::{Model, creature};
+use relievo::animation::{Model, ModelMatrices, creature};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::sample::sample;
@@ -70,7 +70,8 @@ impl Stage {
 
     fn crowd(&self) -> Crowd {
         let Self { gpu, model, models, placements, view } = self;
-        let skin = SkinFrame::new(gpu, model, 0, models, CREATURES, Blend::Linear).expect("prepared");
+        let matrices = ModelMatrices::new(models);
+        let skin = SkinFrame::new(gpu, model, 0, &matrices, CREATURES, Blend::Linear).expect("prepared");
         let everybody: Vec<u32> = (0..CREATURES as u32).collect();
         let drawn = Buffer::from_slice(gpu, "drawn", &everybody).expect("uploaded");
         let plain = Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([200, 150, 90, 255])));

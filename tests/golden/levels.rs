@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
 use relievo::animation::transform::Affine;
-use relievo::animation::{Model, Order};
+use relievo::animation::{Model, ModelMatrices, Order};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::reference::skinning::lod::{lod, seen};
 use relievo::reference::skinning::morph::morph;
@@ -137,10 +137,11 @@ fn a_crowd_with_levels() {
     let clay = Mips::of_color(RgbaImage::from_pixel(1, 1, image::Rgba([r, g, b, 255])));
     let clay: Albedo = ColorTexture::linear(gpu, &clay, true).expect("uploaded").into();
     let words = COUNT * Order::new(&model.skeleton).words();
+    let models = Buffer::from_slice(gpu, "models", models).expect("uploaded");
+    let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
     let character = Character {
         model,
-        models: &Buffer::from_slice(gpu, "models", models).expect("uploaded"),
-        moved: Some(&Buffer::new(gpu, "moved", words).expect("allocated")),
+        matrices: &ModelMatrices::new(&models).with_updated_bones(&updated),
         placements: &Buffer::from_slice(gpu, "placements", places).expect("uploaded"),
         fade: NO_FADE,
         levels: &BEGINS,

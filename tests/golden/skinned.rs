@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
 use relievo::animation::sample::RotationPath;
 use relievo::animation::transform::Affine;
-use relievo::animation::{Bone, Model, Skeleton, Skin, Transform, creature};
+use relievo::animation::{Bone, Model, ModelMatrices, Skeleton, Skin, Transform, creature};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::reference::animation::concat::concat;
 use relievo::reference::animation::sample::sample;
@@ -108,7 +108,8 @@ fn limbs(lower: Mat4) -> RgbaImage {
     for (row, blend) in (0..).zip([Blend::Linear, Blend::DualQuaternion]) {
         let pose = [rows(Mat4::IDENTITY), rows(lower)];
         let models = Buffer::from_slice(&gpu, "models", &pose.repeat(3)).expect("uploaded");
-        let frame = SkinFrame::new(&gpu, &model, 0, &models, 3, blend).expect("prepared");
+        let matrices = ModelMatrices::new(&models);
+        let frame = SkinFrame::new(&gpu, &model, 0, &matrices, 3, blend).expect("prepared");
         let fades = [0.0, 0.5, 1.0].map(|fade| Reduction::fade(fade).expect("in range"));
         frame.crowd.reductions.write(&gpu, &fades).expect("written");
         gpu.run("skin", |encoder| frame.record_all(encoder)).expect("run");
@@ -171,7 +172,8 @@ fn a_crowd_near_and_far() {
     };
     let models: Vec<Affine> = (0..36).flat_map(pose).collect();
     let models = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
-    let skin = SkinFrame::new(&gpu, &model, 0, &models, 36, Blend::Linear).expect("prepared");
+    let matrices = ModelMatrices::new(&models);
+    let skin = SkinFrame::new(&gpu, &model, 0, &matrices, 36, Blend::Linear).expect("prepared");
     let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
     let drawn = Buffer::new(&gpu, "drawn", 36).expect("allocated");
     let instances = SkinnedInstances {
