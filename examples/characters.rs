@@ -10,7 +10,7 @@ use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{ClipSet, Instance, Lens};
+use relievo::animation::{ClipSet, Instance, Lens, ModelMatrices};
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::render::target::{COLOR_FORMAT, Target};
@@ -64,8 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             &gpu,
             &Character {
                 model,
-                models: &posed.models,
-                moved: None,
+                matrices: &ModelMatrices::new(&posed.models),
                 placements: &placements,
                 fade: [10.0, 40.0],
                 levels: &level_begins(model),

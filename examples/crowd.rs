@@ -32,8 +32,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let crowd = Crowd::new(&gpu, &set, &instances)?;
 
     // Once: pipelines and bind groups.
-    let (choice, path) = (Choice::Gate(Gate::Bounded), RotationPath::Slerp);
-    let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &table, choice, path)?;
+    let choice = Choice::Gate(Gate::Bounded);
+    let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &table, choice)?;
 
     // A frame: how far away each is, and how many pixels may be missed.
     let lens = Lens::new(1080, 1.0, 0.1);

@@ -8,8 +8,9 @@ use super::crowd::{ClipBuffers, Crowd};
 use super::decide::{Choice, DecideJob, DecidePass, Dispatches};
 use super::gate::{Frame, Gating};
 use super::gate_table::GateTable;
+use super::model_matrices::ModelMatrices;
 use super::place::{PlaceJob, PlacePass};
-use super::sample::{RotationPath, SampleActiveJob, SamplePass};
+use super::sample::{SampleActiveJob, SamplePass};
 use crate::Error;
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Gpu, compute_pass};
@@ -21,6 +22,7 @@ pub struct GatedFrame {
     pub gating: Gating,
     /// What the frame that was recorded last did.
     pub active: Active,
+    model_matrices: ModelMatrices,
     decide: DecideJob,
     place: PlaceJob,
     sample: SampleActiveJob,
@@ -28,12 +30,13 @@ pub struct GatedFrame {
 }
 
 impl GatedFrame {
-    /// Compiles and prepares all of it for a crowd, in the ways that are fastest on this device; `path` holds between
-    /// keys.
+    /// Compiles and prepares all of it for a crowd, in the ways that are fastest on this device. Rotations take the
+    /// crowd's path.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, and a table of other bones or clips or of
-    /// another kind than the choice needs; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a crowd of another skeleton, and a table of other bones or clips, of another
+    /// kind than the choice needs, or of motion along another path than the crowd's ([`Crowd::path`]);
+    /// [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
@@ -41,21 +44,28 @@ impl GatedFrame {
         crowd: &Crowd,
         table: &GateTable,
         choice: Choice,
-        path: RotationPath,
     ) -> Result<Self, Error> {
         let gating = Gating::new(gpu, table, crowd)?;
         let active = Active::new(gpu, &Order::new(skeleton), crowd)?;
         let decide = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
-        let sample =
-            if crowd.layers == 1 { SamplePass::new(gpu, path)? } else { SamplePass::layered(gpu, path)? };
+        let sample = match crowd.layers {
+            1 => SamplePass::new(gpu, crowd.path())?,
+            _ => SamplePass::layered(gpu, crowd.path())?,
+        };
         Ok(Self {
             decide: decide.prepare(gpu, clips, crowd, &gating, &active)?,
             place: PlacePass::new(gpu)?.prepare_active(gpu, clips, crowd, &gating, &active)?,
             sample: sample.prepare_active(gpu, clips, crowd, &active.pairs)?,
             concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare_active(gpu, skeleton, crowd, &active)?,
+            model_matrices: ModelMatrices::gated(crowd, &active, choice),
             gating,
             active,
         })
+    }
+
+    /// What skinning takes: the crowd's model matrices, the bones that a frame updates, and the gate that decides so.
+    pub fn model_matrices(&self) -> &ModelMatrices {
+        &self.model_matrices
     }
 
     /// Chooses frame and time of the next submission: seconds since the instances' starts, which should follow the clock

@@ -52,10 +52,23 @@ impl Kind {
     }
 }
 
+/// Refuses sampling along another path than the one that a table's motion holds for; tables without motion hold for any.
+pub(crate) fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
+    match of_table {
+        Some(path) if path != sampled => {
+            let bound = format!("must be {path:?}, the path whose motion the gate's table holds");
+            Err(InputError::new("crowd.path", format!("{sampled:?}"), bound))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A gate's table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GateTable {
     kind: Kind,
+    /// Of the motion; none without.
+    path: Option<RotationPath>,
     bones: usize,
     words: usize,
     stride: usize,
@@ -96,6 +109,7 @@ impl GateTable {
         let kind = Kind::Movers;
         Ok(Self {
             kind,
+            path: None,
             bones,
             words,
             stride: 0,
@@ -142,7 +156,8 @@ impl GateTable {
 
     /// Bounds of the motion that each bone contributes to any point, and the shares that bones take of what is allowed:
     /// what [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `reaches`: for each bone, how far points that follow it
-    /// alone lie from its origin, metres. `path`: as instances are sampled.
+    /// alone lie from its origin, metres. `path`: as instances are sampled; crowds that are sampled otherwise are refused,
+    /// since nlerp turns faster than slerp in the middle between two keys.
     ///
     /// # Errors
     /// As [`GateTable::of_movers`]; other than one reach a bone, or one that is negative or not finite; a table of more
@@ -154,7 +169,7 @@ impl GateTable {
         reaches: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let (mut table, order) = Self::with_room(Kind::Bounds, skeleton, set, clips, reaches)?;
+        let (mut table, order) = Self::with_room((Kind::Bounds, path), skeleton, set, clips, reaches)?;
         let mut all = Vec::with_capacity(clips.len());
         for (entry, clip) in set.clips().iter().zip(clips) {
             let motions = motions(set, entry, clip, path);
@@ -183,7 +198,7 @@ impl GateTable {
         reaches: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let (table, order) = Self::with_room(Kind::Expectations, skeleton, set, clips, reaches)?;
+        let (table, order) = Self::with_room((Kind::Expectations, path), skeleton, set, clips, reaches)?;
         let levers = typical_levers(skeleton, reaches);
         let of = |(entry, clip): (_, &&Clip)| columns(&motions(set, entry, clip, path), &levers);
         let all: Vec<_> = set.clips().iter().zip(clips).map(of).collect();
@@ -192,14 +207,14 @@ impl GateTable {
 
     /// A table with room for motion, and the order of its columns.
     fn with_room(
-        kind: Kind,
+        (kind, path): (Kind, RotationPath),
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
         reaches: &[f32],
     ) -> Result<(Self, Order), InputError> {
         let order = Order::new(skeleton);
-        let mut table = Self { kind, ..Self::of_movers(&order, set, clips)? };
+        let mut table = Self { kind, path: Some(path), ..Self::of_movers(&order, set, clips)? };
         check_reaches(skeleton, reaches)?;
         table.make_room(set, table.bones)?;
         Ok((table, order))
@@ -274,6 +289,12 @@ impl GateTable {
     /// What it tells.
     pub fn kind(&self) -> Kind {
         self.kind
+    }
+
+    /// The path between rotation keys whose motion it holds; of [`GateTable::of_bounds`] and
+    /// [`GateTable::of_expectations`].
+    pub fn path(&self) -> Option<RotationPath> {
+        self.path
     }
 
     /// Columns: slots of the skeleton's order.

@@ -18,6 +18,8 @@ pub mod gate;
 pub mod gate_table;
 pub mod layers;
 pub mod lod;
+#[cfg(feature = "gpu")]
+pub mod model_matrices;
 pub mod motion;
 pub mod phase;
 pub mod place;
@@ -35,6 +37,7 @@ pub use gate::{Frame, Gate};
 pub use gate_table::GateTable;
 pub use layers::Layer;
 pub use lod::{Lens, Lod, Range};
+pub use model_matrices::ModelMatrices;
 pub use place::Instance;
 pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;

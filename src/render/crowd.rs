@@ -6,6 +6,7 @@ use glam::{Mat4, Vec3};
 
 use crate::asset::Model;
 use crate::asset::transform::Affine;
+use crate::animation::ModelMatrices;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
@@ -25,11 +26,10 @@ const STEPS: u32 = 64;
 pub struct Character<'a> {
     /// Its skeleton and meshes.
     pub model: &'a Model,
-    /// Where the bones of each instance are, as [`crate::animation::concat`] writes them.
-    pub models: &'a Buffer<Affine>,
-    /// The bones that moved since the last frame, where a gate says so
-    /// ([`Active::dirty`](crate::animation::compact::Active::dirty)). Without, all vertices are skinned in every frame.
-    pub moved: Option<&'a Buffer<u32>>,
+    /// Where the bones of each instance are: of a crowd under a gate
+    /// [`GatedFrame::model_matrices`](crate::animation::frame::GatedFrame::model_matrices). Where it is not known which of
+    /// them a frame updates, all vertices are skinned in every frame.
+    pub matrices: &'a ModelMatrices,
     /// From the model's space into the world, one an instance.
     pub placements: &'a Buffer<Affine>,
     /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::away`]
@@ -82,9 +82,10 @@ impl CrowdScene {
     ///
     /// # Errors
     /// [`InputError`] for a model without meshes, other than one colour a mesh, distances out of order, no
-    /// instances, and buffers that are too small; [`GpuError`].
+    /// instances, buffers that are too small, and dual quaternions under a gate that linear blending alone keeps
+    /// ([`SkinFrame::new`]); [`GpuError`].
     pub fn add(&mut self, gpu: &Gpu, character: &Character<'_>) -> Result<usize, Error> {
-        let Character { model, models, moved, placements, fade, levels, blend, albedos } = *character;
+        let Character { model, matrices, placements, fade, levels, blend, albedos } = *character;
         let (meshes, count) = (model.meshes.len(), placements.len());
         if meshes == 0 {
             return Err(InputError::new("model.meshes", "none", "must be at least one").into());
@@ -97,10 +98,7 @@ impl CrowdScene {
         let drawn = Buffer::new(gpu, "drawn", list_words(count, 1 + levels.distances().len()))?;
         let (mut frames, mut scenes) = (Vec::with_capacity(meshes), Vec::with_capacity(meshes));
         for (mesh, albedo) in albedos.iter().enumerate() {
-            let mut skin = SkinFrame::new(gpu, model, mesh, models, count, blend)?;
-            if let Some(moved) = moved {
-                skin = skin.with_moved(gpu, moved)?;
-            }
+            let skin = SkinFrame::new(gpu, model, mesh, matrices, count, blend)?;
             skin.crowd.weights.write(gpu, &model.meshes[mesh].weights.repeat(count))?;
             scenes.push(self.renderer.scene(
                 gpu,
@@ -122,7 +120,7 @@ impl CrowdScene {
         let view = LodView { clip_from_world, eye, near, far, steps: STEPS, most, center, radius, levels };
         let reductions = &frames[0].crowd.reductions;
         let lod = self.lod.prepare(gpu, &view, placements, reductions, &drawn, &scenes[0].arguments)?;
-        let is_gated = moved.is_some();
+        let is_gated = matrices.updated_bones().is_some();
         self.characters.push(DrawnCharacter { frames, scenes, drawn, view, lod, is_gated });
         Ok(self.characters.len() - 1)
     }

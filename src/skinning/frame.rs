@@ -7,7 +7,7 @@ use super::palette::PalettePass;
 use super::select::{SelectBuffers, SelectPass};
 use super::skin::SkinPass;
 use crate::asset::Model;
-use crate::asset::transform::Affine;
+use crate::animation::ModelMatrices;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
@@ -21,7 +21,7 @@ pub struct SkinFrame {
     pub clusters: Clusters,
     /// Reductions and weights of targets, which the caller may write.
     pub crowd: SkinnedCrowd,
-    /// The bones that moved, which a gate may write.
+    /// The bones that moved: those that the model matrices know to be updated, or where they do not, what the caller writes.
     pub select: SelectBuffers,
     /// The clusters of the last [`SkinFrame::record_moved`].
     pub active: ActiveClusters,
@@ -36,28 +36,36 @@ pub struct SkinFrame {
 }
 
 impl SkinFrame {
-    /// Prepares a model's mesh for so many instances, from `models` as [`crate::animation::concat`] writes them.
+    /// Prepares a model's mesh for so many instances, which stand where `matrices` has their bones.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that the model lacks or that does not fit it, no instances, and fewer models than they
-    /// need; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a mesh that the model lacks or that does not fit it, no instances, fewer matrices or bits of
+    /// updated bones than they need, and dual quaternions under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose
+    /// bound holds for linear blending alone; [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
         model: &Model,
         mesh: usize,
-        models: &Buffer<Affine>,
+        matrices: &ModelMatrices,
         instances: usize,
         blend: Blend,
     ) -> Result<Self, Error> {
+        if blend == Blend::DualQuaternion && matrices.are_bounded() {
+            let bound = "must be Linear under the gate Bounded, whose bound holds for linear blending alone";
+            return Err(InputError::new("blend", format!("{blend:?}"), bound).into());
+        }
         let Some(mesh) = model.meshes.get(mesh) else {
             return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
         };
         let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
-        let select = SelectBuffers::new(gpu, &mesh, &crowd)?;
+        let mut select = SelectBuffers::new(gpu, &mesh, &crowd)?;
+        if let Some(updated) = matrices.updated_bones() {
+            select.moved = updated.clone();
+        }
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
-        let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, models, &crowd)?;
+        let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices.matrices(), &crowd)?;
         let morph = MorphPass::new(gpu)?;
         let selection = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
         let pass = SkinPass::new(gpu, blend)?;
@@ -66,18 +74,6 @@ impl SkinFrame {
         let skin = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
         let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
         Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selection, all, some })
-    }
-
-    /// The same, with the bones that moved where somebody else writes them: a gate's
-    /// [`Active::dirty`](crate::animation::compact::Active::dirty), of as many instances.
-    ///
-    /// # Errors
-    /// [`InputError`] for fewer bits than the skeletons of all instances need; [`crate::gpu::GpuError`].
-    pub fn with_moved(mut self, gpu: &Gpu, moved: &Buffer<u32>) -> Result<Self, Error> {
-        self.select.moved = moved.clone();
-        self.selection =
-            SelectPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &self.select, &self.active)?;
-        Ok(self)
     }
 
     /// Records the skinning of every vertex of the instances that are seen, at their level of detail.

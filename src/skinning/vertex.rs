@@ -19,6 +19,8 @@ pub enum Blend {
     /// The mean of matrices, as glTF asks.
     #[default]
     Linear,
-    /// The mean of rigid motions.
+    /// The mean of rigid motions. What is promised of linear blending does not hold for it: the bound of
+    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), with which it is refused, the fades and levels of
+    /// [`Extent`](super::Extent), and boxes and balls around all that bones reach.
     DualQuaternion,
 }

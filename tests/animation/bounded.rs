@@ -45,7 +45,7 @@ impl Run<'_> {
         let bounds =
             GateTable::of_bounds(self.skeleton, &set, &clips, self.reaches, self.path).expect("fits");
         let movers = GateTable::of_movers(&order, &set, &clips).expect("fits");
-        let crowd = |table| Crowd::new(&order, &set, table, self.path, instances.to_vec());
+        let crowd = |table| Crowd::new(&order, &set, table, self.path, instances.to_vec()).expect("one path");
         let (mut lazy, mut full) = (crowd(&bounds), crowd(&movers));
         lazy.lods.iter_mut().for_each(|lod| lod.allowed = bounds.units(self.allowed));
         let (mut worst, mut elapsed) = (0.0_f64, 0.0);

@@ -1,5 +1,6 @@
 //! Whole frames under a gate on the device at hand, layers included, beside frames in full.
 
+use relievo::Error;
 use relievo::animation::compact::{Active, Stages};
 use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
@@ -8,10 +9,17 @@ use relievo::animation::frame::GatedFrame;
 use relievo::animation::gate::Gating;
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, Order};
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, ModelMatrices, Order};
 use relievo::asset::Affine;
-use relievo::gpu::{Gpu, GpuError};
+use relievo::gpu::{Buffer, Gpu, GpuError};
 use relievo::samples::creature;
+use relievo::asset::transform::AFFINE_IDENTITY;
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::skinning::Blend;
+use relievo::skinning::frame::SkinFrame;
+use relievo::skinning::lod::NO_FADE;
+use relievo::skinning::picture::Light;
+use relievo::surface::Mips;
 
 use crate::harness::gpu;
 
@@ -107,9 +115,7 @@ fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
     let buffers = ClipBuffers::new(gpu, &set).expect("uploaded");
     let plays: Vec<_> = (0..40).map(|at| Instance::new(0, Wrap::Loop, 0.1 * at as f32, 1.0)).collect();
     let crowd = Crowd::new(gpu, &set, &plays).expect("fits");
-    let path = RotationPath::Slerp;
-    let prepared =
-        GatedFrame::new(gpu, &model.skeleton, &buffers, &crowd, &table.expect("fits"), choice, path);
+    let prepared = GatedFrame::new(gpu, &model.skeleton, &buffers, &crowd, &table.expect("fits"), choice);
     let prepared = prepared.expect("prepared");
     let lod = |at: u32| Lod { omega: 65536 / (1 + at % 2), ..Lod::FULL };
     prepared.gating.lods.write(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
@@ -133,6 +139,95 @@ fn devices_with_default_limits_play_the_same_frames() {
     }
     let refused = DecidePass::new(&foreign, BOUNDED, Dispatches::One).expect_err("too many buffers");
     assert!(matches!(refused, GpuError::Limit { available: 8, .. }), "{refused}");
+}
+
+/// Whatever brings a table's motion and sampling together refuses two paths: a frame in one piece, a decision, and
+/// sampling.
+#[test]
+fn bounds_of_one_path_meet_no_sampling_of_the_other() {
+    let gpu = gpu();
+    let model = creature().expect("valid");
+    let clips = [&model.clips[0]];
+    let set = ClipSet::new(&clips).expect("one skeleton");
+    let (skeleton, reaches) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
+    let (buffers, order) = (ClipBuffers::new(&gpu, &set).expect("uploaded"), Order::new(skeleton));
+    let (slerp, nlerp) = (RotationPath::Slerp, RotationPath::Nlerp);
+    let plays = [Instance::new(0, Wrap::Loop, 0.0, 1.0)];
+    for (path, other) in [(slerp, nlerp), (nlerp, slerp)] {
+        let crowd = |path| Crowd::new(&gpu, &set, &plays).expect("fits").with_path(path);
+        let (own, foreign) = (crowd(path), crowd(other));
+        let active = Active::new(&gpu, &order, &own).expect("fits");
+        let bounds = GateTable::of_bounds(skeleton, &set, &clips, &reaches, path).expect("fits");
+        let expected = GateTable::of_expectations(skeleton, &set, &clips, &reaches, path).expect("fits");
+        for (table, choice) in [(&bounds, BOUNDED), (&expected, Choice::Budget(9))] {
+            let frame = |crowd| GatedFrame::new(&gpu, skeleton, &buffers, crowd, table, choice).map(|_| ());
+            assert!(frame(&own).is_ok(), "{path:?}, {choice:?}");
+            names_both(frame(&foreign), [path, other]);
+            // The decision of another crowd than the gate knows.
+            let gating = Gating::new(&gpu, table, &own).expect("fits");
+            let decide = DecidePass::new(&gpu, choice, Dispatches::Each).expect("compiled");
+            let decided = |crowd| decide.prepare(&gpu, &buffers, crowd, &gating, &active).map(|_| ());
+            assert!(decided(&own).is_ok(), "{path:?}, {choice:?}");
+            names_both(decided(&foreign), [path, other]);
+        }
+        let sample = SamplePass::new(&gpu, path).expect("compiled");
+        assert!(sample.prepare_active(&gpu, &buffers, &own, &active.pairs).is_ok());
+        names_both(sample.prepare(&gpu, &buffers, &foreign).map(|_| ()), [path, other]);
+        names_both(sample.prepare_active(&gpu, &buffers, &foreign, &active.pairs).map(|_| ()), [path, other]);
+    }
+}
+
+#[track_caller]
+fn names_both(refused: Result<(), Error>, [path, other]: [RotationPath; 2]) {
+    let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
+    assert_eq!((error.field.as_str(), error.value), ("crowd.path", format!("{other:?}")));
+    assert!(error.bound.contains(&format!("{path:?}")), "{}", error.bound);
+}
+
+/// The bound of `bounded` is one of linear blending: no mesh is skinned otherwise under it, whether in one piece or in a
+/// scene. Other gates promise nothing, and a crowd without a gate misses nothing.
+#[test]
+fn dual_quaternions_are_refused_under_bounded_alone() {
+    let gpu = gpu();
+    let model = creature().expect("valid");
+    let clips = [&model.clips[0]];
+    let set = ClipSet::new(&clips).expect("one skeleton");
+    let (skeleton, reaches) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
+    let buffers = ClipBuffers::new(&gpu, &set).expect("uploaded");
+    let crowd = Crowd::new(&gpu, &set, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]).expect("fits");
+    let placements = Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded");
+    let clay = Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([200, 150, 90, 255])));
+    let clay = [Albedo::from(ColorTexture::new(&gpu, &clay, true).expect("uploaded"))];
+    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let mut scene = CrowdScene::new(&gpu, format, Light::default()).expect("compiled");
+    let mut skinned = |matrices: &ModelMatrices, blend| {
+        let character = Character {
+            model: &model,
+            matrices,
+            placements: &placements,
+            fade: NO_FADE,
+            levels: &[],
+            blend,
+            albedos: &clay,
+        };
+        let piece = SkinFrame::new(&gpu, &model, 0, matrices, 1, blend).map(|_| ());
+        [piece, scene.add(&gpu, &character).map(|_| ())]
+    };
+    let table = GateTable::of_bounds(skeleton, &set, &clips, &reaches, crowd.path()).expect("fits");
+    let gated = |choice| GatedFrame::new(&gpu, skeleton, &buffers, &crowd, &table, choice).expect("prepared");
+    let bounded = gated(BOUNDED);
+    for refused in skinned(bounded.model_matrices(), Blend::DualQuaternion) {
+        let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
+        assert_eq!((error.field.as_str(), error.value.as_str()), ("blend", "DualQuaternion"));
+        assert!(error.bound.contains("Bounded"), "{}", error.bound);
+    }
+    let uniform = gated(Choice::Gate(Gate::Uniform));
+    let all = [bounded.model_matrices(), uniform.model_matrices(), &ModelMatrices::new(&crowd.models)];
+    for (matrices, blend) in
+        all.into_iter().zip([Blend::Linear, Blend::DualQuaternion, Blend::DualQuaternion])
+    {
+        assert!(skinned(matrices, blend).iter().all(Result::is_ok), "{blend:?}");
+    }
 }
 
 /// A device of the suite's adapter as another program opens it.

@@ -7,6 +7,7 @@ use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::transform::Affine;
+use relievo::animation::ModelMatrices;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
@@ -24,15 +25,13 @@ use crate::skinned::{SKY, checks};
 const COUNT: usize = 20;
 
 struct Instances {
-    models: Buffer<Affine>,
-    /// Nobody has.
-    moved: Buffer<u32>,
+    matrices: ModelMatrices,
     placements: Buffer<Affine>,
 }
 
 impl Instances {
-    /// Each at a moment of its own.
-    fn new(gpu: &Gpu, model: &Model, aside: f32) -> Self {
+    /// Each at a moment of its own; `gated`: under a gate of ours, which updates nobody.
+    fn new(gpu: &Gpu, model: &Model, aside: f32, gated: bool) -> Self {
         let clip = &model.clips[0];
         let pose = |index: usize| {
             let time = (index as f32 * 0.618).fract() * clip.duration();
@@ -45,19 +44,18 @@ impl Instances {
         };
         let models: Vec<Affine> = (0..COUNT).flat_map(pose).collect();
         let places: Vec<Affine> = (0..COUNT).map(place).collect();
+        let matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "models", &models).expect("uploaded"));
         let words = COUNT * Order::new(&model.skeleton).words();
+        let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
         Self {
-            moved: Buffer::new(gpu, "moved", words).expect("allocated"),
-            models: Buffer::from_slice(gpu, "models", &models).expect("uploaded"),
+            matrices: if gated { matrices.with_updated_bones(&updated) } else { matrices },
             placements: Buffer::from_slice(gpu, "placements", &places).expect("uploaded"),
         }
     }
 
     fn character<'a>(&'a self, model: &'a Model, albedos: &'a [Albedo], blend: Blend) -> Character<'a> {
-        let Self { models, moved, placements } = self;
-        // A gate decides on one of the two characters.
-        let moved = (blend == Blend::Linear).then_some(moved);
-        Character { model, models, moved, placements, fade: [5.0, 25.0], levels: &[], blend, albedos }
+        let Self { matrices, placements } = self;
+        Character { model, matrices, placements, fade: [5.0, 25.0], levels: &[], blend, albedos }
     }
 }
 
@@ -68,7 +66,7 @@ fn creatures_and_figures_in_one_picture() {
     let mut crowd = CrowdScene::new(&gpu, LINEAR_FORMAT, Light::default()).expect("compiled");
     for ((model, aside), blend) in all.iter().zip([0.0, 1.1]).zip([Blend::Linear, Blend::DualQuaternion]) {
         let albedos = Albedo::of_meshes(&gpu, model, &checks(&gpu), ColorTexture::linear).expect("uploaded");
-        let instances = Instances::new(&gpu, model, aside);
+        let instances = Instances::new(&gpu, model, aside, blend == Blend::Linear);
         let none = instances.character(model, &[], blend);
         assert!(crowd.add(&gpu, &none).expect_err("refused").to_string().contains("albedos.len = 0"));
         crowd.add(&gpu, &instances.character(model, &albedos, blend)).expect("prepared");

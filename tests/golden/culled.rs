@@ -6,6 +6,7 @@ use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::transform::Affine;
+use relievo::animation::ModelMatrices;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
@@ -72,7 +73,8 @@ impl Stage {
 
     fn crowd(&self) -> Crowd {
         let Self { gpu, model, models, placements, view } = self;
-        let skin = SkinFrame::new(gpu, model, 0, models, CREATURES, Blend::Linear).expect("prepared");
+        let matrices = ModelMatrices::new(models);
+        let skin = SkinFrame::new(gpu, model, 0, &matrices, CREATURES, Blend::Linear).expect("prepared");
         let everybody: Vec<u32> = (0..CREATURES as u32).collect();
         let drawn = Buffer::from_slice(gpu, "drawn", &everybody).expect("uploaded");
         let plain = Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([200, 150, 90, 255])));

@@ -4,9 +4,8 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
-use relievo::animation::Order;
-use relievo::asset::MeshLevel;
-use relievo::asset::Model;
+use relievo::animation::{ModelMatrices, Order};
+use relievo::asset::{MeshLevel, Model};
 use relievo::asset::transform::Affine;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
@@ -140,10 +139,11 @@ fn a_crowd_with_levels() {
     let clay = Mips::of_color(RgbaImage::from_pixel(1, 1, image::Rgba([r, g, b, 255])));
     let clay: Albedo = ColorTexture::linear(gpu, &clay, true).expect("uploaded").into();
     let words = COUNT * Order::new(&model.skeleton).words();
+    let models = Buffer::from_slice(gpu, "models", models).expect("uploaded");
+    let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
     let character = Character {
         model,
-        models: &Buffer::from_slice(gpu, "models", models).expect("uploaded"),
-        moved: Some(&Buffer::new(gpu, "moved", words).expect("allocated")),
+        matrices: &ModelMatrices::new(&models).with_updated_bones(&updated),
         placements: &Buffer::from_slice(gpu, "placements", places).expect("uploaded"),
         fade: NO_FADE,
         levels: &BEGINS,

@@ -2,6 +2,7 @@
 
 use image::RgbaImage;
 use relievo::animation::concat::reference::concat;
+use relievo::animation::ModelMatrices;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine};
@@ -37,10 +38,10 @@ fn a_figure_in_its_materials() {
 
     let albedos = Albedo::of_meshes(&gpu, &model, &checks(&gpu), ColorTexture::linear).expect("uploaded");
     let mut crowd = CrowdScene::new(&gpu, LINEAR_FORMAT, Light::default()).expect("compiled");
+    let matrices = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
     let character = Character {
         model: &model,
-        models: &Buffer::from_slice(&gpu, "models", &models).expect("uploaded"),
-        moved: None,
+        matrices: &ModelMatrices::new(&matrices),
         placements: &Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
         fade: [1e3, 2e3],
         levels: &[],

@@ -6,8 +6,8 @@ use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::transform::Affine;
-use relievo::asset::{Bone, Model, Skeleton, Skin, Transform};
-use relievo::asset::{Influence, Influences, Mesh};
+use relievo::asset::{Bone, Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
+use relievo::animation::ModelMatrices;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
@@ -111,7 +111,8 @@ fn limbs(lower: Mat4) -> RgbaImage {
     for (row, blend) in (0..).zip([Blend::Linear, Blend::DualQuaternion]) {
         let pose = [rows(Mat4::IDENTITY), rows(lower)];
         let models = Buffer::from_slice(&gpu, "models", &pose.repeat(3)).expect("uploaded");
-        let frame = SkinFrame::new(&gpu, &model, 0, &models, 3, blend).expect("prepared");
+        let matrices = ModelMatrices::new(&models);
+        let frame = SkinFrame::new(&gpu, &model, 0, &matrices, 3, blend).expect("prepared");
         let fades = [0.0, 0.5, 1.0].map(|fade| Reduction::fade(fade).expect("in range"));
         frame.crowd.reductions.write(&gpu, &fades).expect("written");
         gpu.run("skin", |encoder| frame.record_all(encoder)).expect("run");
@@ -174,7 +175,8 @@ fn a_crowd_near_and_far() {
     };
     let models: Vec<Affine> = (0..36).flat_map(pose).collect();
     let models = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
-    let skin = SkinFrame::new(&gpu, &model, 0, &models, 36, Blend::Linear).expect("prepared");
+    let matrices = ModelMatrices::new(&models);
+    let skin = SkinFrame::new(&gpu, &model, 0, &matrices, 36, Blend::Linear).expect("prepared");
     let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
     let drawn = Buffer::new(&gpu, "drawn", 36).expect("allocated");
     let instances = SkinnedInstances {

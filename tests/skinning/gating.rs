@@ -43,7 +43,7 @@ impl Stage {
     }
 
     fn crowd<'a>(&'a self, table: &'a GateTable, instances: &[Instance]) -> Crowd<'a> {
-        Crowd::new(&self.order, &self.set, table, RotationPath::Slerp, instances.to_vec())
+        Crowd::new(&self.order, &self.set, table, RotationPath::Slerp, instances.to_vec()).expect("one path")
     }
 
     fn vertices(&self, models: &[Affine]) -> Vec<Vertex> {

@@ -32,7 +32,8 @@ impl BudgetPass {
     /// all bones until it is set.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a table of another kind than expectations; [`GpuError`].
+    /// [`crate::InputError`] for a table of another kind than expectations, or along another path than the crowd's;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -40,7 +41,7 @@ impl BudgetPass {
         gating: &Gating,
         active: &Active,
     ) -> Result<BudgetJob, Error> {
-        gating.kind.check(Kind::Expectations)?;
+        gating.check(Some(Kind::Expectations), crowd)?;
         let params = BudgetParams {
             instances: gating.lods.len() as u32,
             bones: crowd.bones as u32,

@@ -7,6 +7,7 @@ use crate::animation::layers::{Layer, MOST_LAYERS};
 use crate::animation::place::Instance;
 use crate::asset::keyframe::Place;
 use crate::asset::transform::{Affine, Transform};
+use crate::animation::sample::RotationPath;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 
@@ -84,6 +85,7 @@ pub struct Crowd {
     pub bones: usize,
     /// Layers, the base included: 1 where each instance plays one clip.
     pub layers: usize,
+    path: RotationPath,
 }
 
 impl Crowd {
@@ -119,7 +121,19 @@ impl Crowd {
             previous: None,
             bones,
             layers: 1 + layers.len(),
+            path: RotationPath::default(),
         })
+    }
+
+    /// The same crowd, whose rotations take this path between keys. Gates' tables and sampling must be of this path too.
+    #[must_use]
+    pub fn with_path(self, path: RotationPath) -> Self {
+        Self { path, ..self }
+    }
+
+    /// The path that rotations take between keys: slerp, unless [`Crowd::with_path`] chose another.
+    pub fn path(&self) -> RotationPath {
+        self.path
     }
 
     /// The same crowd, which keeps its palettes of the frame before in `previous`, 48 bytes a bone. They are zero until

@@ -1,5 +1,6 @@
 //! Crowds of one layer without a device: the twins of a frame, one after another.
 
+use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::{Work, compact};
 use crate::animation::concat::Order;
@@ -7,7 +8,7 @@ use crate::animation::concat::reference::concat_dirty;
 use crate::animation::decide::Choice;
 use crate::animation::decide::reference::Decider;
 use crate::animation::gate::Frame;
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate_table::{GateTable, check_path};
 use crate::animation::lod::Lod;
 use crate::animation::place::Instance;
 use crate::animation::place::reference::places;
@@ -20,8 +21,7 @@ use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 pub struct Crowd<'a> {
     /// The skeleton's order.
     pub order: &'a Order,
-    /// How rotations are sampled.
-    pub path: RotationPath,
+    path: RotationPath,
     /// May be changed between frames.
     pub instances: Vec<Instance>,
     /// May be changed between frames; one an instance.
@@ -34,16 +34,20 @@ pub struct Crowd<'a> {
 }
 
 impl<'a> Crowd<'a> {
-    /// A crowd before its first frame.
+    /// A crowd before its first frame, whose rotations take `path` between keys.
+    ///
+    /// # Errors
+    /// [`InputError`] for a table of motion along another path.
     pub fn new(
         order: &'a Order,
         set: &'a ClipSet,
         table: &'a GateTable,
         path: RotationPath,
         instances: Vec<Instance>,
-    ) -> Self {
+    ) -> Result<Self, InputError> {
+        check_path(table.path(), path)?;
         let (count, pairs) = (instances.len(), instances.len() * set.bones());
-        Self {
+        Ok(Self {
             order,
             path,
             instances,
@@ -51,7 +55,7 @@ impl<'a> Crowd<'a> {
             locals: vec![Transform::IDENTITY; pairs],
             models: vec![AFFINE_IDENTITY; pairs],
             decider: Decider::new(set, table, count),
-        }
+        })
     }
 
     /// Brings the crowd to a time, and says what was done for it.

@@ -37,7 +37,7 @@ pub enum Gate {
     /// leaves them everything. So bones take turns, and what one does not use another does. Its table is
     /// [`GateTable::of_bounds`](super::gate_table::GateTable::of_bounds): no point is ever further from its place than
     /// [`Lod::allowed`](super::lod::Lod::allowed), nor any vertex that bones blend linearly. Dual quaternions are no
-    /// convex mean: the promise does not hold for them.
+    /// convex mean, so the promise does not hold for them: skinning refuses them under this gate.
     Bounded,
 }
 

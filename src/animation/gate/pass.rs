@@ -3,12 +3,14 @@
 use super::{Frame, Gate};
 use crate::animation::compact::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::gate_table::{GateTable, Kind};
+use crate::animation::gate_table::{GateTable, Kind, check_path};
 use crate::animation::lod::Lod;
 use crate::animation::phase::Phase;
 use crate::gpu::bindings::animation::gate as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::animation::gate::{self as modes, GateParams};
+use crate::shared::animation::gate as modes;
+use crate::shared::animation::gate::GateParams;
+use crate::animation::sample::RotationPath;
 use crate::{Error, InputError};
 
 /// What gates know of a crowd. All buffers may be read and bound by the caller.
@@ -33,6 +35,7 @@ pub struct Gating {
     pub(crate) stride: u32,
     pub(crate) first_above: u32,
     pub(crate) kind: Kind,
+    path: Option<RotationPath>,
 }
 
 impl Gating {
@@ -58,7 +61,14 @@ impl Gating {
             stride: table.stride() as u32,
             first_above: table.above(0),
             kind: table.kind(),
+            path: table.path(),
         })
+    }
+
+    /// Refuses a table of another kind than the gate needs, where it needs one, and another path than the crowd's.
+    pub(crate) fn check(&self, needed: Option<Kind>, crowd: &Crowd) -> Result<(), InputError> {
+        needed.map_or(Ok(()), |needed| self.kind.check(needed))?;
+        check_path(self.path, crowd.path())
     }
 }
 
@@ -81,7 +91,8 @@ impl GatePass {
     /// Prepares the decision, from a crowd's phases.
     ///
     /// # Errors
-    /// [`InputError`] for a table of another kind than the gate needs; [`GpuError`].
+    /// [`InputError`] for a table of another kind than the gate needs, or of motion along another path than the crowd's
+    /// rotations take; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -129,11 +140,12 @@ pub(crate) struct GateTime {
 
 impl GateTime {
     pub fn new(gpu: &Gpu, gate: Gate, crowd: &Crowd, gating: &Gating) -> Result<Self, Error> {
-        match gate {
-            Gate::SkipPeriod { .. } => gating.kind.check(Kind::Priorities)?,
-            Gate::Bounded => gating.kind.check(Kind::Bounds)?,
-            Gate::Off | Gate::Uniform | Gate::Random => {}
-        }
+        let needed = match gate {
+            Gate::SkipPeriod { .. } => Some(Kind::Priorities),
+            Gate::Bounded => Some(Kind::Bounds),
+            Gate::Off | Gate::Uniform | Gate::Random => None,
+        };
+        gating.check(needed, crowd)?;
         let params = GateParams {
             instances: gating.lods.len() as u32,
             bones: crowd.bones as u32,

@@ -45,6 +45,7 @@ pub struct SamplePass {
     all: [Kernel; 2],
     compacted: [Kernel; 2],
     is_layered: bool,
+    path: RotationPath,
 }
 
 /// Prepared sampling of pairs that a kernel or the host chooses.
@@ -74,13 +75,14 @@ impl SamplePass {
             bindings::kernel(gpu, &bindings::Constants { compacted, layered: is_layered, nlerp, splines })
         };
         let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, false)?, kernel(compacted, true)?]);
-        Ok(Self { all: kernels(false)?, compacted: kernels(true)?, is_layered })
+        Ok(Self { all: kernels(false)?, compacted: kernels(true)?, is_layered, path })
     }
 
     /// Prepares sampling of every bone of every instance, at the crowd's places.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of several layers unless the pass is [`SamplePass::layered`]; [`GpuError`].
+    /// [`InputError`] for a crowd of several layers unless the pass is [`SamplePass::layered`], and for one of another
+    /// path ([`Crowd::path`]); [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         self.check(crowd)?;
         let nothing = ActivePairs {
@@ -114,6 +116,10 @@ impl SamplePass {
     }
 
     fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
+        if crowd.path() != self.path {
+            let bound = format!("must be {:?}, as the sampling pass's: Crowd::with_path", self.path);
+            return Err(InputError::new("crowd.path", format!("{:?}", crowd.path()), bound));
+        }
         if self.is_layered || crowd.layers == 1 {
             return Ok(());
         }

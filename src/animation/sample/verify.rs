@@ -144,7 +144,7 @@ impl<'a> Bench<'a> {
         path: RotationPath,
     ) -> Result<Self, Error> {
         let places: Vec<Place> = places(set, &all_instances(base, layers), ELAPSED);
-        let mut crowd = Crowd::layered(gpu, set, base, layers)?;
+        let mut crowd = Crowd::layered(gpu, set, base, layers)?.with_path(path);
         // Layers are sampled where they are.
         let later = self::places(set, base, ELAPSED + 0.3);
         let mut places_ahead = places.clone();

@@ -221,8 +221,8 @@ mod device {
     use relievo::animation::crowd::{ClipBuffers, Crowd};
     use relievo::animation::place::PlacePass;
     use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-    use relievo::animation::{ClipSet, Instance};
-    use relievo::asset::transform::AFFINE_IDENTITY;
+use relievo::animation::{ClipSet, Instance, ModelMatrices};
+use relievo::asset::transform::AFFINE_IDENTITY;
     use relievo::gpu::{Buffer, Gpu};
     use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
     use relievo::render::target::{LINEAR_FORMAT, Target};
@@ -273,7 +273,8 @@ mod device {
         posed: &Crowd,
         albedo: &Albedo,
     ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
-        let frame = SkinFrame::new(gpu, moment.model, mesh, &posed.models, 1, moment.blend)?;
+        let matrices = ModelMatrices::new(&posed.models);
+        let frame = SkinFrame::new(gpu, moment.model, mesh, &matrices, 1, moment.blend)?;
         frame.crowd.reductions.write(gpu, &[moment.reduction])?;
         frame.crowd.weights.write(gpu, &moment.weights(&moment.model.meshes[mesh]))?;
         gpu.run("skin", |encoder| frame.record_all(encoder))?;

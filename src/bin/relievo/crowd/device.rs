@@ -151,8 +151,8 @@ impl Gated {
         lods: &[Lod],
     ) -> Result<Self, Error> {
         let skeleton = &stage.plan.model.skeleton;
-        let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?;
-        let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, table, choice, PATH)?;
+        let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
+        let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, table, choice)?;
         frame.gating.lods.write(gpu, lods)?;
         Ok(Self { crowd, frame })
     }
@@ -160,7 +160,7 @@ impl Gated {
 
 impl Full {
     fn new(gpu: &Gpu, stage: &Stage<'_>, clips: &ClipBuffers) -> Result<Self, Error> {
-        let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?;
+        let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         Ok(Self {
             place: PlacePass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,

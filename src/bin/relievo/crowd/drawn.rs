@@ -4,7 +4,7 @@
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
 use relievo::animation::Choice;
-use relievo::animation::{GateTable, Lod};
+use relievo::animation::{GateTable, Lod, ModelMatrices};
 use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
@@ -349,11 +349,11 @@ impl<'a> World<'a> {
         let Way { by, skinning, triangles } = way;
         let (model, count) = (stage.model(triangles), stage.instances.len());
         let levels = LevelRanges::new(&level_begins(stage, triangles, index))?;
-        let skin = match by {
-            By::All => SkinFrame::new(gpu, model, index, &device.full.crowd.models, count, Blend::Linear)?,
-            By::Gate => SkinFrame::new(gpu, model, index, &device.gated.crowd.models, count, Blend::Linear)?
-                .with_moved(gpu, &device.gated.frame.active.dirty)?,
+        let matrices = match by {
+            By::All => &ModelMatrices::new(&device.full.crowd.models),
+            By::Gate => device.gated.frame.model_matrices(),
         };
+        let skin = SkinFrame::new(gpu, model, index, matrices, count, Blend::Linear)?;
         let (mesh, albedo) = (&model.meshes[index], &self.albedos[index]);
         let playing = match by {
             By::All => &device.full.crowd.instances,

@@ -153,7 +153,7 @@ fn point(
         let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
         lods.iter_mut().for_each(|lod| lod.omega = omega);
     }
-    let found = play(&mut Twins::new(stage, table, movers, choice, lods), stage, scene, false, || {})?;
+    let found = play(&mut Twins::new(stage, table, movers, choice, lods)?, stage, scene, false, || {})?;
     let frames = f64::from(plan.frames);
     Ok(Point {
         gate: mode,

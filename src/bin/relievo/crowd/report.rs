@@ -213,7 +213,7 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
                 play(&mut device, &stage, &scene, true, step)?
             }
             On::Cpu => {
-                let mut twins = Twins::new(&stage, &table, &movers, choice, lods);
+                let mut twins = Twins::new(&stage, &table, &movers, choice, lods)?;
                 play(&mut twins, &stage, &scene, true, step)?
             }
         };

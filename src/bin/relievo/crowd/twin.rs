@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use relievo::Error;
 use relievo::animation::Choice;
 use relievo::animation::crowd::reference::Crowd;
 use relievo::animation::{GateTable, Lod};
 use relievo::asset::Affine;
+use relievo::{Error, InputError};
 
 use super::gates::{Mode, PATH, frame};
 use super::play::{Play, Played, Taken, Times, Timing};
@@ -28,11 +28,11 @@ impl<'a> Twins<'a> {
         movers: &'a GateTable,
         choice: Choice,
         lods: Vec<Lod>,
-    ) -> Self {
+    ) -> Result<Self, InputError> {
         let crowd = |table| Crowd::new(&stage.order, &stage.set, table, PATH, stage.instances.clone());
-        let mut gated = crowd(table);
+        let mut gated = crowd(table)?;
         gated.lods = lods;
-        Self { gated, full: crowd(movers), choice, rate: stage.plan.rate }
+        Ok(Self { gated, full: crowd(movers)?, choice, rate: stage.plan.rate })
     }
 }
 
