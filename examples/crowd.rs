@@ -5,8 +5,10 @@
 
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
-use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Lens, Lod};
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Lens, Lod};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::reaches;
 use relievo::gpu::{Gpu, Options};
 use relievo::samples::creature;

@@ -8,11 +8,15 @@ use std::pin::pin;
 use std::task::{Context, Poll, Wake};
 
 use harness::gpu;
+use relievo::animation::ClipSet;
+use relievo::animation::active::ActivePairs;
 use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::place::{Instance, PlacePass};
-use relievo::animation::sample::{ActivePairs, SamplePass};
-use relievo::animation::{ClipSet, RotationPath, Wrap};
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
+use relievo::animation::place::PlacePass;
+use relievo::animation::sample::SamplePass;
+use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{
     Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION, Options, Step, TimedBy, Timer, adapters,
 };

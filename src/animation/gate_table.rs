@@ -2,12 +2,12 @@
 //! [`Order`], rows the common times of each clip, one clip after another, and one more row a clip.
 
 use super::clip_set::ClipSet;
-use super::concat::{NO_PARENT, Order};
 use super::motion::{BoneMotion, Path, bounding_levers, motions, shares, typical_levers, whole_reaches};
 use super::priority::Priorities;
-use super::sample::RotationPath;
 use crate::InputError;
+use crate::animation::order::{NO_PARENT, Order};
 use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
 /// The largest sum of motion of a whole clip, in units.

@@ -30,8 +30,8 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
-use super::place::Instance;
 use crate::InputError;
+use crate::animation::instance::Instance;
 use crate::asset::skeleton::Skeleton;
 
 /// The most layers of a crowd, the base included.
@@ -125,7 +125,7 @@ pub fn all_instances(base: &[Instance], layers: &[Layer]) -> Vec<Instance> {
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
-    use crate::animation::sample::Wrap;
+    use crate::animation::instance::Wrap;
 
     #[test]
     fn layers_are_checked_field_by_field() {

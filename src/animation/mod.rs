@@ -1,6 +1,7 @@
 //! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
 //! to 14); crowds of them on the device, with layers, bounds, and root motion for the host.
 
+pub mod active;
 #[cfg(feature = "verify")]
 pub mod bench;
 pub mod bounds;
@@ -10,17 +11,21 @@ pub mod chosen;
 pub mod clip_set;
 pub mod compact;
 pub mod concat;
+#[cfg(feature = "gpu")]
 pub mod crowd;
 pub mod decide;
-#[cfg(feature = "gpu")]
 pub mod frame;
 pub mod gate;
 pub mod gate_table;
+#[cfg(feature = "gpu")]
+pub mod gating;
+pub mod instance;
 pub mod layers;
 pub mod lod;
 #[cfg(feature = "gpu")]
 pub mod model_matrices;
 pub mod motion;
+pub mod order;
 pub mod phase;
 pub mod place;
 pub mod priority;
@@ -29,16 +34,17 @@ pub mod sample;
 #[cfg(feature = "verify")]
 pub mod verify;
 
+pub use crate::asset::keyframe::RotationPath;
 pub use bounds::Bounds;
 pub use clip_set::ClipSet;
-pub use concat::Order;
 pub use decide::Choice;
 pub use gate::{Frame, Gate};
 pub use gate_table::GateTable;
+pub use instance::{Instance, Wrap};
 pub use layers::Layer;
 pub use lod::{Lens, Lod, Range};
+#[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;
-pub use place::Instance;
+pub use order::Order;
 pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;
-pub use sample::{RotationPath, Wrap};

@@ -1,10 +1,10 @@
 //! What skinning takes of a crowd's animation: the model matrices of its bones, which of them a frame updated, and who
 //! decides that.
 
-use super::compact::Active;
 use super::crowd::Crowd;
 use super::decide::Choice;
 use super::gate::Gate;
+use crate::animation::active::Active;
 use crate::asset::Affine;
 use crate::gpu::Buffer;
 

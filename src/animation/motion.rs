@@ -15,8 +15,8 @@
 //! - a loop: a jump from the last pose to the first.
 
 use super::clip_set::{ClipEntry, ClipSet};
-use super::sample::RotationPath;
 use crate::asset::clip::{Clip, Interpolation, Part, Track};
+use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
 /// Moments at which a spline of rotations is measured between two keys.

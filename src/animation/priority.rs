@@ -23,11 +23,11 @@
 
 mod analyze;
 
-use super::sample::RotationPath;
 use crate::InputError;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::reference::sample_bone;
 use crate::asset::clip::{Clip, Part};
+use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 

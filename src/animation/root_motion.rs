@@ -20,9 +20,9 @@
 //! Bones above the root must not move in the clip; they may turn, mirror and scale it (exporters' axes and units), but
 //! for a yaw they must scale evenly and not mirror.
 
-use super::place::Instance;
-use super::sample::Wrap;
 use crate::InputError;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::animation::sample::reference::vector_at;
 use crate::asset::clip::{Clip, Keys};
 use crate::asset::keyframe::Place;

@@ -137,6 +137,11 @@ fn completed(columns: [glam::DVec3; 3], scale: [f64; 3], largest: f64) -> [glam:
     axes
 }
 
+/// The first three rows of a column-major matrix.
+pub fn rows(matrix: &[f32; 16]) -> Affine {
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[4 * column + row]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,9 +4,9 @@
 
 use glam::{Mat4, Vec3};
 
+use crate::animation::ModelMatrices;
 use crate::asset::Model;
 use crate::asset::transform::Affine;
-use crate::animation::ModelMatrices;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::animation::bounds::reference::bounds;
 use crate::animation::concat::reference::concat;
-use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample;
 use crate::asset::Model;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::reaches;
 
 /// Moments of each clip that are looked at.

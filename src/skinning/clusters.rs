@@ -3,11 +3,11 @@
 use std::cmp::Reverse;
 
 use crate::InputError;
-use crate::animation::concat::Order;
+use crate::animation::order::Order;
 use crate::asset::mesh::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
-use crate::skinning::morph::reference::morph;
 use crate::skinning::vertex::Vertex;
+use crate::skinning::vertex::vertices_of;
 
 /// Vertices of a cluster.
 pub const CLUSTER: usize = 64;
@@ -72,7 +72,7 @@ impl Clusters {
         let bands = bands(mesh);
         let order = order(mesh, &bands);
         let place = places(&order);
-        let vertices = morph(mesh, &[]);
+        let vertices = vertices_of(mesh);
         let mask_words = bones.words();
         let clusters = order.chunks(CLUSTER);
         Ok(Self {

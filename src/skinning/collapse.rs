@@ -9,8 +9,8 @@ use glam::{DMat4, DVec3};
 
 use crate::InputError;
 use crate::animation::concat::reference::concat;
-use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Affine;
 use crate::asset::{Model, Skeleton, Skin, Transform};
 

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::InputError;
 use crate::animation::concat::reference::concat;
-use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample;
 use crate::asset::Model;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Affine;
 use crate::asset::{Influence, Mesh};
 use crate::skinning::morph::reference::morph;

@@ -1,5 +1,7 @@
 //! What skinning reads and writes, and how it blends.
 
+use crate::asset::Mesh;
+
 /// A vertex as skinning reads and writes it: 40 bytes, laid out for vertex buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -23,4 +25,17 @@ pub enum Blend {
     /// [`Gate::Bounded`](crate::animation::Gate::Bounded), with which it is refused, the fades and levels of
     /// [`Extent`](super::Extent), and boxes and balls around all that bones reach.
     DualQuaternion,
+}
+
+/// A mesh's vertices in the space that they were bound in, without its morph targets.
+///
+/// # Panics
+/// For a mesh that [`Mesh::validate`] refuses.
+pub fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
+    let vertex = |vertex: usize| Vertex {
+        position: mesh.positions[vertex],
+        normal: mesh.normals[vertex],
+        tangent: mesh.tangents[vertex],
+    };
+    (0..mesh.vertices()).map(vertex).collect()
 }

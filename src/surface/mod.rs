@@ -5,6 +5,7 @@
 pub mod bench;
 pub mod cone_map;
 pub mod exact;
+#[cfg(feature = "gpu")]
 pub mod height_batch;
 pub mod height_pyramid;
 pub mod linear_image;

@@ -1,11 +1,14 @@
 //! The promise of `bounded` on clips that were made to break it.
 
 use relievo::animation::Choice;
-use relievo::animation::crowd::reference::Crowd;
-use relievo::animation::sample::{RotationPath, Wrap};
+use relievo::animation::frame::reference::Crowd;
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
+use relievo::animation::order::Order;
 use relievo::animation::verify::Draw;
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Instance, Order};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable};
 use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Bone, Clip, Skeleton, Transform};
 
 fn skeleton(parents: &[Option<u32>]) -> Skeleton {

@@ -1,20 +1,25 @@
 //! Whole frames under a gate on the device at hand, layers included, beside frames in full.
 
 use relievo::Error;
-use relievo::animation::compact::{Active, Stages};
+use relievo::animation::active::Active;
+use relievo::animation::compact::Stages;
 use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::decide::{DecidePass, Dispatches};
 use relievo::animation::frame::GatedFrame;
-use relievo::animation::gate::Gating;
+use relievo::animation::gating::Gating;
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
+use relievo::animation::order::Order;
 use relievo::animation::place::PlacePass;
-use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Instance, Layer, Lod, ModelMatrices, Order};
+use relievo::animation::sample::SamplePass;
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Layer, Lod, ModelMatrices};
 use relievo::asset::Affine;
-use relievo::gpu::{Buffer, Gpu, GpuError};
-use relievo::samples::creature;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
+use relievo::gpu::{Buffer, Gpu, GpuError};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::samples::creature;
 use relievo::skinning::Blend;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::NO_FADE;

@@ -1,9 +1,9 @@
 //! glTF documents as they may be.
 
 use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::clip::{Interpolation, Part};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Model, Transform};
 use serde_json::json;

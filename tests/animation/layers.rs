@@ -1,12 +1,14 @@
 //! Layers against their definition in double precision.
 
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
 use relievo::animation::layers::{all_instances, mask_below};
 use relievo::animation::place::reference::places;
 use relievo::animation::sample::reference::{blend, sample, sample_layers};
-use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::{ClipSet, Instance, Layer};
+use relievo::animation::{ClipSet, Layer};
 use relievo::asset::Transform;
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use relievo::asset::keyframe::RotationPath;
 use relievo::samples::creature;
 
 use crate::player::{angle, dot, unit, wide};

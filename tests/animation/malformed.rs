@@ -242,7 +242,7 @@ fn nothing_panics() {
 }
 
 fn play(model: &Model) {
-    use relievo::animation::sample::RotationPath;
+    use relievo::asset::keyframe::RotationPath;
     for clip in &model.clips {
         for time in [0.0, 0.3, clip.duration()] {
             let pose = relievo::animation::sample::reference::sample(clip, time, RotationPath::Slerp);

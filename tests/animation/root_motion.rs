@@ -1,11 +1,13 @@
 //! Root motion against the poses that it was taken from.
 
 use glam::{DAffine3, DQuat, DVec3};
+use relievo::animation::RootMotion;
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
 use relievo::animation::root_motion::{Taken, YAW_BOUND, deltas};
 use relievo::animation::sample::reference::{sample, sample_bone};
-use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::{Instance, RootMotion};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Bone, Skeleton, Transform};
 use relievo::samples::creature;
 

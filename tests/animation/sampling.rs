@@ -1,12 +1,14 @@
 //! The sampling twin against glTF's own formulas in double precision.
 
 use relievo::animation::ClipSet;
-use relievo::animation::place::Instance;
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
 use relievo::animation::place::reference::{inside_clip, places};
+use relievo::animation::sample::SLERP_BOUND;
 use relievo::animation::sample::reference::{sample, sample_bone, sample_set_into, slerp};
-use relievo::animation::sample::{RotationPath, SLERP_BOUND, Wrap};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::Place;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::keyframe::place;
 use relievo::asset::{Bone, Skeleton, Transform};
 use relievo::hash::{LANES, threefry2x32};

@@ -150,7 +150,7 @@ fn rigid_parts_need_no_skin() {
     assert_eq!((model.skeleton.joints(), model.skinned), (&[0, 1, 2, 3][..], 0));
     assert_eq!(meshes(&model), ["wagon_0", "wheel_0"]);
     let clip = &model.clips[0];
-    let locals = sample(clip, 1.0, relievo::animation::sample::RotationPath::Slerp);
+    let locals = sample(clip, 1.0, relievo::asset::keyframe::RotationPath::Slerp);
     let found = places(&model, &concat(&model.skeleton, &locals));
     // Half way: the wagon has gone 2, the wheel has turned a quarter about its own axle, at (1, −1) of the wagon.
     let near = |found: [f32; 3], wanted: [f32; 3]| {
@@ -175,7 +175,7 @@ fn what_never_moves_is_imported_too() {
     assert!(model.clips.is_empty());
     let at_rest = relievo::asset::Clip::at_rest("rest", &model.skeleton).expect("valid");
     assert_eq!((at_rest.name(), at_rest.duration()), ("rest", 0.0));
-    let locals = sample(&at_rest, 0.0, relievo::animation::sample::RotationPath::Slerp);
+    let locals = sample(&at_rest, 0.0, relievo::asset::keyframe::RotationPath::Slerp);
     assert_eq!(locals, model.skeleton.rest());
     assert_eq!(places(&model, &concat(&model.skeleton, &locals))[0][1], [4.0, 2.0, 0.0]);
     // Nothing that could be shown.

@@ -1,13 +1,13 @@
 //! Several characters in one picture, near and far: seen, faded, skinned and drawn together.
 
 use glam::{Vec3, camera};
-use relievo::animation::Order;
+use relievo::animation::ModelMatrices;
 use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::RotationPath;
+use relievo::animation::order::Order;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
-use relievo::animation::ModelMatrices;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};

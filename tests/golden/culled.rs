@@ -1,12 +1,12 @@
 //! A crowd that walks in and out of view: what is not seen is not skinned, and what is seen looks as if all were.
 
 use glam::{Mat4, Vec3, camera};
+use relievo::animation::ModelMatrices;
 use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
-use relievo::animation::ModelMatrices;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
-use relievo::animation::{ModelMatrices, Order};
-use relievo::asset::{MeshLevel, Model};
+use relievo::animation::ModelMatrices;
+use relievo::animation::order::Order;
 use relievo::asset::transform::Affine;
+use relievo::asset::{MeshLevel, Model};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};

@@ -1,10 +1,10 @@
 //! Materials of glTF: textures, colours, holes and what one sees through; on the device and in the twin.
 
 use image::RgbaImage;
-use relievo::animation::concat::reference::concat;
 use relievo::animation::ModelMatrices;
-use relievo::animation::sample::RotationPath;
+use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine};
 use relievo::gpu::Buffer;
 use relievo::render::target::LINEAR_FORMAT;

@@ -2,12 +2,12 @@
 
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
+use relievo::animation::ModelMatrices;
 use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Bone, Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
-use relievo::animation::ModelMatrices;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};

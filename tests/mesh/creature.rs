@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::keyframe::RotationPath;
 use relievo::mesh::{Options, Stopped, Surface, simplify};
 use relievo::samples::creature;
 use relievo::skinning::morph::reference::morph;

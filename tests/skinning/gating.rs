@@ -1,9 +1,12 @@
 //! The promise of the `bounded` gate where it counts: at every vertex, on screen.
 
 use relievo::animation::Choice;
-use relievo::animation::crowd::reference::Crowd;
-use relievo::animation::sample::{RotationPath, Wrap};
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Instance, Lens, Order};
+use relievo::animation::frame::reference::Crowd;
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
+use relievo::animation::order::Order;
+use relievo::animation::{ClipSet, Frame, Gate, GateTable, Lens};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::reaches;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Model};

@@ -1,10 +1,10 @@
 //! Meshes and poses that the tests share.
 
 use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::RotationPath;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::influences::{Influence, Influences};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::samples::creature;
 

@@ -136,8 +136,9 @@ mod tests {
     use crate::animation::concat::CONCAT_BOUND;
     use crate::animation::concat::reference::concat;
     use crate::animation::place::reference::places;
+    use crate::animation::sample::SAMPLE_BOUND;
     use crate::animation::sample::reference::sample_set;
-    use crate::animation::sample::{RotationPath, SAMPLE_BOUND};
+    use crate::asset::keyframe::RotationPath;
     use crate::asset::transform::AFFINE_IDENTITY;
 
     #[test]

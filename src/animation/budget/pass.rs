@@ -1,10 +1,10 @@
 //! `kernels/animation/budget.wgsl`.
 
 use crate::Error;
-use crate::animation::compact::Active;
+use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::gate::Gating;
 use crate::animation::gate_table::Kind;
+use crate::animation::gating::Gating;
 use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM};

@@ -1,16 +1,16 @@
 //! Parity of `kernels/animation/budget.wgsl`.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::budget::BudgetPass;
 use crate::animation::budget::reference::budget;
-use crate::animation::compact::Active;
-use crate::animation::concat::Order;
 use crate::animation::crowd::Crowd;
-use crate::animation::gate::Gating;
 use crate::animation::gate::verify::random_state;
 use crate::animation::gate_table::GateTable;
-use crate::animation::sample::RotationPath;
+use crate::animation::gating::Gating;
+use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
+use crate::asset::keyframe::RotationPath;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 

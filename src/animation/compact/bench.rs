@@ -1,9 +1,10 @@
 //! Lists of what is active in crowds.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
 use crate::animation::compact::reference::compact;
-use crate::animation::compact::{Active, CompactPass, Stages};
+use crate::animation::compact::{CompactPass, Stages};
 use crate::animation::gate::reference::Chosen;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;

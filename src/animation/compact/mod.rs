@@ -11,4 +11,4 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{Active, CompactJob, CompactPass, Stages};
+pub use pass::{CompactJob, CompactPass, Stages};

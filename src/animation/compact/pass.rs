@@ -1,62 +1,11 @@
 //! `kernels/animation/compact.wgsl`.
 
-use crate::animation::concat::Order;
+use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::sample::ActivePairs;
 use crate::gpu::bindings::animation::compact as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::compact::{ALL, CompactParams, SCAN, SCATTER, SPREAD};
-use crate::{Error, InputError};
-
-/// What is to be done for a crowd in a frame. All buffers may be read and bound by the caller.
-#[derive(Debug, Clone)]
-pub struct Active {
-    /// A bit for each slot of each instance, [`Order::words`] words an instance: those that are sampled; then likewise, those
-    /// of them that are sampled ahead. Written by a gate, or by the caller.
-    pub bits: Buffer<u32>,
-    /// Likewise: those that are concatenated.
-    pub dirty: Buffer<u32>,
-    /// The pairs that are sampled.
-    pub pairs: ActivePairs,
-    /// Instances with an active bone.
-    pub instances: Buffer<u32>,
-    /// Workgroups of 64 along x, y, z for a thread an instance of the list, and how many these are; then, for each
-    /// level of chains, workgroups for a thread a chain of each of them, and the level's chains; last, workgroups for a
-    /// thread a place of each of them, and an instance's places.
-    pub dispatches: Buffer<[u32; 4]>,
-    pub(crate) slots: Buffer<super::super::concat::Slot>,
-    pub(crate) counts: Buffer<u32>,
-    pub(crate) words: u32,
-}
-
-impl Active {
-    /// Room for a crowd of a skeleton; nothing is active.
-    ///
-    /// # Errors
-    /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
-    pub fn new(gpu: &Gpu, order: &Order, crowd: &Crowd) -> Result<Self, Error> {
-        if crowd.bones != order.slots.len() {
-            let bound = format!("must be {}, as the skeleton's", order.slots.len());
-            return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
-        }
-        let instances = crowd.len();
-        let words = order.words();
-        let chains = order.levels.windows(2).map(|level| [0, 1, 1, level[1] - level[0]]);
-        let places = [0, 1, 1, (crowd.places.len() / crowd.len()) as u32];
-        let dispatches: Vec<[u32; 4]> =
-            std::iter::once([0, 1, 1, 0]).chain(chains).chain(std::iter::once(places)).collect();
-        Ok(Self {
-            bits: Buffer::new(gpu, "active bits", 2 * instances * words)?,
-            dirty: Buffer::new(gpu, "dirty bits", instances * words)?,
-            pairs: ActivePairs::new(gpu, crowd)?,
-            instances: Buffer::new(gpu, "dirty instances", instances)?,
-            dispatches: Buffer::from_slice(gpu, "dispatches", &dispatches)?,
-            slots: Buffer::from_slice(gpu, "slots", &order.slots)?,
-            counts: Buffer::new(gpu, "counts", instances)?,
-            words: words as u32,
-        })
-    }
-}
 
 /// How threads share the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! From bits to lists: twin of `kernels/animation/compact.wgsl`.
 
-use crate::animation::concat::Order;
+use crate::animation::active::PAIR_AHEAD;
 use crate::animation::gate::reference::{Chosen, bits_of};
-use crate::animation::sample::PAIR_AHEAD;
+use crate::animation::order::Order;
 
 /// What is to be done in a frame.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

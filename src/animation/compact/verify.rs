@@ -1,11 +1,12 @@
 //! Parity of `kernels/animation/compact.wgsl`.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::compact::reference::{Work, compact};
-use crate::animation::compact::{Active, CompactPass, Stages};
-use crate::animation::concat::Order;
+use crate::animation::compact::{CompactPass, Stages};
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::Chosen;
+use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::Cases;
 use crate::harness::compare::{Comparison, exact};

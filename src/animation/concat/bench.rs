@@ -9,8 +9,8 @@ use crate::animation::bench::{CROWDS, Scene, host};
 use crate::animation::concat::reference::concat_into;
 use crate::animation::concat::{ConcatPass, Walk};
 use crate::animation::crowd::packed;
-use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::sample_set;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::AFFINE_IDENTITY;
 use crate::harness::{Backend, Bench, Contender};
 

@@ -1,8 +1,8 @@
 //! `kernels/animation/concat.wgsl`.
 
-use super::{Order, Slot};
-use crate::animation::compact::Active;
+use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
+use crate::animation::order::{Order, Slot};
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::bindings::animation::concat as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
@@ -133,7 +133,7 @@ impl Nothing {
 struct Binder<'a> {
     order: Order,
     slots: Buffer<Slot>,
-    chains: Buffer<super::Chain>,
+    chains: Buffer<crate::animation::order::Chain>,
     crowd: &'a Crowd,
 }
 

@@ -1,6 +1,6 @@
 //! Concatenation into the model's space: twin of `kernels/animation/concat.wgsl`.
 
-use crate::animation::concat::{CONTINUES, NO_PARENT, Order};
+use crate::animation::order::{CONTINUES, NO_PARENT, Order};
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 

@@ -1,12 +1,14 @@
 //! Parity of `kernels/animation/concat.wgsl`.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::compact::reference::compact;
-use crate::animation::compact::{Active, CompactPass, Stages};
+use crate::animation::compact::{CompactPass, Stages};
 use crate::animation::concat::reference::{concat, concat_dirty};
-use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Order, Walk};
+use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::gate::reference::Chosen;
+use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};

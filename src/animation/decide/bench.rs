@@ -1,12 +1,13 @@
 //! First halves of frames.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, ELAPSED, Scene};
-use crate::animation::compact::Active;
 use crate::animation::compact::reference::compact;
 use crate::animation::decide::reference::Decider;
 use crate::animation::decide::{Choice, DecidePass, Dispatches};
-use crate::animation::gate::{Frame, Gate, Gating};
+use crate::animation::gate::{Frame, Gate};
+use crate::animation::gating::Gating;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;

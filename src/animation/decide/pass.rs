@@ -1,11 +1,13 @@
 //! `kernels/animation/decide.wgsl`, and the kernels that it stands for.
 
 use super::Choice;
+use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
-use crate::animation::compact::{Active, CompactJob, CompactPass, Stages};
+use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
-use crate::animation::gate::{Frame, Gate, GateJob, GatePass, Gating};
+use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
+use crate::animation::gating::Gating;
 use crate::animation::phase::pass::PhaseTime;
 use crate::animation::phase::{PhaseJob, PhasePass};
 use crate::gpu::bindings::animation::decide as bindings;

@@ -6,11 +6,11 @@ use crate::animation::decide::Choice;
 use crate::animation::gate::Frame;
 use crate::animation::gate::reference::{Chosen, gate};
 use crate::animation::gate_table::GateTable;
+use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::phase::Phase;
 use crate::animation::phase::reference::phases;
-use crate::animation::place::Instance;
 
 /// What a crowd is decided by, and what that keeps from frame to frame.
 #[derive(Debug, Clone)]

@@ -1,22 +1,23 @@
 //! Parity of `kernels/animation/decide.wgsl`, and of the kernels that it stands for together.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::compact::Active;
 use crate::animation::compact::reference::compact as lists;
 use crate::animation::compact::verify as compact;
-use crate::animation::concat::Order;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::decide::reference::Decider;
 use crate::animation::decide::{Choice, DecidePass, Dispatches};
 use crate::animation::gate::verify::table;
-use crate::animation::gate::{Frame, Gate, Gating};
+use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
+use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::order::Order;
 use crate::animation::phase::Phase;
 use crate::animation::phase::verify as phase;
-use crate::animation::place::Instance;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::gpu::GpuError;
 use crate::harness::Cases;

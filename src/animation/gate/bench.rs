@@ -1,14 +1,15 @@
 //! Decisions for crowds.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
-use crate::animation::compact::Active;
 use crate::animation::gate::reference::gate;
-use crate::animation::gate::{Frame, Gate, GatePass, Gating};
+use crate::animation::gate::{Frame, Gate, GatePass};
 use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::phase::{Phase, Verdict};
-use crate::animation::sample::RotationPath;
+use crate::asset::keyframe::RotationPath;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;

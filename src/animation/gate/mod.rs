@@ -15,7 +15,7 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{GateJob, GatePass, Gating};
+pub use pass::{GateJob, GatePass};
 
 /// How bones are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

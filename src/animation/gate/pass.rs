@@ -1,76 +1,15 @@
 //! `kernels/animation/gate.wgsl`.
 
 use super::{Frame, Gate};
-use crate::animation::compact::Active;
+use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::gate_table::{GateTable, Kind, check_path};
-use crate::animation::lod::Lod;
-use crate::animation::phase::Phase;
+use crate::animation::gate_table::Kind;
+use crate::animation::gating::Gating;
 use crate::gpu::bindings::animation::gate as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::gate as modes;
 use crate::shared::animation::gate::GateParams;
-use crate::animation::sample::RotationPath;
-use crate::{Error, InputError};
-
-/// What gates know of a crowd. All buffers may be read and bound by the caller.
-#[derive(Debug, Clone)]
-pub struct Gating {
-    /// One an instance; written by the host, full detail at first.
-    pub lods: Buffer<Lod>,
-    /// Written by [`crate::animation::phase::PhasePass`].
-    pub phases: Buffer<Phase>,
-    /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
-    /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
-    pub history: Buffer<[u32; 4]>,
-    /// For each slot of each instance, the sum of motion when it was sampled last.
-    pub sampled: Buffer<u32>,
-    /// For each slot of each instance, what it leaves of the allowed way, where that is needed later.
-    pub(crate) kept: Buffer<u32>,
-    /// The table of movers.
-    pub(crate) movers: Buffer<u32>,
-    /// The table's rows.
-    pub(crate) table: Buffer<[u32; 2]>,
-    pub(crate) words: u32,
-    pub(crate) stride: u32,
-    pub(crate) first_above: u32,
-    pub(crate) kind: Kind,
-    path: Option<RotationPath>,
-}
-
-impl Gating {
-    /// Uploads a table and makes room for a crowd.
-    ///
-    /// # Errors
-    /// [`InputError`] for a table of another number of bones; [`GpuError`].
-    pub fn new(gpu: &Gpu, table: &GateTable, crowd: &Crowd) -> Result<Self, Error> {
-        if table.bones() != crowd.bones {
-            let bound = format!("must be {}, as the crowd's", crowd.bones);
-            return Err(InputError::new("table.bones", table.bones(), bound).into());
-        }
-        let instances = crowd.len();
-        Ok(Self {
-            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
-            phases: Buffer::new(gpu, "phases", instances)?,
-            history: Buffer::new(gpu, "history", instances)?,
-            sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
-            kept: Buffer::new(gpu, "kept", if table.kind() == Kind::Bounds { crowd.pairs() } else { 0 })?,
-            movers: Buffer::from_slice(gpu, "movers", table.movers())?,
-            table: Buffer::from_slice(gpu, "gate table", table.rows())?,
-            words: table.words() as u32,
-            stride: table.stride() as u32,
-            first_above: table.above(0),
-            kind: table.kind(),
-            path: table.path(),
-        })
-    }
-
-    /// Refuses a table of another kind than the gate needs, where it needs one, and another path than the crowd's.
-    pub(crate) fn check(&self, needed: Option<Kind>, crowd: &Crowd) -> Result<(), InputError> {
-        needed.map_or(Ok(()), |needed| self.kind.check(needed))?;
-        check_path(self.path, crowd.path())
-    }
-}
 
 /// Decides which bones are sampled.
 #[derive(Debug, Clone)]

@@ -1,9 +1,9 @@
 //! Which bones are sampled: twin of `kernels/animation/gate.wgsl`.
 
-use crate::animation::concat::NO_PARENT;
 use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_table::{Allotment, EVERYTHING, GateTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::order::NO_PARENT;
 use crate::animation::phase::{Phase, Verdict};
 
 /// What is sampled.

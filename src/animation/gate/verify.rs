@@ -1,19 +1,20 @@
 //! Parity of `kernels/animation/gate.wgsl`.
 
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::compact::Active;
-use crate::animation::concat::Order;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::gate;
-use crate::animation::gate::{Frame, Gate, GatePass, Gating};
+use crate::animation::gate::{Frame, Gate, GatePass};
 use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
 use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::order::Order;
 use crate::animation::phase::{Phase, Verdict};
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
-use crate::animation::sample::RotationPath;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::asset::clip::Clip;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};

@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
-use crate::animation::gate::Gating;
 use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
 use crate::animation::lod::Lod;
 use crate::animation::phase::PhasePass;
 use crate::animation::phase::reference::phases;

@@ -1,8 +1,8 @@
 //! `kernels/animation/phase.wgsl`.
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gate::Gating;
-use crate::animation::place::{check_elapsed, check_seconds};
+use crate::animation::gating::Gating;
+use crate::animation::instance::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::phase as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::phase::PhaseParams;
@@ -98,7 +98,7 @@ impl PhaseJob {
     /// may be sampled ahead of it, as [`Frame::ahead`](crate::animation::gate::Frame::ahead).
     ///
     /// # Errors
-    /// [`InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
+    /// [`InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         self.time.set(gpu, elapsed, ahead)
     }

@@ -1,10 +1,10 @@
 //! Where instances stand on their clips' common timelines: twin of `kernels/animation/phase.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
+use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::phase::{BLENDED, Phase, Verdict};
-use crate::animation::place::Instance;
 use crate::animation::place::reference::inside_clip;
 use crate::asset::keyframe::Place;
 use crate::asset::keyframe::place;

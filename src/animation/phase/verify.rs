@@ -1,15 +1,15 @@
 //! Parity of `kernels/animation/phase.wgsl`.
 
 use crate::Error;
-use crate::animation::concat::Order;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gate::Gating;
 use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
+use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
+use crate::animation::order::Order;
 use crate::animation::phase::reference::phases;
 use crate::animation::phase::{Phase, PhasePass};
-use crate::animation::place::Instance;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};

@@ -1,11 +1,11 @@
 //! `kernels/animation/place.wgsl`.
 
-use super::{Instance, check_elapsed};
 use crate::Error;
+use crate::animation::active::Active;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::compact::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gate::Gating;
+use crate::animation::gating::Gating;
+use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::bindings::animation::place as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::place::PlaceParams;
@@ -130,7 +130,7 @@ impl PlaceJob {
     /// few minutes: `f32` seconds grow coarse.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &PlaceParams { elapsed, ..self.params })?)

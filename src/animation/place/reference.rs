@@ -1,8 +1,8 @@
 //! Where instances stand in their clips: twin of `kernels/animation/place.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
-use crate::animation::sample::Wrap;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::asset::keyframe::{Place, place};
 
 /// After so many turns, `f32` knows no place in a clip.

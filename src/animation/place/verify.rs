@@ -1,15 +1,16 @@
 //! Parity of `kernels/animation/place.wgsl`.
 
 use crate::Error;
-use crate::animation::compact::Active;
-use crate::animation::concat::Order;
+use crate::animation::active::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gate::Gating;
 use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::animation::layers::{Layer, all_instances};
+use crate::animation::order::Order;
 use crate::animation::place::reference::{inside_clip, places};
-use crate::animation::place::{Instance, PLACE_BOUND, PlacePass};
-use crate::animation::sample::Wrap;
+use crate::animation::place::{PLACE_BOUND, PlacePass};
 use crate::animation::verify::edges::{ELAPSED, edges};
 use crate::animation::verify::{SIZES, random_clips, random_crowd, random_instances};
 use crate::asset::keyframe::Place;

@@ -4,9 +4,9 @@
 use super::{Differences, Weights};
 use crate::InputError;
 use crate::animation::concat::reference::{affine, concat, product};
-use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::{sample, sample_bone};
 use crate::asset::clip::Clip;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};
 

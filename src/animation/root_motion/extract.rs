@@ -4,10 +4,10 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::{PIECE, RootMotion, SPLINE_PIECES, Taken, rigid::Rigid};
 use crate::InputError;
-use crate::animation::sample::RotationPath;
 use crate::animation::sample::reference::{rotation_at, sample_bone};
 use crate::asset::clip::{Clip, Interpolation, Keys, Part, Track};
 use crate::asset::keyframe::Place;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 

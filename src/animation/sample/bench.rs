@@ -3,15 +3,17 @@
 use std::hint::black_box;
 
 use crate::Error;
+use crate::animation::active::ActivePairs;
 use crate::animation::bench::plain_soa::PlainSoa;
 use crate::animation::bench::{CROWDS, KEYS, Scene};
 use crate::animation::crowd::Crowd;
+use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, all_instances};
-use crate::animation::place::Instance;
 use crate::animation::place::reference::places;
+use crate::animation::sample::SamplePass;
 use crate::animation::sample::reference::{sample_layers, sample_set_into};
-use crate::animation::sample::{ActivePairs, RotationPath, SamplePass};
 use crate::asset::keyframe::Place;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Transform;
 use crate::baseline::gather::Reads;
 use crate::harness::{Backend, Bench, Contender};

@@ -4,8 +4,6 @@
 //! fast and accurate algorithm for computing SLERP"), which needs neither `sin` nor `acos`. The arc is halved first,
 //! so five terms keep it within [`SLERP_BOUND`] of the true rotation for every two keys.
 
-use crate::InputError;
-
 #[cfg(feature = "verify")]
 pub mod bench;
 #[cfg(feature = "gpu")]
@@ -15,10 +13,7 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{ActivePairs, SampleActiveJob, SamplePass};
-
-/// Of a pair of instance and bone in a list: it is sampled where the instance will stand ahead.
-pub const PAIR_AHEAD: u32 = 1 << 31;
+pub use pass::{SampleActiveJob, SamplePass};
 
 /// How far a sampled rotation between linear keys may lie from the true one, in radians. The polynomial alone is
 /// within 4e-8; the rest is `f32`'s rounding of keys, products and sums.
@@ -46,67 +41,3 @@ pub const SLERP_V: [f32; 5] = [1.0 / 3.0, 2.0 / 5.0, 3.0 / 7.0, 4.0 / 9.0, REST 
 
 /// Makes the largest error of five terms on halved arcs least.
 const REST: f32 = 1.15;
-
-/// What becomes of times outside a clip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum Wrap {
-    /// The clip begins again; its end is its start.
-    #[default]
-    Loop = 0,
-    /// The first or last pose stays.
-    Clamp = 1,
-}
-
-impl Wrap {
-    /// The time inside a clip of `duration` seconds, `seconds` after its start. Negative where it plays backwards.
-    ///
-    /// # Errors
-    /// [`InputError`] for seconds that are not finite.
-    pub fn inside(self, duration: f32, seconds: f64) -> Result<f32, InputError> {
-        if !seconds.is_finite() {
-            return Err(InputError::new("time", seconds, "must be finite"));
-        }
-        let duration = f64::from(duration);
-        Ok(match self {
-            _ if duration <= 0.0 => 0.0,
-            Self::Loop => seconds.rem_euclid(duration) as f32,
-            Self::Clamp => seconds.clamp(0.0, duration) as f32,
-        })
-    }
-}
-
-/// The way between two linear rotation keys.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum RotationPath {
-    /// At constant speed, as glTF asks.
-    #[default]
-    Slerp = 0,
-    /// On the chord, then normalized: cheaper, and on ordinary clips 0.005 to 0.014 rad off.
-    Nlerp = 1,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_come_inside() {
-        let inside = |wrap: Wrap, seconds| wrap.inside(2.0, seconds).expect("finite");
-        for (seconds, looped, clamped) in [
-            (0.0, 0.0, 0.0),
-            (0.5, 0.5, 0.5),
-            (2.0, 0.0, 2.0),
-            (5.25, 1.25, 2.0),
-            (-0.5, 1.5, 0.0),
-            (-4.0, 0.0, 0.0),
-        ] {
-            assert_eq!((inside(Wrap::Loop, seconds), inside(Wrap::Clamp, seconds)), (looped, clamped));
-        }
-        assert_eq!(Wrap::Loop.inside(0.0, 3.0), Ok(0.0));
-        for seconds in [f64::NAN, f64::INFINITY] {
-            assert_eq!(Wrap::Clamp.inside(2.0, seconds).expect_err("refused").field, "time");
-        }
-    }
-}

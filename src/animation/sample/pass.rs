@@ -1,42 +1,12 @@
 //! `kernels/animation/sample.wgsl`.
 
-use super::RotationPath;
+use crate::animation::active::ActivePairs;
 use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::asset::keyframe::RotationPath;
 use crate::gpu::bindings::animation::sample as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
-
-/// The pairs of instance and bone that are to be sampled, in a buffer that kernels may fill.
-#[derive(Debug, Clone)]
-pub struct ActivePairs {
-    /// `instance · bones + bone`, with [`PAIR_AHEAD`](super::PAIR_AHEAD) where it is sampled ahead; others are skipped.
-    pub pairs: Buffer<u32>,
-    /// Workgroups of 64 along x, y and z, and how many pairs: arguments of an indirect dispatch.
-    pub dispatched: Buffer<u32>,
-}
-
-impl ActivePairs {
-    /// Room for all pairs of a crowd; none is active.
-    ///
-    /// # Errors
-    /// [`GpuError`].
-    pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
-        let dispatched = Buffer::from_slice(gpu, "dispatched", &[0, 1, 1, 0])?;
-        Ok(Self { pairs: Buffer::new(gpu, "pairs", crowd.pairs())?, dispatched })
-    }
-
-    /// Makes these pairs active, from the host.
-    ///
-    /// # Errors
-    /// [`GpuError`], for more pairs than the crowd has too.
-    pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
-        self.pairs.write(gpu, pairs)?;
-        let groups = pairs.len().div_ceil(64) as u32;
-        let [x, y, z] = rows_of_workgroups(gpu, groups);
-        self.dispatched.write(gpu, &[x, y, z, pairs.len() as u32])
-    }
-}
 
 /// Samples bones.
 #[derive(Debug, Clone)]

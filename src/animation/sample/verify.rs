@@ -1,18 +1,18 @@
 //! Parity of `kernels/animation/sample.wgsl`.
 
 use crate::Error;
+use crate::animation::active::{ActivePairs, PAIR_AHEAD};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local, packed};
+use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, MOST_LAYERS, all_instances};
-use crate::animation::place::Instance;
 use crate::animation::place::reference::places;
 use crate::animation::sample::reference::{blend, sample_layers, sample_set};
-use crate::animation::sample::{
-    ActivePairs, LAYER_GROWTH, PAIR_AHEAD, RotationPath, SAMPLE_BOUND, SamplePass,
-};
+use crate::animation::sample::{LAYER_GROWTH, SAMPLE_BOUND, SamplePass};
 use crate::animation::verify::edges::{ELAPSED, edges};
 use crate::animation::verify::{Draw, SIZES, random_crowd, random_instances};
 use crate::asset::keyframe::Place;
+use crate::asset::keyframe::RotationPath;
 use crate::baseline::gather::verify::evenly_keyed;
 use crate::gpu::Gpu;
 use crate::harness::poison::{POISON, Poisoned};

@@ -5,8 +5,8 @@ use std::f32::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
-use crate::animation::sample::Wrap;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::asset::keyframe::Place;
 use crate::asset::skeleton::{Bone, Skeleton};

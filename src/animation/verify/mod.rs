@@ -4,8 +4,8 @@ pub mod edges;
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
-use crate::animation::sample::Wrap;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::asset::skeleton::{Bone, Skeleton};
 use crate::asset::transform::Transform;

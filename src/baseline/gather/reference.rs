@@ -1,7 +1,7 @@
 //! Moves the bytes of sampling: twin of `kernels/baseline/gather.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
+use crate::animation::instance::Instance;
 use crate::asset::keyframe::Place;
 
 /// For each instance and bone of its clip, the exclusive or of the two keys around the instance's place of three

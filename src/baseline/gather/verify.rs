@@ -3,8 +3,8 @@
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local};
-use crate::animation::place::Instance;
-use crate::animation::sample::Wrap;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::animation::verify::{Draw, SIZES, random_skeleton};
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use crate::asset::keyframe::Place;

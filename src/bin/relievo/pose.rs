@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use relievo::animation::concat::reference::concat;
-use relievo::animation::sample::reference::sample;
-use relievo::animation::sample::{RotationPath, Wrap};
 #[cfg(feature = "gpu")]
-use relievo::animation::{
-    ClipSet, Instance,
-    concat::{ConcatPass, Walk},
-    crowd::{ClipBuffers, Crowd, unpacked},
-    place::PlacePass,
-    sample::SamplePass,
-};
+use relievo::animation::ClipSet;
+use relievo::animation::concat::reference::concat;
+use relievo::animation::concat::{ConcatPass, Walk};
+use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
+use relievo::animation::instance::Instance;
+use relievo::animation::instance::Wrap;
+use relievo::animation::place::PlacePass;
+use relievo::animation::sample::SamplePass;
+use relievo::animation::sample::reference::sample;
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::column_major;
 use relievo::asset::{Affine, Clip, Model, Transform};
 #[cfg(feature = "gpu")]

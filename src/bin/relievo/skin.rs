@@ -219,10 +219,13 @@ mod device {
     use super::*;
     use relievo::animation::concat::{ConcatPass, Walk};
     use relievo::animation::crowd::{ClipBuffers, Crowd};
+    use relievo::animation::instance::Instance;
+    use relievo::animation::instance::Wrap;
     use relievo::animation::place::PlacePass;
-    use relievo::animation::sample::{RotationPath, SamplePass, Wrap};
-use relievo::animation::{ClipSet, Instance, ModelMatrices};
-use relievo::asset::transform::AFFINE_IDENTITY;
+    use relievo::animation::sample::SamplePass;
+    use relievo::animation::{ClipSet, ModelMatrices};
+    use relievo::asset::keyframe::RotationPath;
+    use relievo::asset::transform::AFFINE_IDENTITY;
     use relievo::gpu::{Buffer, Gpu};
     use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
     use relievo::render::target::{LINEAR_FORMAT, Target};

@@ -68,9 +68,9 @@ fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
 mod tests {
     use super::*;
     use crate::animation::concat::reference::concat;
-    use crate::animation::sample::RotationPath;
     use crate::animation::sample::reference::sample;
     use crate::asset::clip::Part as TrackPart;
+    use crate::asset::keyframe::RotationPath;
     use crate::asset::transform::Affine;
 
     fn model() -> Model {

@@ -1,7 +1,7 @@
 //! Morph targets: twin of `kernels/skinning/morph.wgsl`.
 
 use crate::asset::Mesh;
-use crate::skinning::vertex::Vertex;
+use crate::skinning::vertex::{Vertex, vertices_of};
 
 /// A mesh's vertices with these weights of its targets, before skinning. Normals and tangents keep the length that the
 /// sum has.
@@ -9,13 +9,7 @@ use crate::skinning::vertex::Vertex;
 /// # Panics
 /// For a mesh that [`Mesh::validate`] refuses.
 pub fn morph(mesh: &Mesh, weights: &[f32]) -> Vec<Vertex> {
-    let mut vertices: Vec<Vertex> = (0..mesh.vertices())
-        .map(|vertex| Vertex {
-            position: mesh.positions[vertex],
-            normal: mesh.normals[vertex],
-            tangent: mesh.tangents[vertex],
-        })
-        .collect();
+    let mut vertices = vertices_of(mesh);
     for (target, weight) in mesh.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
         for (vertex, delta) in target.vertices.iter().zip(&target.deltas) {
             let vertex = &mut vertices[*vertex as usize];

@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
-use crate::animation::sample::Wrap;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::asset::clip::BoneKeys;
 use crate::asset::morph::WeightKeys;
 use crate::asset::{Clip, Interpolation};

@@ -4,7 +4,7 @@ use encase::ShaderType;
 
 use super::WeightSet;
 use crate::Error;
-use crate::animation::place::{Instance, check_elapsed};
+use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::SkinnedCrowd;
 
@@ -85,7 +85,7 @@ impl MorphWeightsJob {
     /// Chooses the time of the next submission: seconds since the instances' starts.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::place::MOST_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &MorphWeightsParams { elapsed, ..self.params })?)

@@ -1,7 +1,7 @@
 //! Weights of morph targets: twin of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
+use crate::animation::instance::Instance;
 use crate::animation::place::reference::inside_clip;
 use crate::asset::Mesh;
 use crate::skinning::reduction::Reduction;

@@ -1,9 +1,9 @@
 //! Parity of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
-use crate::animation::place::Instance;
+use crate::animation::instance::Instance;
+use crate::animation::instance::Wrap;
 use crate::animation::place::reference::inside_clip;
-use crate::animation::sample::Wrap;
 use crate::animation::verify::Draw;
 use crate::asset::clip::BoneKeys;
 use crate::asset::morph::WeightKeys;

@@ -3,6 +3,7 @@
 use crate::animation::concat::reference::product;
 use crate::asset::skeleton::Skin;
 use crate::asset::transform::Affine;
+use crate::asset::transform::rows;
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::vertex::Blend;
 
@@ -22,11 +23,6 @@ pub fn palette_for(skin: &Skin, models: &[Affine], blend: Blend) -> Palette {
         Blend::Linear => Palette::Linear(linear),
         Blend::DualQuaternion => Palette::Dual(linear.iter().map(dual).collect()),
     }
-}
-
-/// The first three rows of a column-major matrix.
-pub fn rows(matrix: &[f32; 16]) -> Affine {
-    std::array::from_fn(|row| std::array::from_fn(|column| matrix[4 * column + row]))
 }
 
 /// A matrix taken apart into a stretch and a rigid motion after it.

@@ -25,7 +25,7 @@ pub(crate) struct SelectParams {
 pub struct SelectBuffers {
     /// The bones of each instance that were recomputed this frame, a bit a slot of the skeleton's order, in
     /// [`MeshBuffers::mask_words`] words an instance. [`SkinFrame`](super::frame::SkinFrame) puts
-    /// [`Active::dirty`](crate::animation::compact::Active::dirty) here where a gate decides. A bone below one that moved has moved too.
+    /// [`Active::dirty`](crate::animation::active::Active::dirty) here where a gate decides. A bone below one that moved has moved too.
     pub moved: Buffer<u32>,
     /// Of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, most
     /// influences and level; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first,

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::asset::mesh::MeshLevel;
+use crate::asset::transform::rows;
 use crate::gpu::{Buffer, Gpu, Job};
 use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::bench::{CROWDS, RING, Scene, seen_of, tube};
@@ -9,7 +10,6 @@ use crate::skinning::buffers::ActiveClusters;
 use crate::skinning::clusters::CLUSTER;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::Palette;
-use crate::skinning::palette::reference::rows;
 use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::SkinPass;
 use crate::skinning::skin::reference::skin;

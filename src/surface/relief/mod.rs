@@ -8,6 +8,7 @@ pub mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
+#[cfg(feature = "gpu")]
 pub mod textures;
 #[cfg(feature = "verify")]
 pub mod verify;

@@ -1,11 +1,12 @@
 //! Sampling of clips: twin of `kernels/animation/sample.wgsl`.
 
 use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
+use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, all_instances};
-use crate::animation::place::Instance;
-use crate::animation::sample::{RotationPath, SLERP_U, SLERP_V};
+use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::clip::{Clip, Interpolation, Part, Track};
 use crate::asset::keyframe::Place;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::keyframe::place;
 use crate::asset::transform::Transform;
 

@@ -3,8 +3,10 @@
 use clap::ValueEnum;
 use relievo::InputError;
 use relievo::animation::Choice;
+use relievo::animation::order::Order;
 use relievo::animation::priority::{self, USER_DEFAULT, Weights};
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Order, RotationPath};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable};
+use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Clip, Skeleton};
 use serde::Serialize;
 

@@ -3,7 +3,10 @@
 use relievo::InputError;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::gate::reference::scramble;
-use relievo::animation::{ClipSet, GateTable, Instance, Lens, Lod, Order, lod::OMEGA_ONE, sample::Wrap};
+use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::lod::OMEGA_ONE;
+use relievo::animation::order::Order;
+use relievo::animation::{ClipSet, GateTable, Lens, Lod};
 #[cfg(feature = "gpu")]
 use relievo::asset::Model;
 use relievo::skinning;

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use relievo::animation::Choice;
-use relievo::animation::crowd::reference::Crowd;
+use relievo::animation::frame::reference::Crowd;
 use relievo::animation::{GateTable, Lod};
 use relievo::asset::Affine;
 use relievo::{Error, InputError};

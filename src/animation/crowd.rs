@@ -2,12 +2,12 @@
 //! palette.
 
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
+use crate::animation::instance::Instance;
 use crate::animation::layers;
 use crate::animation::layers::{Layer, MOST_LAYERS};
-use crate::animation::place::Instance;
 use crate::asset::keyframe::Place;
+use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::{Affine, Transform};
-use crate::animation::sample::RotationPath;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 

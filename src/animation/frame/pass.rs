@@ -2,16 +2,18 @@
 //! latter three for what is active alone, in one compute pass. Only in this order `bounded` keeps its promise: places are
 //! looked up at the times that the gate saw.
 
-use super::compact::Active;
-use super::concat::{ConcatActiveJob, ConcatPass, Order, Walk};
-use super::crowd::{ClipBuffers, Crowd};
-use super::decide::{Choice, DecideJob, DecidePass, Dispatches};
-use super::gate::{Frame, Gating};
-use super::gate_table::GateTable;
-use super::model_matrices::ModelMatrices;
-use super::place::{PlaceJob, PlacePass};
-use super::sample::{SampleActiveJob, SamplePass};
 use crate::Error;
+use crate::animation::active::Active;
+use crate::animation::concat::{ConcatActiveJob, ConcatPass, Walk};
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::decide::{Choice, DecideJob, DecidePass, Dispatches};
+use crate::animation::gate::Frame;
+use crate::animation::gate_table::GateTable;
+use crate::animation::gating::Gating;
+use crate::animation::model_matrices::ModelMatrices;
+use crate::animation::order::Order;
+use crate::animation::place::{PlaceJob, PlacePass};
+use crate::animation::sample::{SampleActiveJob, SamplePass};
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Gpu, compute_pass};
 

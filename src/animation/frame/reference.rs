@@ -1,19 +1,20 @@
 //! Crowds of one layer without a device: the twins of a frame, one after another.
 
 use crate::InputError;
+use crate::animation::active::PAIR_AHEAD;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::{Work, compact};
-use crate::animation::concat::Order;
 use crate::animation::concat::reference::concat_dirty;
 use crate::animation::decide::Choice;
 use crate::animation::decide::reference::Decider;
 use crate::animation::gate::Frame;
 use crate::animation::gate_table::{GateTable, check_path};
+use crate::animation::instance::Instance;
 use crate::animation::lod::Lod;
-use crate::animation::place::Instance;
+use crate::animation::order::Order;
 use crate::animation::place::reference::places;
 use crate::animation::sample::reference::sample_pair;
-use crate::animation::sample::{PAIR_AHEAD, RotationPath};
+use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
 /// Instances of one skeleton, and what they keep from frame to frame.

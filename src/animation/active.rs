@@ -1,0 +1,8 @@
+//! What is to be done for a crowd in a frame: lists of what a gate chose.
+
+#[cfg(feature = "gpu")]
+mod buffers;
+
+pub use crate::shared::animation::gating::PAIR_AHEAD;
+#[cfg(feature = "gpu")]
+pub use buffers::{Active, ActivePairs};

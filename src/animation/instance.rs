@@ -1,0 +1,114 @@
+//! What a character plays: a clip, from a start, at a rate.
+
+use crate::InputError;
+pub use crate::shared::animation::instance::AnimationInstance as Instance;
+
+/// The most seconds that a start, or what has elapsed since, may be from 0, and the most clip seconds a second: their
+/// products and sums stay finite. Some 30 years.
+pub const MOST_SECONDS: f32 = 1e9;
+
+/// What becomes of times outside a clip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Wrap {
+    /// The clip begins again; its end is its start.
+    #[default]
+    Loop = 0,
+    /// The first or last pose stays.
+    Clamp = 1,
+}
+
+impl Wrap {
+    /// The time inside a clip of `duration` seconds, `seconds` after its start. Negative where it plays backwards.
+    ///
+    /// # Errors
+    /// [`InputError`] for seconds that are not finite.
+    pub fn inside(self, duration: f32, seconds: f64) -> Result<f32, InputError> {
+        if !seconds.is_finite() {
+            return Err(InputError::new("time", seconds, "must be finite"));
+        }
+        let duration = f64::from(duration);
+        Ok(match self {
+            _ if duration <= 0.0 => 0.0,
+            Self::Loop => seconds.rem_euclid(duration) as f32,
+            Self::Clamp => seconds.clamp(0.0, duration) as f32,
+        })
+    }
+}
+
+/// Checks what has elapsed.
+#[cfg(any(feature = "gpu", test))]
+pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
+    check_seconds("elapsed", elapsed)
+}
+
+/// Checks any seconds.
+pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
+    // NaN is not within.
+    if value.abs() <= MOST_SECONDS {
+        return Ok(());
+    }
+    Err(InputError::new(field, value, format!("must be finite, and within ±{MOST_SECONDS:e}")))
+}
+
+impl Instance {
+    /// A clip from a start, at a rate.
+    pub fn new(clip: u32, wrap: Wrap, start: f32, rate: f32) -> Self {
+        Self { clip, wrap_code: wrap as u32, start, rate }
+    }
+
+    /// What becomes of times outside the clip.
+    pub fn wrap(&self) -> Wrap {
+        if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
+    }
+
+    /// Checks that it plays one of `clips` clips, from a start and at a rate within ±[`MOST_SECONDS`].
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self, clips: usize) -> Result<(), InputError> {
+        if self.clip as usize >= clips {
+            return Err(InputError::new("instance.clip", self.clip, format!("must be below {clips}")));
+        }
+        for (field, value) in [("instance.start", self.start), ("instance.rate", self.rate)] {
+            check_seconds(field, value)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_come_inside() {
+        let inside = |wrap: Wrap, seconds| wrap.inside(2.0, seconds).expect("finite");
+        for (seconds, looped, clamped) in [
+            (0.0, 0.0, 0.0),
+            (0.5, 0.5, 0.5),
+            (2.0, 0.0, 2.0),
+            (5.25, 1.25, 2.0),
+            (-0.5, 1.5, 0.0),
+            (-4.0, 0.0, 0.0),
+        ] {
+            assert_eq!((inside(Wrap::Loop, seconds), inside(Wrap::Clamp, seconds)), (looped, clamped));
+        }
+        assert_eq!(Wrap::Loop.inside(0.0, 3.0), Ok(0.0));
+        for seconds in [f64::NAN, f64::INFINITY] {
+            assert_eq!(Wrap::Clamp.inside(2.0, seconds).expect_err("refused").field, "time");
+        }
+    }
+
+    #[test]
+    fn instances_are_checked_field_by_field() {
+        let good = Instance::new(1, Wrap::Clamp, 0.5, -2.0);
+        assert_eq!((good.validate(2), good.wrap()), (Ok(()), Wrap::Clamp));
+        assert_eq!(good.validate(1).expect_err("refused").field, "instance.clip");
+        let refused = |instance: Instance| instance.validate(2).expect_err("refused").field;
+        assert_eq!(refused(Instance { start: f32::NAN, ..good }), "instance.start");
+        assert_eq!(refused(Instance { rate: f32::INFINITY, ..good }), "instance.rate");
+        assert_eq!(refused(Instance { rate: -1.1e9, ..good }), "instance.rate");
+        assert_eq!((check_elapsed(-1e9).is_ok(), check_elapsed(f32::NAN).is_ok()), (true, false));
+    }
+}

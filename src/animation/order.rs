@@ -1,0 +1,200 @@
+//! The order in which bones are walked: parents first, cut into chains.
+
+use crate::asset::skeleton::Skeleton;
+
+/// The parent of a root.
+pub const NO_PARENT: u32 = u32::MAX;
+
+/// The parent's bone is the slot before.
+pub const CONTINUES: u32 = u32::MAX - 1;
+
+/// A bone's place in an [`Order`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Slot {
+    /// The bone.
+    pub bone: u32,
+    /// The bone above it, [`CONTINUES`] or [`NO_PARENT`].
+    pub parent: u32,
+    /// Slots of the bone and all below it: they begin here.
+    pub subtree: u32,
+    /// Unused.
+    pub padding: u32,
+}
+
+/// Slots from parent to child.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Chain {
+    /// The first slot.
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+}
+
+/// The order in which a skeleton's bones are walked, cut into chains so that as few as possible wait for each other.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Order {
+    /// Every bone once.
+    pub slots: Vec<Slot>,
+    /// Chains that wait for none, then those that wait for these, and so on.
+    pub chains: Vec<Chain>,
+    /// Where each such level begins in `chains`; one more than there are levels.
+    pub levels: Vec<u32>,
+}
+
+impl Order {
+    /// The order of a skeleton's bones.
+    pub fn new(skeleton: &Skeleton) -> Self {
+        let heir = heirs(skeleton);
+        let others = other_children(skeleton, &heir);
+        let bones = skeleton.bones();
+        let mut slots: Vec<Slot> = Vec::with_capacity(bones.len());
+        // Of each level.
+        let mut chains: Vec<Vec<Chain>> = Vec::new();
+        let roots = (0..bones.len() as u32).filter(|bone| bones[*bone as usize].parent.is_none());
+        // First bones of chains that are still to be walked, with their levels; the last is next.
+        let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
+        while let Some((first_bone, level)) = waiting.pop() {
+            let first = slots.len() as u32;
+            for bone in std::iter::successors(Some(first_bone), |bone| heir[*bone as usize]) {
+                let above = bones[bone as usize].parent.unwrap_or(NO_PARENT);
+                let parent = if bone == first_bone { above } else { CONTINUES };
+                let subtree = skeleton.descendants()[bone as usize] + 1;
+                slots.push(Slot { bone, parent, subtree, padding: 0 });
+                waiting.extend(others[bone as usize].iter().map(|child| (*child, level + 1)));
+            }
+            chains.resize(chains.len().max(level + 1), Vec::new());
+            chains[level].push(Chain { first, count: slots.len() as u32 - first });
+        }
+        let mut order = Self { slots, chains: Vec::new(), levels: vec![0] };
+        for mut level in chains {
+            // Threads beside each other walk chains of one instance, as long as each other where possible.
+            level.sort_by_key(|chain| std::cmp::Reverse(chain.count));
+            order.chains.extend(level);
+            order.levels.push(order.chains.len() as u32);
+        }
+        order
+    }
+
+    /// Each bone's slot.
+    pub(crate) fn slots_of_bones(&self) -> Vec<usize> {
+        let mut slot_of = vec![0; self.slots.len()];
+        self.slots.iter().enumerate().for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
+        slot_of
+    }
+
+    /// Words of 32 bits that hold one for each bone.
+    pub fn words(&self) -> usize {
+        self.slots.len().div_ceil(32)
+    }
+}
+
+/// For each bone, the children that do not continue its chain.
+fn other_children(skeleton: &Skeleton, heir: &[Option<u32>]) -> Vec<Vec<u32>> {
+    let mut others = vec![Vec::new(); skeleton.len()];
+    for (bone, node) in (0..).zip(skeleton.bones()) {
+        if let Some(parent) = node.parent
+            && heir[parent as usize] != Some(bone)
+        {
+            others[parent as usize].push(bone);
+        }
+    }
+    others
+}
+
+/// For each bone, the child that continues its chain: the one below which most levels of chains lie, or else most
+/// bones.
+fn heirs(skeleton: &Skeleton) -> Vec<Option<u32>> {
+    let mut heir: Vec<Option<u32>> = vec![None; skeleton.len()];
+    // Levels that a bone's chain and all below need, if it continues into its heir; and into no child.
+    let mut levels = vec![1_u32; skeleton.len()];
+    let mut best: Vec<(u32, u32)> = vec![(0, 0); skeleton.len()];
+    for (bone, node) in skeleton.bones().iter().enumerate().rev() {
+        let Some(parent) = node.parent.map(|parent| parent as usize) else { continue };
+        let rank = (levels[bone], skeleton.descendants()[bone] + 1);
+        // The heir's levels count as they are, those of others one more.
+        if rank >= best[parent] {
+            levels[parent] = levels[parent].max(rank.0).max(best[parent].0 + u32::from(best[parent].0 > 0));
+            best[parent] = rank;
+            heir[parent] = Some(bone as u32);
+        } else {
+            levels[parent] = levels[parent].max(rank.0 + 1);
+        }
+    }
+    heir
+}
+
+#[cfg(all(test, feature = "samples"))]
+mod tests {
+    use super::*;
+    use crate::asset::skeleton::Bone;
+    use crate::asset::transform::Transform;
+
+    fn skeleton(parents: &[Option<u32>]) -> Skeleton {
+        let bone =
+            |parent: &Option<u32>| Bone { name: String::new(), parent: *parent, rest: Transform::IDENTITY };
+        Skeleton::of_joints(parents.iter().map(bone).collect()).expect("valid")
+    }
+
+    /// Every bone once, parents first, subtrees without a gap, in levels of chains that wait for each other.
+    fn check(skeleton: &Skeleton) -> Order {
+        let order = Order::new(skeleton);
+        let mut slot_of = vec![usize::MAX; skeleton.len()];
+        for (at, slot) in order.slots.iter().enumerate() {
+            let above = skeleton.bones()[slot.bone as usize].parent;
+            match slot.parent {
+                CONTINUES => assert_eq!(above, Some(order.slots[at - 1].bone)),
+                parent => assert_eq!(above.unwrap_or(NO_PARENT), parent),
+            }
+            assert!(above.is_none_or(|above| slot_of[above as usize] < at), "a parent comes later");
+            let old = std::mem::replace(&mut slot_of[slot.bone as usize], at);
+            assert_eq!(old, usize::MAX, "{} twice", slot.bone);
+        }
+        for (bone, node) in skeleton.bones().iter().enumerate() {
+            let below = |at: usize| at..at + order.slots[at].subtree as usize;
+            if let Some(parent) = node.parent {
+                let (here, above) = (below(slot_of[bone]), below(slot_of[parent as usize]));
+                assert!(above.start < here.start && here.end <= above.end, "a subtree with a gap");
+            }
+        }
+        let mut done = vec![false; skeleton.len()];
+        for level in order.levels.windows(2) {
+            let here = &order.chains[level[0] as usize..level[1] as usize];
+            assert!(!here.is_empty());
+            let slots = |chain: &Chain| chain.first as usize..(chain.first + chain.count) as usize;
+            for chain in here {
+                let parent = order.slots[chain.first as usize].parent;
+                assert!(parent == NO_PARENT || done[slot_of[parent as usize]], "a parent of the same level");
+                assert!(order.slots[slots(chain)][1..].iter().all(|slot| slot.parent == CONTINUES));
+            }
+            here.iter().flat_map(slots).for_each(|slot| assert!(!std::mem::replace(&mut done[slot], true)));
+        }
+        assert!(done.iter().all(|done| *done), "a slot is missing");
+        order
+    }
+
+    #[test]
+    fn chains_cover_the_skeleton_parents_first() {
+        assert_eq!(check(&skeleton(&[None])).levels, [0, 1]);
+        let line: Vec<_> = (0..1000_u32).map(|bone| bone.checked_sub(1)).collect();
+        assert_eq!(check(&skeleton(&line)).chains.len(), 1);
+        let star: Vec<_> = (0..1000_u32).map(|bone| (bone > 0).then_some(0)).collect();
+        assert_eq!(check(&skeleton(&star)).levels.len(), 3);
+        check(&skeleton(&[None, None, Some(0), Some(1), None]));
+        let random: Vec<_> = (0..1000_u32).map(|bone| (bone > 0).then(|| bone * 7919 % bone)).collect();
+        check(&skeleton(&random));
+    }
+
+    #[test]
+    fn few_chains_wait_for_each_other() {
+        // A full binary tree needs as many levels as it has; one of 10 levels.
+        let tree: Vec<_> = (0..1023_u32).map(|bone| bone.checked_sub(1).map(|bone| bone / 2)).collect();
+        assert_eq!(check(&skeleton(&tree)).levels.len() - 1, 10);
+        let model = crate::samples::creature().expect("valid");
+        let deepest = model.skeleton.depths().iter().max().copied();
+        assert_eq!((deepest, check(&model.skeleton).levels.len() - 1), (Some(19), 3));
+    }
+}
