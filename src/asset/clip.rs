@@ -364,7 +364,10 @@ impl Layout {
         if self.values.len() > (1 << 28) - 1 {
             return Err(InputError::new("clip.values.len", self.values.len(), "must be below 2^28"));
         }
-        let Self { tracks, times, values, last, .. } = self;
+        let Self { mut tracks, mut times, mut values, last, .. } = self;
+        tracks.shrink_to_fit();
+        times.shrink_to_fit();
+        values.shrink_to_fit();
         Ok(Clip { name, duration: duration.max(last), tracks, times, values })
     }
 }

@@ -55,6 +55,12 @@ impl Influences {
         Ok(influences)
     }
 
+    /// One more vertex, which follows what this one does.
+    pub(crate) fn repeat(&mut self, vertex: usize) {
+        self.all.extend_from_within(self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize);
+        self.offsets.push(self.all.len() as u32);
+    }
+
     /// What a vertex follows, the strongest first.
     pub fn of(&self, vertex: usize) -> &[Influence] {
         &self.all[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]

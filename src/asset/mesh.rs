@@ -2,17 +2,16 @@
 //! morph targets.
 
 use super::morph::{MorphTarget, WeightKeys};
+use super::tangents::{self, tangents};
 use crate::InputError;
 use crate::asset::influences::Influences;
 use crate::asset::skeleton::Skin;
-use crate::surface::tangent;
-use crate::surface::tangent::reference::tangents;
 
 /// The most vertices of a mesh.
 pub const MOST_VERTICES: usize = 1 << 24;
 
 /// The largest size of a coordinate.
-pub const COORDINATE_LIMIT: f32 = tangent::COORDINATE_LIMIT;
+pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
 /// The most levels of detail of a mesh: itself, and [`Mesh::levels`].
 pub const MOST_LEVELS: usize = 16;
@@ -223,7 +222,7 @@ pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f3
     sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
 }
 
-/// Tangents for vertices that have none: see [`crate::surface::tangent`].
+/// Tangents for vertices that have none: see [`tangents`](super::tangents).
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and indices of no vertex.
@@ -233,7 +232,7 @@ pub(crate) fn solved_tangents(
     uv: &[[f32; 2]],
     indices: &[u32],
 ) -> Result<Vec<[f32; 4]>, InputError> {
-    tangents(&tangent::Mesh { positions, normals, uv, indices })
+    tangents(&tangents::Mesh { positions, normals, uv, indices })
 }
 
 /// How far vertices reach from each bone that they follow: the largest distance, in the bone's space, from its origin

@@ -10,6 +10,7 @@ pub mod mesh;
 pub mod model;
 pub mod morph;
 pub mod skeleton;
+pub mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};

@@ -33,6 +33,14 @@ impl MorphTarget {
         let (vertices, deltas) = moving.map(|(vertex, delta): (u32, _)| (vertex, *delta)).unzip();
         Self { vertices, deltas }
     }
+
+    /// Moves `copy`, which lies behind all others, as it moves this vertex.
+    pub(crate) fn repeat(&mut self, vertex: u32, copy: u32) {
+        if let Ok(at) = self.vertices.binary_search(&vertex) {
+            self.vertices.push(copy);
+            self.deltas.push(self.deltas[at]);
+        }
+    }
 }
 
 /// The weights of a mesh's morph targets in a clip.

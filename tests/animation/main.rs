@@ -23,4 +23,5 @@ mod root_motion;
 mod sampling;
 mod scene;
 mod scenes;
+mod tangents;
 mod textures;

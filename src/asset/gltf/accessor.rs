@@ -8,9 +8,6 @@ use gltf_json::{Index, buffer};
 use super::document::Document;
 use crate::InputError;
 
-/// The most components of an accessor: without a buffer view, nothing else bounds what a file of some bytes asks for.
-const MOST_COMPONENTS: u64 = 1 << 28;
-
 /// How an accessor's elements lie in a buffer view.
 #[derive(Clone, Copy)]
 struct Shape {
@@ -68,6 +65,7 @@ impl Document<'_> {
         let accessor = self.root.accessors.get(index.value());
         let accessor = accessor.ok_or_else(|| InputError::new(&path, index.value(), "must exist"))?;
         let shape = shape(&path, accessor, N, kind)?;
+        self.count(&format!("{path}.count"), accessor, shape)?;
         let mut values = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
@@ -79,6 +77,17 @@ impl Document<'_> {
             self.replace(&format!("{path}.sparse"), sparse, shape, &mut values, decode)?;
         }
         Ok(values.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
+    }
+
+    /// Counts the elements before they are read.
+    fn count(&self, path: &str, accessor: &Accessor, shape: Shape) -> Result<(), InputError> {
+        match accessor.buffer_view {
+            // The bytes of its buffer count.
+            Some(view) => drop(self.view(view)?),
+            None => self.budget.check_zeros(path, shape.count as u64)?,
+        }
+        // Matrices are four vectors.
+        self.budget.spend(path, shape.count.saturating_mul(shape.components.div_ceil(4)))
     }
 
     /// Replaces the elements that a sparse accessor names.
@@ -201,12 +210,8 @@ fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Resu
     if !fits {
         return Err(InputError::new(format!("{path}.componentType"), component.as_gl_enum(), bound));
     }
-    let count = accessor.count.0;
-    if count.saturating_mul(components as u64) > MOST_COMPONENTS {
-        let bound = format!("must be at most {}", MOST_COMPONENTS / components as u64);
-        return Err(InputError::new(format!("{path}.count"), count, bound));
-    }
-    Ok(Shape { component, components, count: count as usize, is_normalized: accessor.normalized })
+    let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
+    Ok(Shape { component, components, count, is_normalized: accessor.normalized })
 }
 
 /// A component that stands for a number or, in normalized integers, for a fraction (glTF 2.0, section 3.6.2.2).

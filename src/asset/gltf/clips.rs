@@ -21,6 +21,8 @@ fn clip(
     index: usize,
     animation: &Animation,
 ) -> Result<Clip, InputError> {
+    // Three tracks a bone and a value each, with keys or without.
+    document.budget.spend(&format!("animations[{index}]"), 6 * nodes.skeleton.len())?;
     let mut bones = vec![BoneKeys::default(); nodes.skeleton.len()];
     let mut duration = 0.0_f32;
     for (at, channel) in animation.channels.iter().enumerate() {

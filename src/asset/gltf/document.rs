@@ -1,8 +1,9 @@
 //! The document: JSON that has glTF's shape, and its buffers.
 
-use std::borrow::Cow;
-use std::cell::OnceCell;
-use std::path::{Component, Path};
+use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
+use std::path::{Component, Path, PathBuf};
+use std::rc::Rc;
 
 use base64::Engine as _;
 use gltf_json::mesh::Semantic;
@@ -10,6 +11,7 @@ use gltf_json::validation::{Checked, Error as Fault, Validate};
 use gltf_json::{Index, Root, buffer};
 use serde_json::Value;
 
+use super::budget::Budget;
 use super::container::Container;
 use crate::InputError;
 
@@ -18,9 +20,28 @@ pub struct Document<'a> {
     pub root: Root,
     /// Whether meshes are compressed with Draco, and have no other form.
     pub is_draco: bool,
+    /// What its bytes allow.
+    pub budget: Budget,
     binary: Option<&'a [u8]>,
     folder: Option<&'a Path>,
-    buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
+    buffers: Vec<OnceCell<Bytes<'a>>>,
+    /// Each once, whoever names it.
+    files: RefCell<HashMap<PathBuf, Rc<Vec<u8>>>>,
+}
+
+/// Of a buffer: in the document, or from elsewhere.
+enum Bytes<'a> {
+    Here(&'a [u8]),
+    Elsewhere(Rc<Vec<u8>>),
+}
+
+impl Bytes<'_> {
+    fn get(&self) -> &[u8] {
+        match self {
+            Self::Here(bytes) => bytes,
+            Self::Elsewhere(bytes) => bytes,
+        }
+    }
 }
 
 /// The extensions that a document may require. Of what Draco compressed, meshes alone are left out.
@@ -56,7 +77,9 @@ impl<'a> Document<'a> {
         positions_exist(&root)?;
         validate(&root)?;
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();
-        Ok(Self { root, is_draco, binary, folder, buffers })
+        let budget = Budget::default();
+        budget.add_bytes(bytes.len());
+        Ok(Self { root, is_draco, budget, binary, folder, buffers, files: RefCell::default() })
     }
 
     /// The bytes of a buffer view.
@@ -83,13 +106,14 @@ impl<'a> Document<'a> {
         let (Some(cell), Some(buffer)) = (self.buffers.get(at), self.root.buffers.get(at)) else {
             return Err(InputError::new(path, at, "must exist"));
         };
+        let length = buffer.byte_length.0;
         if let Some(known) = cell.get() {
-            return Ok(known);
+            return Ok(&known.get()[..length as usize]);
         }
         let bytes = match &buffer.uri {
-            Some(uri) => Cow::Owned(self.resource(&format!("{path}.uri"), uri)?),
+            Some(uri) => Bytes::Elsewhere(self.resource(&format!("{path}.uri"), uri)?),
             None => match self.binary.filter(|_| at == 0) {
-                Some(binary) => Cow::Borrowed(binary),
+                Some(binary) => Bytes::Here(binary),
                 None => {
                     return Err(InputError::new(
                         format!("{path}.uri"),
@@ -99,24 +123,17 @@ impl<'a> Document<'a> {
                 }
             },
         };
-        let length = buffer.byte_length.0;
-        if (bytes.len() as u64) < length {
-            let bound = format!("must be at most {}, the bytes there are", bytes.len());
+        let there = bytes.get().len();
+        if (there as u64) < length {
+            let bound = format!("must be at most {there}, the bytes there are");
             return Err(InputError::new(format!("{path}.byteLength"), length, bound));
         }
         // GLBs pad their chunk.
-        let bytes = match bytes {
-            Cow::Borrowed(slice) => Cow::Borrowed(&slice[..length as usize]),
-            Cow::Owned(mut owned) => {
-                owned.truncate(length as usize);
-                Cow::Owned(owned)
-            }
-        };
-        Ok(cell.get_or_init(|| bytes))
+        Ok(&cell.get_or_init(|| bytes).get()[..length as usize])
     }
 
     /// The bytes of a `data:` URI, or of a file in the document's folder or below.
-    pub fn resource(&self, path: &str, uri: &str) -> Result<Vec<u8>, InputError> {
+    pub fn resource(&self, path: &str, uri: &str) -> Result<Rc<Vec<u8>>, InputError> {
         let shown: String = uri.chars().take(60).collect();
         let refused = |bound: String| InputError::new(path, &shown, bound);
         if let Some(data) = uri.strip_prefix("data:") {
@@ -124,7 +141,8 @@ impl<'a> Document<'a> {
             if !kind.ends_with(";base64") {
                 return Err(refused("must be base64".to_owned()));
             }
-            return BASE64.decode(text.trim()).map_err(|error| refused(format!("must be base64: {error}")));
+            let decoded = BASE64.decode(text.trim());
+            return decoded.map(Rc::new).map_err(|error| refused(format!("must be base64: {error}")));
         }
         let name = percent_encoding::percent_decode_str(uri).decode_utf8();
         let name = name.map_err(|error| refused(format!("must be UTF-8: {error}")))?;
@@ -139,7 +157,13 @@ impl<'a> Document<'a> {
         let Some(folder) = self.folder else {
             return Err(refused("lies in a file, and the document has no folder".to_owned()));
         };
-        std::fs::read(folder.join(relative)).map_err(|error| refused(error.to_string()))
+        let name: PathBuf = relative.components().filter(|part| *part != Component::CurDir).collect();
+        if let Some(known) = self.files.borrow().get(&name) {
+            return Ok(Rc::clone(known));
+        }
+        let bytes = std::fs::read(folder.join(&name)).map_err(|error| refused(error.to_string()))?;
+        self.budget.add_bytes(bytes.len());
+        Ok(Rc::clone(self.files.borrow_mut().entry(name).or_insert_with(|| Rc::new(bytes))))
     }
 }
 

@@ -10,6 +10,7 @@ use gltf_json::validation::Checked;
 use gltf_json::{Image, Index};
 use image::{ImageFormat, ImageReader, RgbaImage};
 
+use super::budget::Budget;
 use super::document::Document;
 use crate::InputError;
 use crate::asset::material::{Alpha, Filter, MOST_TEXELS, Material, Sampling, Texture, Wrapping};
@@ -84,8 +85,10 @@ impl Materials {
         let path = format!("images[{at}]");
         let image = &document.root.images[at];
         let decoded = match (image.buffer_view, &image.uri) {
-            (Some(view), _) => decode(&path, document.view(view)?.0)?,
-            (None, Some(uri)) => decode(&path, &document.resource(&format!("{path}.uri"), uri)?)?,
+            (Some(view), _) => decode(&document.budget, &path, document.view(view)?.0)?,
+            (None, Some(uri)) => {
+                decode(&document.budget, &path, &document.resource(&format!("{path}.uri"), uri)?)?
+            }
             (None, None) => return Err(InputError::new(path, "empty", "must have a bufferView or a uri")),
         };
         self.images.push(decoded);
@@ -95,7 +98,7 @@ impl Materials {
 }
 
 /// What is in the bytes counts, whatever `mimeType` says.
-fn decode(path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
+fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
     let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
     let format = image::guess_format(bytes).ok();
     let Some(format) = format.filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) else {
@@ -108,6 +111,7 @@ fn decode(path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
         let bound = format!("must be at most {MOST_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
     }
+    budget.spend_texels(path, [width, height], bytes.len())?;
     Ok(reader().decode().map_err(unreadable)?.into_rgba8())
 }
 
@@ -175,6 +179,11 @@ impl<'a> Coordinates<'a> {
         let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
         let set = transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord);
         Some(Self { set, transform })
+    }
+
+    /// Whether anything takes them there.
+    pub fn is_moved(&self) -> bool {
+        self.transform.is_some()
     }
 
     /// Scales, turns, then moves.

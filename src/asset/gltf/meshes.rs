@@ -11,12 +11,19 @@ use super::document::Document;
 use super::materials::{Coordinates, Materials};
 use super::nodes::{Nodes, node_name};
 use super::rigid::Rigid;
+use super::tangents::{Surface, Tangents};
 use crate::InputError;
 use crate::asset::clip::Interpolation;
 use crate::asset::influences::{Influence, Influences};
-use crate::asset::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals, solved_tangents};
+use crate::asset::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals};
 use crate::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use crate::asset::skeleton::Skin;
+
+/// What a primitive counts, whatever it has.
+const PRIMITIVE: usize = 32;
+
+/// What a vertex counts besides what is read of it: normal, tangent, texture coordinates and influence, which it may lack.
+const LACKING: usize = 4;
 
 /// Every primitive of every node of the scene with a skin, in the order of the nodes; then of those without.
 pub fn meshes(
@@ -33,9 +40,12 @@ pub fn meshes(
         let mesh = mesh.value();
         let weights = weights(document, node, mesh)?;
         let weight_keys = weight_keys(document, node, weights.len())?;
+        let keys =
+            weight_keys.iter().map(|(_, keys)| keys.parts().0.len() + keys.parts().1.len()).sum::<usize>();
         let name = node_name(&document.root, node);
         for (at, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
             let path = format!("meshes[{mesh}].primitives[{at}]");
+            document.budget.spend(&path, PRIMITIVE + keys)?;
             let is_bare = materials.is_unread;
             let reader = Reader { document, primitive, path, rigid, is_bare };
             let read = reader.mesh(&nodes.skins[skin], weights.len())?;
@@ -130,36 +140,30 @@ impl Reader<'_, '_> {
         }
         in_range(&self.named("POSITION"), &positions)?;
         let vertices = positions.len();
+        self.document.budget.spend(&self.named("POSITION"), LACKING * vertices)?;
         let uv = self.coordinates(vertices)?;
-        let has_uv = uv.is_some();
-        let uv = uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]);
-        let mut indices = self.triangles(vertices)?;
+        let indices = self.triangles(vertices)?;
         let normals = self.normals(&positions, &indices)?;
-        let tangents = match self.attribute::<4>(&Semantic::Tangents, "TANGENT", vertices)? {
-            Some(tangents) if has_uv => tangents.into_iter().map(flipped).collect(),
-            _ => solved_tangents(&positions, &normals, &uv, &indices)?,
-        };
+        let tangents = self.tangents(&positions, &normals, uv.as_deref(), &indices)?;
+        self.check_copies(vertices, tangents.copied.len())?;
         let influences = match self.rigid {
             Some(_) => {
-                let one = vec![Influence { bone: 0, weight: 1.0 }];
-                Influences::new(&self.named("POSITION"), 1, vec![one; vertices])?
+                let one = Influence { bone: 0, weight: 1.0 };
+                Influences::new(&self.named("POSITION"), 1, (0..vertices).map(|_| vec![one]))?
             }
             None => self.influences(vertices, skin.bones.len())?,
         };
-        if self.rigid.is_some_and(|rigid| rigid.is_mirrored) {
-            indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
-        }
         let targets = self.targets(vertices, targets)?;
         let name = String::new();
         let (weights, weight_keys) = (vec![], vec![]);
-        Ok(Mesh {
+        let mut mesh = Mesh {
             name,
             skin: 0,
-            positions,
             normals,
-            tangents,
-            uv,
-            indices,
+            tangents: vec![],
+            uv: uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]),
+            positions,
+            indices: vec![],
             double_sided: self.material().is_some_and(|material| material.double_sided),
             material: None,
             influences,
@@ -167,7 +171,46 @@ impl Reader<'_, '_> {
             weights,
             weight_keys,
             levels: vec![],
-        })
+        };
+        tangents.apply(&mut mesh);
+        if self.rigid.is_some_and(|rigid| rigid.is_mirrored) {
+            mesh.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+        }
+        Ok(mesh)
+    }
+
+    /// The file's, which go with its normals and texture coordinates; or MikkTSpace's.
+    fn tangents(
+        &self,
+        positions: &[[f32; 3]],
+        normals: &[[f32; 3]],
+        uv: Option<&[[f32; 2]]>,
+        indices: &[u32],
+    ) -> Result<Tangents, InputError> {
+        let vertices = positions.len();
+        let given = self.attribute::<4>(&Semantic::Tangents, "TANGENT", vertices)?;
+        let of_normals = self.coordinates_of_normals(vertices)?;
+        let uv = of_normals.as_deref().or(uv);
+        let has_normals = self.accessor(&Semantic::Normals).is_some();
+        if let Some(given) = given.filter(|_| uv.is_some() && has_normals) {
+            let tangents = given.into_iter().map(flipped).collect();
+            return Ok(Tangents { tangents, indices: indices.to_vec(), copied: vec![] });
+        }
+        let surface = |uv| Surface { positions, normals, uv, indices };
+        match uv {
+            Some(uv) if !self.is_bare => surface(uv).generated(),
+            Some(uv) => surface(uv).solved(),
+            None => surface(&vec![[0.0; 2]; vertices]).solved(),
+        }
+    }
+
+    fn check_copies(&self, vertices: usize, copies: usize) -> Result<(), InputError> {
+        let path = self.named("POSITION");
+        if vertices + copies > MOST_VERTICES {
+            let bound = format!("with {copies} copies for tangents must be at most {MOST_VERTICES}");
+            return Err(InputError::new(format!("{path}.count"), vertices, bound));
+        }
+        self.document.budget.spend(&path, LACKING * copies)
     }
 
     fn material(&self) -> Option<&GltfMaterial> {
@@ -187,6 +230,21 @@ impl Reader<'_, '_> {
         texture.apply(&mut uv);
         in_range(&self.named(&name), &uv)?;
         Ok(Some(uv))
+    }
+
+    /// The coordinates that tangents go along, as the file has them, where they are not the mesh's: of the normal texture,
+    /// or of the base colour's, where that one is moved.
+    fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
+        let Some(material) = self.material().filter(|_| !self.is_bare) else { return Ok(None) };
+        let base = Coordinates::of(material);
+        let (own, is_moved) = base.map_or((0, false), |base| (base.set, base.is_moved()));
+        let of_normals = material.normal_texture.as_ref().map(|texture| texture.tex_coord);
+        let is_there = |set: &u32| self.accessor(&Semantic::TexCoords(*set)).is_some();
+        let set = of_normals.filter(is_there).unwrap_or(own);
+        if set == own && !is_moved {
+            return Ok(None);
+        }
+        self.attribute::<2>(&Semantic::TexCoords(set), &format!("TEXCOORD_{set}"), vertices)
     }
 
     fn named(&self, attribute: &str) -> String {
@@ -277,6 +335,8 @@ impl Reader<'_, '_> {
         let Checked::Valid(mode) = self.primitive.mode else {
             return Err(InputError::new(format!("{}.mode", self.path), "unknown", "must be one of glTF's"));
         };
+        // A triangle each in strips and fans.
+        self.document.budget.spend(&self.path, 3 * indices.len())?;
         // Strips are stitched by triangles without area.
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
         let corners = |at: usize| [indices[at], indices[at + 1], indices[at + 2]];
@@ -312,6 +372,7 @@ impl Reader<'_, '_> {
     }
 
     fn target(&self, vertices: usize, at: usize, target: &GltfTarget) -> Result<MorphTarget, InputError> {
+        self.document.budget.spend(&format!("{}.targets[{at}]", self.path), 1 + vertices)?;
         let mut deltas = vec![MorphDelta::default(); vertices];
         let mut add = |name: &str, accessor: Option<Index<Accessor>>, set: fn(&mut MorphDelta, [f32; 3])| {
             let Some(accessor) = accessor else { return Ok(()) };

@@ -18,8 +18,10 @@
 //!   bone, by a skin of their own: the lowest node at or above them that is a joint, lies above joints, or is animated;
 //!   where there is none, the root of their tree, which never moves. Such a node becomes a bone with all above it, as
 //!   joints do, but no joint. Strips and fans become triangles; points and lines have none. Normals that are
-//!   missing are smooth, tangents that are missing are solved from texture coordinates. Those that Draco compressed
-//!   are left out.
+//!   missing are smooth. Tangents that are missing, or given without normals, are MikkTSpace's, from the texture
+//!   coordinates of the normal texture where there is one, before any `KHR_texture_transform`. Where corners of a vertex
+//!   have different tangents, it is repeated behind all others of its primitive, one copy a tangent. Meshes that Draco
+//!   compressed are left out.
 //! - Of materials: base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or in files beside the
 //!   document; any set of texture coordinates, `KHR_texture_transform` applied to these), samplers, alpha, and
 //!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Screen). Colours of
@@ -29,9 +31,14 @@
 //! `KHR_texture_transform` are read, and every other one is refused; those of materials and images matter only where
 //! these are read.
 //!
-//! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic.
+//! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic, nor
+//! allocate what its bytes do not account for: counts are checked against the bytes that are there. What needs none has
+//! bounds of its own: an accessor without a buffer view has at most 65,536 elements, or one for each byte of the document
+//! and its buffers; what is read again and again (meshes of several nodes, keys of several channels) at most 128 elements
+//! a byte up to 16 million, or 4 a byte; images 256 texels a byte, or 16 million, and 8192 in width and height.
 
 mod accessor;
+mod budget;
 mod clips;
 mod container;
 mod document;
@@ -40,6 +47,7 @@ mod meshes;
 mod nodes;
 mod rigid;
 mod scene;
+mod tangents;
 
 use std::path::Path;
 
@@ -59,7 +67,7 @@ impl Model {
     }
 
     /// As [`Model::from_file`], without materials and images: for those who draw nothing, whatever textures lack, and
-    /// whichever extensions they require.
+    /// whichever extensions they require. No vertex is repeated for its tangents.
     ///
     /// # Errors
     /// As [`Model::from_file`], but for materials and images.

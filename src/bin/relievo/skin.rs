@@ -29,7 +29,9 @@ use crate::progress::during;
 ///
 /// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. attached.obj, where
 /// there are any: those of nodes without one, which follow the node that they hang on. Positions and normals are in the
-/// scene's space, with every digit; vertices are in the file's order. Points and lines have no faces. skin.png: all of it, lit, in the base colours and textures of its materials; clay where a mesh has none.
+/// scene's space, with every digit; vertices are in the file's order, and behind them those that are repeated since their
+/// corners have different tangents. Points and lines have no faces. skin.png: all of it, lit, in the base colours and
+/// textures of its materials; clay where a mesh has none.
 #[derive(Args)]
 pub struct Skin {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.

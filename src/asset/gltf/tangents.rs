@@ -1,0 +1,184 @@
+//! Tangents of vertices that have none, by MikkTSpace, as glTF 2.0 asks in section 3.7.2.1. Where corners of one vertex
+//! have different tangents, as where texture coordinates are mirrored, each gets a vertex of its own.
+
+use std::collections::HashMap;
+
+use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
+
+use crate::InputError;
+use crate::asset::mesh::{Mesh, solved_tangents};
+
+/// The most triangles around a vertex: what MikkTSpace takes grows with their square, and it goes around in recursion.
+/// Surfaces with more get the tangents that [`crate::surface::tangent`] solves.
+const MOST_AROUND: u32 = 1024;
+
+/// What tangents are made of: one of each a vertex, and three indices a triangle.
+pub struct Surface<'a> {
+    pub positions: &'a [[f32; 3]],
+    pub normals: &'a [[f32; 3]],
+    pub uv: &'a [[f32; 2]],
+    pub indices: &'a [u32],
+}
+
+/// Tangents of vertices, of which some are new.
+pub struct Tangents {
+    /// In this crate's handedness: one a vertex, then one a copy.
+    pub tangents: Vec<[f32; 4]>,
+    /// Three a triangle, of vertices and, behind them, copies.
+    pub indices: Vec<u32>,
+    /// The vertex that each copy repeats in everything but the tangent.
+    pub copied: Vec<u32>,
+}
+
+impl Surface<'_> {
+    /// One a vertex, without copies: what is solved where there is no other way.
+    ///
+    /// # Errors
+    /// [`InputError`] for coordinates out of range, and indices of no vertex.
+    pub fn solved(&self) -> Result<Tangents, InputError> {
+        let tangents = solved_tangents(self.positions, self.normals, self.uv, self.indices)?;
+        Ok(Tangents { tangents, indices: self.indices.to_vec(), copied: Vec::new() })
+    }
+
+    /// MikkTSpace's. Vertices of no triangle with an area in space and texture have solved ones.
+    ///
+    /// # Errors
+    /// As [`Surface::solved`].
+    pub fn generated(&self) -> Result<Tangents, InputError> {
+        let mut found = self.solved()?;
+        let mut faces = Faces::new(self);
+        if faces.is_crowded() || generate_tangents(&mut faces).is_err() {
+            return Ok(found);
+        }
+        let mut is_known = vec![false; self.positions.len()];
+        let mut copies = HashMap::new();
+        for (at, tangent) in faces.corners().zip(&faces.tangents) {
+            let Some(tangent) = *tangent else { continue };
+            let vertex = found.indices[at];
+            let known = &mut found.tangents[vertex as usize];
+            if !std::mem::replace(&mut is_known[vertex as usize], true) {
+                *known = tangent;
+            } else if *known != tangent {
+                found.indices[at] = *copies.entry((vertex, tangent.map(f32::to_bits))).or_insert_with(|| {
+                    found.tangents.push(tangent);
+                    found.copied.push(vertex);
+                    (found.tangents.len() - 1) as u32
+                });
+            }
+        }
+        Ok(found)
+    }
+}
+
+impl Tangents {
+    /// Gives a mesh of as many vertices as there were these tangents and triangles, and the copies.
+    pub fn apply(self, mesh: &mut Mesh) {
+        let Self { tangents, indices, copied } = self;
+        for vertex in copied {
+            let (at, copy) = (vertex as usize, mesh.positions.len() as u32);
+            mesh.positions.push(mesh.positions[at]);
+            mesh.normals.push(mesh.normals[at]);
+            mesh.uv.push(mesh.uv[at]);
+            mesh.influences.repeat(at);
+            mesh.targets.iter_mut().for_each(|target| target.repeat(vertex, copy));
+        }
+        (mesh.tangents, mesh.indices) = (tangents, indices);
+    }
+}
+
+/// Triangles whose corners lie apart: the others would slow MikkTSpace down, and change nothing.
+struct Faces<'a> {
+    surface: &'a Surface<'a>,
+    /// Where each begins in the indices.
+    first: Vec<usize>,
+    /// One a corner.
+    tangents: Vec<Option<[f32; 4]>>,
+}
+
+impl<'a> Faces<'a> {
+    fn new(surface: &'a Surface<'a>) -> Self {
+        let is_apart = |first: &usize| {
+            let [a, b, c] =
+                [0, 1, 2].map(|corner| surface.positions[surface.indices[first + corner] as usize]);
+            a != b && b != c && c != a
+        };
+        let first: Vec<usize> = (0..surface.indices.len()).step_by(3).filter(is_apart).collect();
+        let tangents = vec![None; 3 * first.len()];
+        Self { surface, first, tangents }
+    }
+
+    /// The places of their corners in the indices.
+    fn corners(&self) -> impl Iterator<Item = usize> {
+        self.first.iter().flat_map(|first| *first..first + 3)
+    }
+
+    fn vertex(&self, face: usize, corner: usize) -> usize {
+        self.surface.indices[self.first[face] + corner] as usize
+    }
+
+    /// Whether too many of them meet somewhere.
+    fn is_crowded(&self) -> bool {
+        let Surface { positions, normals, uv, indices } = self.surface;
+        let mut around: HashMap<_, u32> = HashMap::new();
+        self.corners().any(|corner| {
+            let vertex = indices[corner] as usize;
+            let place = (bits(positions[vertex]), bits(normals[vertex]), bits(uv[vertex]));
+            let count = around.entry(place).or_default();
+            *count += 1;
+            *count > MOST_AROUND
+        })
+    }
+}
+
+/// Alike for what is equal: there are two zeros.
+fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {
+    one_zero(vector).map(f32::to_bits)
+}
+
+fn one_zero<const N: usize>(vector: [f32; N]) -> [f32; N] {
+    vector.map(|number| number + 0.0)
+}
+
+/// The same on every machine.
+struct Libm;
+
+impl Ops for Libm {
+    fn sqrt(x: f32) -> f32 {
+        libm::sqrtf(x)
+    }
+
+    fn acos(x: f32) -> f32 {
+        libm::acos(f64::from(x)) as f32
+    }
+}
+
+impl Geometry<Libm> for Faces<'_> {
+    fn num_faces(&self) -> usize {
+        self.first.len()
+    }
+
+    fn num_vertices_of_face(&self, _: usize) -> usize {
+        3
+    }
+
+    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
+        one_zero(self.surface.positions[self.vertex(face, corner)])
+    }
+
+    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
+        one_zero(self.surface.normals[self.vertex(face, corner)])
+    }
+
+    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
+        one_zero(self.surface.uv[self.vertex(face, corner)])
+    }
+
+    fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
+        // Its bitangent goes along v, which is down the image, as this crate's does; glTF's goes up.
+        let tangent = space.map(|space| space.tangent_encoded());
+        // None where no triangle around has an area, or numbers were too large or small.
+        let length = |[x, y, z, _]: &[f32; 4]| x * x + y * y + z * z;
+        self.tangents[3 * face + corner] =
+            tangent.filter(|tangent| (length(tangent) - 1.0).abs() < 1e-3).map(one_zero);
+    }
+}

@@ -1,0 +1,317 @@
+//! Tangent frames of meshes, solved in f64: what import falls back to, and the reference of `kernels/surface/tangent.wgsl`.
+//! How they are defined stands at [`crate::surface::tangent`].
+
+use glam::{DVec2, DVec3};
+
+use super::mesh::check_triangles;
+use crate::InputError;
+
+/// The largest size of a coordinate, of positions and uv.
+pub const COORDINATE_LIMIT: f32 = 1e18;
+
+/// A triangle whose area, tangent, or area in uv is no more than this contributes nothing. All three are measured
+/// after scaling the triangle to a box of edge 1, in uv in each direction by itself. The errors of
+/// f32 are at most a sixteenth of it: they turn a tangent of this length by less than four degrees.
+pub const DEGENERATE: f32 = 1.0 / 16_384.0;
+
+/// A sum of tangents vanishes when what is orthogonal to the normal is no more than this share of the weights.
+/// Handedness is negative when its sum is below minus this share.
+pub const VANISHING: f32 = 1.0 / 64.0;
+
+/// How far a component of a tangent may lie from the twin's, on any device, for a vertex of sensitivity 1
+/// ([`Frame`]).
+///
+/// With ε = 2⁻²³ (`+ − ×` round to either neighbour, division 2.5ε, `inverseSqrt` 2ε, `sqrt` 4.5ε; fusing only
+/// helps): scaled edges of positions and uv carry 3.5ε of at most 1; a product 8ε; the tangent and the face
+/// normal, differences of two products, 18ε a component and 32ε as a vector, which normalising divides by their
+/// length and adds 5ε to. Unit edges carry 8.5ε, their chord c 17ε + 8ε·c. So a contribution carries
+/// 17ε + c·(15ε + 32ε / length), one to the handedness 17ε + c·(27ε + 32ε / length): both less than
+/// 32ε·(1 + c·(1 + 1 / length)). Adding n of them costs n·ε of the weights, taking off the normal's part (the
+/// unit normal carries 8ε) 20ε. Divided by what is left, that is 52ε·sensitivity; normalising and the second
+/// Gram–Schmidt step add 20ε: 72ε < 1e-5. Duff's basis from a normal that carries 8ε stays below 40ε.
+pub const TANGENT_BOUND: f32 = 1e-5;
+
+/// A triangle mesh with normals and texture coordinates.
+#[derive(Debug, Clone, Copy)]
+pub struct Mesh<'a> {
+    /// In any unit, finite, no component larger than [`COORDINATE_LIMIT`].
+    pub positions: &'a [[f32; 3]],
+    /// One a vertex, of any length.
+    pub normals: &'a [[f32; 3]],
+    /// One a vertex, finite, no component larger than [`COORDINATE_LIMIT`].
+    pub uv: &'a [[f32; 2]],
+    /// Three a triangle, counter-clockwise seen from where normals point.
+    pub indices: &'a [u32],
+}
+
+impl Mesh<'_> {
+    /// Checks lengths, indices and coordinates.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field, with its index.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let vertices = self.positions.len();
+        for (field, len) in [("normals.len", self.normals.len()), ("uv.len", self.uv.len())] {
+            if len != vertices {
+                return Err(InputError::new(field, len, format!("must be {vertices}, one a position")));
+            }
+        }
+        for (field, len) in [("positions.len", vertices), ("indices.len", self.indices.len())] {
+            // The adjacency's last offset counts all.
+            if u32::try_from(len).is_err() {
+                return Err(InputError::new(field, len, format!("must be at most {}", u32::MAX)));
+            }
+        }
+        coordinates("positions", self.positions)?;
+        coordinates("uv", self.uv)?;
+        check_triangles("indices", self.indices, vertices)
+    }
+}
+
+fn coordinates<const N: usize>(field: &str, vectors: &[[f32; N]]) -> Result<(), InputError> {
+    let good = |coordinate: &f32| coordinate.abs() <= COORDINATE_LIMIT;
+    match vectors.iter().flatten().position(|coordinate| !good(coordinate)) {
+        None => Ok(()),
+        Some(at) => {
+            let (vertex, axis) = (at / N, at % N);
+            let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
+            Err(InputError::new(format!("{field}[{vertex}][{axis}]"), vectors[vertex][axis], bound))
+        }
+    }
+}
+
+/// Which corners of triangles meet at each vertex. The twin and the kernel sum in its order, so that no two runs
+/// differ.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Adjacency {
+    /// Where each vertex's corners begin; one more than there are vertices.
+    pub offsets: Vec<u32>,
+    /// Positions in the indices, ascending at each vertex.
+    pub corners: Vec<u32>,
+}
+
+impl Adjacency {
+    /// Of valid `indices` to `vertices` vertices.
+    pub(crate) fn new(vertices: usize, indices: &[u32]) -> Self {
+        let mut offsets = vec![0; vertices + 1];
+        for index in indices {
+            offsets[*index as usize + 1] += 1;
+        }
+        for vertex in 0..vertices {
+            offsets[vertex + 1] += offsets[vertex];
+        }
+        let mut next = offsets.clone();
+        let mut corners = vec![0; indices.len()];
+        for (index, corner) in indices.iter().zip(0..) {
+            let place = &mut next[*index as usize];
+            corners[*place as usize] = corner;
+            *place += 1;
+        }
+        Self { offsets, corners }
+    }
+
+    /// The corners at a vertex.
+    pub fn at(&self, vertex: usize) -> &[u32] {
+        &self.corners[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
+    }
+}
+
+/// 2⁻¹⁰⁰, its bits and those of 2¹⁰⁰.
+const LEAST: f64 = 7.888_609_052_210_118e-31;
+const LEAST_BITS: u32 = 0x0d80_0000;
+const LARGEST_BITS: u32 = 0x7180_0000;
+
+/// A unit of the last place of numbers around 1.
+const EPSILON: f64 = f32::EPSILON as f64;
+
+/// A tangent frame, and how well f32 can tell it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Unit tangent x, y, z, orthogonal to the normal; handedness ±1.
+    pub tangent: [f32; 4],
+    /// By how much [`TANGENT_BOUND`] must be multiplied at this vertex: 1 or more. Infinite where rounding decides
+    /// whether something counts as degenerate.
+    pub sensitivity: f64,
+}
+
+/// The tangent and handedness of every vertex. See [`crate::surface::tangent`].
+///
+/// # Errors
+/// [`InputError`] as [`Mesh::validate`].
+pub fn tangents(mesh: &Mesh<'_>) -> Result<Vec<[f32; 4]>, InputError> {
+    Ok(frames(mesh)?.into_iter().map(|frame| frame.tangent).collect())
+}
+
+/// As [`tangents`], with the sensitivity of each.
+///
+/// # Errors
+/// [`InputError`] as [`Mesh::validate`].
+pub fn frames(mesh: &Mesh<'_>) -> Result<Vec<Frame>, InputError> {
+    mesh.validate()?;
+    let adjacency = Adjacency::new(mesh.positions.len(), mesh.indices);
+    Ok((0..mesh.positions.len()).map(|vertex| frame(mesh, &adjacency, vertex)).collect())
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Contribution {
+    tangent: DVec3,
+    weight: f64,
+    handedness: f64,
+    /// Of the tangent and of the handedness.
+    sensitivity: DVec2,
+}
+
+fn position(mesh: &Mesh<'_>, vertex: u32) -> DVec3 {
+    DVec3::from_array(mesh.positions[vertex as usize].map(f64::from))
+}
+
+fn texture_coordinate(mesh: &Mesh<'_>, vertex: u32) -> DVec2 {
+    DVec2::from_array(mesh.uv[vertex as usize].map(f64::from))
+}
+
+fn largest(vector: DVec3) -> f64 {
+    let size = vector.abs();
+    size.x.max(size.y).max(size.z)
+}
+
+fn unit(vector: DVec3) -> DVec3 {
+    vector / vector.dot(vector).sqrt()
+}
+
+/// What the triangle with this corner adds at the corner's vertex.
+fn contribution(mesh: &Mesh<'_>, corner: u32, normal: DVec3) -> Contribution {
+    let first = corner - corner % 3;
+    let [vertex, next, last] = [corner, first + (corner + 1) % 3, first + (corner + 2) % 3]
+        .map(|corner| mesh.indices[corner as usize]);
+    let mut a = position(mesh, next) - position(mesh, vertex);
+    let mut b = position(mesh, last) - position(mesh, vertex);
+    let size = largest(a).max(largest(b)).max(largest(b - a));
+    let mut s = texture_coordinate(mesh, next) - texture_coordinate(mesh, vertex);
+    let mut t = texture_coordinate(mesh, last) - texture_coordinate(mesh, vertex);
+    let extent = s.abs().max(t.abs()).max((t - s).abs());
+    let smallest = size.min(extent.x).min(extent.y);
+    if smallest < LEAST {
+        let sensitivity = DVec2::splat(undecided(smallest, LEAST, EPSILON * LEAST));
+        return Contribution { sensitivity, ..Default::default() };
+    }
+    a /= size;
+    b /= size;
+    s /= extent;
+    t /= extent;
+    let area = s.x * t.y - t.x * s.y;
+    let face = a.cross(b);
+    let along = t.y * a - s.y * b;
+    let degenerate = f64::from(DEGENERATE);
+    let nearest = area.abs().min(face.length()).min(along.length());
+    let sensitivity = DVec2::splat(undecided(nearest, degenerate, 32.0 * EPSILON));
+    if area.abs() <= degenerate
+        || face.dot(face) <= degenerate * degenerate
+        || along.dot(along) <= degenerate * degenerate
+    {
+        return Contribution { sensitivity, ..Default::default() };
+    }
+    let weight = (unit(b) - unit(a)).length();
+    let signed_weight = if area > 0.0 { weight } else { -weight };
+    Contribution {
+        tangent: unit(along) * signed_weight,
+        weight,
+        handedness: signed_weight * normal.dot(unit(face)),
+        sensitivity: sensitivity + 1.0 + weight * (1.0 + 1.0 / DVec2::new(along.length(), face.length())),
+    }
+}
+
+/// Infinite where `value` lies so near to a threshold that rounding decides.
+fn undecided(value: f64, threshold: f64, error: f64) -> f64 {
+    if (value - threshold).abs() <= error { f64::INFINITY } else { 0.0 }
+}
+
+/// The first vector of the basis of Duff et al. 2017, from a unit normal.
+fn fallback(normal: DVec3, negative_z: bool) -> DVec3 {
+    let side = if negative_z { -1.0 } else { 1.0 };
+    let a = -1.0 / (side + normal.z);
+    DVec3::new(1.0 + side * normal.x * normal.x * a, side * normal.x * normal.y * a, -side * normal.x)
+}
+
+fn frame(mesh: &Mesh<'_>, adjacency: &Adjacency, vertex: usize) -> Frame {
+    let bits = mesh.normals[vertex].map(f32::to_bits);
+    let magnitude = bits.map(|bits| bits & 0x7fff_ffff);
+    let largest_bits = magnitude[0].max(magnitude[1]).max(magnitude[2]);
+    if !(LEAST_BITS..=LARGEST_BITS).contains(&largest_bits) {
+        return Frame { tangent: [1.0, 0.0, 0.0, 1.0], sensitivity: 1.0 };
+    }
+    let normal = DVec3::from_array(mesh.normals[vertex].map(f64::from));
+    let normal = unit(normal / f64::from(f32::from_bits(largest_bits)));
+    let mut sum = Contribution::default();
+    let corners = adjacency.at(vertex);
+    for corner in corners {
+        let added = contribution(mesh, *corner, normal);
+        sum.tangent += added.tangent;
+        sum.weight += added.weight;
+        sum.handedness += added.handedness;
+        sum.sensitivity += added.sensitivity;
+    }
+    let flat = sum.tangent - normal * normal.dot(sum.tangent);
+    let least = sum.weight * f64::from(VANISHING);
+    // n additions add n roundings: a unit is 32 of them.
+    let sensitivity = sum.sensitivity * (1.0 + corners.len() as f64 / 32.0);
+    let error = f64::from(TANGENT_BOUND) * sensitivity;
+    let vanishing = if sum.weight > 0.0 { undecided(flat.length(), least, error.x) } else { 0.0 };
+    if flat.dot(flat) <= least * least {
+        let [x, y, z] = fallback(normal, bits[2] >> 31 == 1).to_array().map(|component| component as f32);
+        let decided = sensitivity.x.is_finite() && vanishing == 0.0;
+        return Frame { tangent: [x, y, z, 1.0], sensitivity: if decided { 1.0 } else { f64::INFINITY } };
+    }
+    let tangent = unit(flat);
+    let tangent = unit(tangent - normal * normal.dot(tangent));
+    let [x, y, z] = tangent.to_array().map(|component| component as f32);
+    let handedness = if sum.handedness < -least { -1.0 } else { 1.0 };
+    let undecided = vanishing + undecided(sum.handedness, -least, error.y);
+    Frame { tangent: [x, y, z, handedness], sensitivity: sensitivity.x / flat.length() + undecided }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MESH: Mesh<'static> = Mesh {
+        positions: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        normals: &[[0.0, 0.0, 1.0]; 3],
+        uv: &[[0.0; 2], [1.0, 0.0], [0.0, 1.0]],
+        indices: &[0, 1, 2],
+    };
+
+    fn refused(mesh: &Mesh<'_>, field: &str, value: &str) {
+        let error = mesh.validate().expect_err("refused");
+        assert_eq!((error.field.as_str(), error.value.as_str()), (field, value));
+    }
+
+    #[test]
+    fn meshes_are_checked_field_by_field() {
+        assert_eq!(MESH.validate(), Ok(()));
+        assert_eq!(Mesh { positions: &[], normals: &[], uv: &[], indices: &[] }.validate(), Ok(()));
+        refused(&Mesh { normals: &MESH.normals[1..], ..MESH }, "normals.len", "2");
+        refused(&Mesh { uv: &MESH.uv[..1], ..MESH }, "uv.len", "1");
+        refused(&Mesh { indices: &[0, 1, 2, 0], ..MESH }, "indices.len", "4");
+        refused(&Mesh { indices: &[0, 1, 3], ..MESH }, "indices[2]", "3");
+        for (wrong, value) in [(f32::NAN, "NaN"), (f32::NEG_INFINITY, "-inf"), (2e18, "2000000000000000000")]
+        {
+            let mut positions = MESH.positions.to_vec();
+            positions[1][2] = wrong;
+            refused(&Mesh { positions: &positions, ..MESH }, "positions[1][2]", value);
+            let mut uv = MESH.uv.to_vec();
+            uv[2][0] = wrong;
+            refused(&Mesh { uv: &uv, ..MESH }, "uv[2][0]", value);
+        }
+        let limits = [[COORDINATE_LIMIT, -COORDINATE_LIMIT, 0.0]; 3];
+        let normals = [[f32::NAN, f32::INFINITY, 0.0]; 3];
+        assert_eq!(Mesh { positions: &limits, normals: &normals, ..MESH }.validate(), Ok(()));
+    }
+
+    #[test]
+    fn corners_ascend_at_each_vertex() {
+        let adjacency = Adjacency::new(5, &[3, 0, 1, 1, 0, 4, 0, 0, 3]);
+        assert_eq!(adjacency.offsets, [0, 4, 6, 6, 8, 9]);
+        let corners: Vec<_> = (0..5).map(|vertex| adjacency.at(vertex).to_vec()).collect();
+        assert_eq!(corners, [vec![1, 4, 6, 7], vec![2, 3], vec![], vec![0, 8], vec![5]]);
+    }
+}
