@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::gpu::Gpu;
 use crate::{Error, InputError};
 
-use crate::harness::{Bench, Row};
+use crate::harness::{Bench, Row, selected};
 use crate::{animation, baseline, skinning, surface, terrain};
 
 /// A kernel's benchmark cases.
@@ -86,7 +86,7 @@ pub fn unmeasured(gpu: &Gpu, stem: &Stem) -> Result<Vec<Row>, Error> {
 /// # Errors
 /// [`InputError`] when nothing is selected; what the device reports.
 pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&Row)) -> Result<Summary, Error> {
-    let chosen: Vec<_> = STEMS.iter().filter(|stem| crate::verify::selected(stem.name, only)).collect();
+    let chosen: Vec<_> = STEMS.iter().filter(|stem| selected(stem.name, only)).collect();
     if chosen.is_empty() {
         let names = STEMS.iter().map(|stem| stem.name).collect::<Vec<_>>().join(", ");
         return Err(

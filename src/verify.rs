@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::Error;
 use crate::gpu::{AdapterSummary, Gpu};
 use crate::harness::compare::Comparison;
-use crate::harness::{CaseResult, Cases};
+use crate::harness::{CaseResult, Cases, selected};
 use crate::{animation, baseline, skinning, surface, terrain};
 
 /// A kernel's parity cases.
@@ -65,11 +65,6 @@ pub struct Report {
     pub holds: bool,
     /// The cases.
     pub cases: Vec<CaseResult>,
-}
-
-/// Whether `stem` is asked for: `only` is a stem, a part of one, or nothing.
-pub fn selected(stem: &str, only: Option<&str>) -> bool {
-    only.is_none_or(|only| stem.contains(only))
 }
 
 /// Runs the cases of every selected kernel; `progress` hears of each.

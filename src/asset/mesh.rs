@@ -1,6 +1,7 @@
 //! Skinned meshes: vertices in the space that they were bound in, the bones of a skin that they follow, triangles, and
 //! morph targets.
 
+use super::indices::check_triangles;
 use super::morph::{MorphTarget, WeightKeys};
 use super::tangents::{self, tangents};
 use crate::InputError;
@@ -279,20 +280,6 @@ fn deltas_by_vertex(mesh: &Mesh) -> Vec<Vec<glam::DVec3>> {
         }
     }
     deltas
-}
-
-/// Refuses indices that are not three a triangle, and of no vertex.
-pub(crate) fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
-    if !indices.len().is_multiple_of(3) {
-        return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));
-    }
-    match indices.iter().position(|index| *index as usize >= vertices) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be below {vertices}, the number of vertices");
-            Err(InputError::new(format!("{path}[{at}]"), indices[at], bound))
-        }
-    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 pub mod clip;
 pub mod gltf;
+pub(crate) mod indices;
 pub mod influences;
 pub mod keyframe;
 pub mod material;

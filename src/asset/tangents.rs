@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::mesh::check_triangles;
+use super::indices::check_triangles;
 use crate::InputError;
 
 /// The largest size of a coordinate, of positions and uv.

@@ -8,7 +8,6 @@ mod adapter;
 pub(crate) mod bind;
 pub(crate) mod bindings;
 mod buffer;
-mod error;
 mod job;
 mod kernel;
 #[cfg(test)]
@@ -22,10 +21,10 @@ mod timer;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+pub use crate::error::GpuError;
 pub use adapter::{AdapterSummary, Options, adapters};
 pub(crate) use buffer::storage_bytes;
 pub use buffer::{Buffer, Uniform, storage};
-pub use error::GpuError;
 pub use job::{INVOCATIONS_A_SUBMISSION, IndirectJob, Job, Step, compute_pass};
 pub use kernel::{Group, Kernel, Resource, bind, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;

@@ -34,3 +34,8 @@ impl Cases<'_> {
         self.results.push(result);
     }
 }
+
+/// Whether `stem` is asked for: `only` is a stem, a part of one, or nothing.
+pub fn selected(stem: &str, only: Option<&str>) -> bool {
+    only.is_none_or(|only| stem.contains(only))
+}

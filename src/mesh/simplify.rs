@@ -298,7 +298,7 @@ fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
         }
         finite(&format!("poses[{pose}]"), places.as_flattened(), 3)?;
     }
-    crate::asset::mesh::check_triangles("indices", surface.indices, vertices)?;
+    crate::asset::indices::check_triangles("indices", surface.indices, vertices)?;
     if vertices.checked_mul(surface.stride) != Some(surface.attributes.len()) {
         let bound = format!("must be {vertices} vertices × {}", surface.stride);
         return Err(InputError::new("attributes.len", surface.attributes.len(), bound));

@@ -46,6 +46,6 @@ impl SurfaceMesh {
     /// # Errors
     /// [`InputError`].
     pub fn validate(&self) -> Result<(), InputError> {
-        crate::asset::mesh::check_triangles("indices", &self.indices, self.vertices.len())
+        crate::asset::indices::check_triangles("indices", &self.indices, self.vertices.len())
     }
 }

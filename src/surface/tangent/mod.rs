@@ -24,7 +24,7 @@
 //! should be split there, which [`split_mirrored`] does.
 
 use crate::InputError;
-use crate::asset::mesh::check_triangles;
+use crate::asset::indices::check_triangles;
 pub use crate::asset::tangents::{Adjacency, COORDINATE_LIMIT, DEGENERATE, Mesh, TANGENT_BOUND, VANISHING};
 
 #[cfg(feature = "verify")]

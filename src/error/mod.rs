@@ -1,7 +1,13 @@
 //! What can go wrong: bad input, files, and the GPU.
 
+#[cfg(feature = "gpu")]
+mod gpu;
+
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+
+#[cfg(feature = "gpu")]
+pub use gpu::GpuError;
 
 /// A value that is out of its bounds. Says which one, what it was and what it may be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -55,7 +61,7 @@ pub enum Error {
     /// The device failed, or there is none.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
-    Gpu(#[from] crate::gpu::GpuError),
+    Gpu(#[from] GpuError),
 }
 
 impl Error {
