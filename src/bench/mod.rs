@@ -43,6 +43,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/blend", run: terrain::blend::cases },
     Stem { name: "surface/height_pyramid", run: surface::height_pyramid::cases },
     Stem { name: "surface/cone_map", run: surface::cone_map::cases },
+    Stem { name: "surface/shade", run: surface::shade::cases },
     Stem { name: "surface/tangent", run: surface::tangent::cases },
     Stem { name: "animation/place", run: animation::place::cases },
     Stem { name: "animation/phase", run: animation::phase::cases },

@@ -11,6 +11,7 @@ pub mod measure;
 pub mod mesh;
 pub mod mips;
 pub mod relief;
+pub mod shade;
 pub mod tangent;
 #[cfg(feature = "gpu")]
 pub mod texture;
@@ -24,6 +25,7 @@ pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
 pub use relief::{Hit, March, Method, Outcome, Ray};
+pub use shade::{Shade, ShadePoint, ShadeView};
 #[cfg(feature = "gpu")]
 pub use texture::{HeightBatch, SurfaceTextures};
 pub use view::SquareView;

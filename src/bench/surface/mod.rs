@@ -3,4 +3,5 @@
 pub mod cone_map;
 pub mod height_pyramid;
 pub mod relief;
+pub mod shade;
 pub mod tangent;

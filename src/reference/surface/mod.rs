@@ -12,5 +12,6 @@ pub mod linear;
 pub mod picture;
 pub mod quadtree;
 pub mod relief;
+pub mod shade;
 pub mod shadow;
 pub mod tangent;

@@ -1,8 +1,12 @@
 //! Parity of `kernels/surface/`.
 
+pub mod bounds;
 pub mod cone_map;
+pub mod depth;
 pub mod height_pyramid;
+pub mod penumbra;
 pub mod relief;
+pub mod shade;
 pub mod tangent;
 
 use crate::InputError;
