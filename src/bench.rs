@@ -35,6 +35,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/blend", run: terrain::blend::bench::cases },
     Stem { name: "surface/height_pyramid", run: surface::height_pyramid::bench::cases },
     Stem { name: "surface/cone_map", run: surface::cone_map::bench::cases },
+    Stem { name: "surface/shade", run: surface::shade::bench::cases },
     Stem { name: "surface/tangent", run: surface::tangent::bench::cases },
     Stem { name: "animation/place", run: animation::place::bench::cases },
     Stem { name: "animation/phase", run: animation::phase::bench::cases },

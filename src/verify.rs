@@ -36,6 +36,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/height_pyramid", run: surface::height_pyramid::verify::cases },
     Stem { name: "surface/cone_map", run: surface::cone_map::verify::cases },
     Stem { name: "surface/relief", run: surface::relief::verify::cases },
+    Stem { name: "surface/shade", run: surface::shade::verify::cases },
     Stem { name: "surface/tangent", run: surface::tangent::verify::cases },
     Stem { name: "animation/place", run: animation::place::verify::cases },
     Stem { name: "animation/phase", run: animation::phase::verify::cases },

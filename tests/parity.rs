@@ -4,12 +4,19 @@
 #[path = "harness/mod.rs"]
 mod harness;
 
+use glam::Vec4;
 use relievo::gpu::Buffer;
 use relievo::harness::CaseResult;
 use relievo::harness::compare::{absolute, exact, levels, relative, ulps};
 use relievo::harness::poison::{POISON, Poisoned};
-use relievo::surface::Hit;
+use relievo::surface::relief::ReliefPass;
+use relievo::surface::relief::reference::Surface;
 use relievo::surface::relief::verify::hits;
+use relievo::surface::shade::ShadePass;
+use relievo::surface::verify::bounds::{Judged, Source, judge};
+use relievo::surface::verify::shade::{JudgedShade, PARTS, Part, compare, perspective, random_points};
+use relievo::surface::verify::{Shape, random_map, random_rays, shade};
+use relievo::surface::{HeightMap, Hit, March, Method, Ray, Shade, ShadePoint, ShadeView, SurfaceTextures};
 use relievo::terrain::morph::{Morph, MorphPass};
 use relievo::verify;
 
@@ -58,28 +65,175 @@ fn relative_sees_errors_beyond_its_share() {
     assert!(!relative(&[f32::NAN], &[1.0], 1e9).holds);
 }
 
+/// Noise and rays at all angles, with what they hit and how far that may be off.
+fn judged_rays(method: Method) -> (HeightMap, March, Vec<Ray>, Vec<Judged>) {
+    let map = random_map(4, [64, 64], Shape::Noise).expect("a map");
+    let march = March { steps: [6, 28], binary_steps: 14, ..March::default() };
+    let rays = random_rays(4, 400);
+    let judged = judge(&map, method, &march, &rays, Source::Given).expect("judged");
+    (map, march, rays, judged)
+}
+
+/// A twentieth of a texel, another height or parameter, another outcome, NaN, another number of loads: each is found
+/// on every single ray that does not touch, and those are nearly all.
 #[test]
-fn hits_sees_rays_that_go_astray() {
-    let hit = Hit { uv: [0.5, 0.25], height: 0.5, parameter: 0.5, samples: 9, code: 1 };
-    let expected = vec![hit; 400];
-    let with = |astray: usize, wrong: Hit| {
-        let mut actual = expected.clone();
-        actual[..astray].fill(wrong);
-        hits(&actual, &expected, [64, 64]).holds
-    };
-    let faults = [
-        Hit { uv: [0.51, 0.25], ..hit },
-        Hit { uv: [0.5, f32::NAN], ..hit },
-        Hit { height: 0.52, ..hit },
-        Hit { parameter: 0.52, ..hit },
-        Hit { samples: 10, ..hit },
-        Hit { code: 2, ..hit },
-    ];
-    for fault in faults {
-        // Two of 400 may touch and go, three may not.
-        assert!(with(2, fault) && !with(3, fault), "{fault:?}");
+fn hits_sees_one_ray_a_twentieth_of_a_texel_off() {
+    for method in Method::ALL {
+        let (.., judged) = judged_rays(method);
+        let expected: Vec<Hit> = judged.iter().map(|judged| judged.expected).collect();
+        assert!(hits(&expected, &judged, [64, 64]).holds);
+        let ordinary: Vec<usize> = (0..judged.len()).filter(|index| !judged[*index].touches()).collect();
+        assert!(ordinary.len() > 340, "{method:?}: only {} rays of 400", ordinary.len());
+        for index in ordinary {
+            let hit = expected[index];
+            let faults = [
+                Hit { uv: [hit.uv[0] + 0.05 / 64.0, hit.uv[1]], ..hit },
+                Hit { uv: [hit.uv[0], hit.uv[1] - 0.05 / 64.0], ..hit },
+                Hit { uv: [hit.uv[0], f32::NAN], ..hit },
+                Hit { height: hit.height + 2.0 * judged[index].height as f32, ..hit },
+                Hit { parameter: hit.parameter + 2.0 * judged[index].parameter as f32, ..hit },
+                Hit { samples: hit.samples + 1, ..hit },
+                Hit { code: hit.code + 1, ..hit },
+            ];
+            for fault in faults {
+                let mut actual = expected.clone();
+                actual[index] = fault;
+                let comparison = hits(&actual, &judged, [64, 64]);
+                assert!(!comparison.holds, "{method:?}: {fault:?} passes for {:?}", judged[index]);
+            }
+        }
+        assert!(!hits(&expected[1..], &judged, [64, 64]).holds);
     }
-    assert!(!hits(&expected[1..], &expected, [64, 64]).holds);
+}
+
+#[test]
+fn hits_sees_too_many_rays_that_prove_little() {
+    let (.., mut judged) = judged_rays(Method::Quadtree);
+    let expected: Vec<Hit> = judged.iter().map(|judged| judged.expected).collect();
+    let spread = hits(&expected, &judged, [64, 64]).spread.expect("a spread");
+    assert!(spread.touching < spread.may_touch && spread.largest == 0.0, "{spread:?}");
+    judged.iter_mut().take(100).for_each(|judged| judged.is_steady = false);
+    let comparison = hits(&expected, &judged, [64, 64]);
+    assert!(comparison.fault.expect("a fault").contains("touch"));
+}
+
+/// A kernel whose rays enter a twentieth of a texel further on, or that marches one step more, does not pass.
+#[test]
+fn a_kernel_that_traces_other_rays_fails() {
+    let gpu = harness::gpu();
+    for method in Method::ALL {
+        let (map, march, rays, judged) = judged_rays(method);
+        let textures = SurfaceTextures::new(&gpu, &map, method, march.address).expect("uploaded");
+        let pass = ReliefPass::new(&gpu, method).expect("compiled");
+        let compared = |rays: &[Ray], march: &March| {
+            let input = Buffer::from_slice(&gpu, "rays", rays).expect("uploaded");
+            let output = Buffer::new(&gpu, "hits", rays.len()).expect("allocated");
+            let job = pass.prepare(&gpu, &textures, march, &input, &output).expect("prepared");
+            gpu.run("test", |encoder| job.record(encoder)).expect("run");
+            hits(&output.read_blocking(&gpu).expect("read"), &judged, [64, 64])
+        };
+        let same = compared(&rays, &march);
+        assert!(same.holds, "{method:?}: {same:?}");
+        let shifted: Vec<Ray> = rays
+            .iter()
+            .map(|ray| Ray { origin: [ray.origin[0] + 0.05 / 64.0, ray.origin[1]], ..*ray })
+            .collect();
+        let off = compared(&shifted, &march);
+        assert!(!off.holds && off.error > 5.0, "{method:?}: {off:?}");
+        if method.is_stepped() {
+            assert!(!compared(&rays, &March { steps: [6, 29], ..march }).holds, "{method:?}");
+        }
+    }
+}
+
+/// Shades of one case, judged.
+fn judged_shades() -> (HeightMap, March, ShadeView, Vec<ShadePoint>, Vec<JudgedShade>) {
+    let map = random_map(9, [64, 64], Shape::Hills).expect("a map");
+    let march = March { binary_steps: 16, ..March::default() };
+    let view = ShadeView { softness: 1.0, ..perspective() };
+    let surface = Surface::new(&map, Method::Quadtree, march.address);
+    let points = random_points(9, 400, &surface, Method::Quadtree, &march);
+    let judged = shade::judged(&map, Method::Quadtree, &march, &view, &points).expect("judged");
+    (map, march, view, points, judged)
+}
+
+#[test]
+fn shades_sees_one_point_of_other_light_or_depth() {
+    let (.., judged) = judged_shades();
+    let expected: Vec<Shade> = judged.iter().map(|judged| judged.expected).collect();
+    let lit = expected.iter().filter(|shade| shade.hard == 1.0).count();
+    assert!((100..300).contains(&lit), "{lit} of 400 points are lit");
+    let penumbras = expected.iter().filter(|shade| (0.05..0.95).contains(&shade.soft)).count();
+    assert!(penumbras > 20, "{penumbras} of 400 points lie in penumbras");
+    let with = |index: usize, fault: Shade, part: Part| {
+        let mut actual = expected.clone();
+        actual[index] = fault;
+        compare(&actual, &judged, part).holds
+    };
+    let mut found = [0; 3];
+    for (index, shade) in expected.iter().copied().enumerate() {
+        assert!(
+            with(index, shade, Part::Hard)
+                && with(index, shade, Part::Soft)
+                && with(index, shade, Part::Depth)
+        );
+        let [darker, nearer] =
+            [if shade.soft > 0.5 { -0.05 } else { 0.05 }, if shade.depth > 0.5 { -1e-4 } else { 1e-4 }];
+        let faults = [
+            (Part::Hard, Shade { hard: 1.0 - shade.hard, ..shade }),
+            (Part::Soft, Shade { soft: shade.soft + darker, ..shade }),
+            (Part::Depth, Shade { depth: shade.depth + nearer, ..shade }),
+        ];
+        for (found, (part, fault)) in found.iter_mut().zip(faults) {
+            *found += usize::from(!with(index, fault, part));
+        }
+        for nan in [Shade { hard: f32::NAN, ..shade }, Shade { hard: 0.5, ..shade }] {
+            assert!(!with(index, nan, Part::Hard));
+        }
+        assert!(!with(index, Shade { soft: f32::NAN, ..shade }, Part::Soft));
+    }
+    assert!(found.iter().all(|found| *found > 380), "of 400 points each, {found:?} faults are found");
+    assert!(PARTS.iter().all(|(_, part)| !compare(&expected[1..], &judged, *part).holds));
+}
+
+/// A kernel with another light, another softness or another camera does not pass; nor does the polygon's depth.
+#[test]
+fn a_kernel_that_shades_otherwise_fails() {
+    let gpu = harness::gpu();
+    let (map, march, view, points, judged) = judged_shades();
+    let method = Method::Quadtree;
+    let textures = SurfaceTextures::new(&gpu, &map, method, march.address).expect("uploaded");
+    let pass = ShadePass::new(&gpu, method).expect("compiled");
+    let holds = |view: &ShadeView, points: &[ShadePoint]| {
+        let input = Buffer::from_slice(&gpu, "points", points).expect("uploaded");
+        let output = Buffer::new(&gpu, "shades", points.len()).expect("allocated");
+        let job = pass.prepare(&gpu, &textures, &march, view, &input, &output).expect("prepared");
+        gpu.run("test", |encoder| job.record(encoder)).expect("run");
+        let actual = output.read_blocking(&gpu).expect("read");
+        PARTS.map(|(_, part)| compare(&actual, &judged, part).holds)
+    };
+    let changed = |change: fn(&mut ShadePoint)| {
+        let mut points = points.clone();
+        points.iter_mut().for_each(change);
+        points
+    };
+    assert_eq!(holds(&view, &points), [true; 3]);
+    let lower = changed(|point| point.hit.height -= 0.02);
+    assert_eq!(
+        holds(&view, &lower)[..2],
+        [false, true],
+        "lower points start from the surface, but for their own ray"
+    );
+    assert_eq!(holds(&ShadeView { softness: view.softness * 1.1, ..view }, &points), [true, false, true]);
+    assert_eq!(
+        holds(&ShadeView { shadow_steps: view.shadow_steps + 1, ..view }, &points),
+        [true, false, true]
+    );
+    assert_eq!(holds(&ShadeView { eye: view.eye + 0.05 * Vec4::Y, ..view }, &points), [true, true, false]);
+    let flat = changed(|point| point.hit.parameter = point.ray.polygon);
+    assert_eq!(holds(&view, &flat), [true, true, false]);
+    let elsewhere = changed(|point| point.light[0] = -point.light[0]);
+    assert_eq!(holds(&view, &elsewhere)[..2], [false, false]);
 }
 
 #[test]

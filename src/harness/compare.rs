@@ -18,15 +18,41 @@ pub struct Comparison {
     pub bound: f64,
     /// What error and bound count.
     pub unit: &'static str,
+    /// The errors themselves and what was left out, where each value has a bound of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spread: Option<Spread>,
     /// The first value out of bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
 }
 
+/// Errors of values that have a bound each, and values that prove little.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// What the errors count.
+    pub unit: &'static str,
+    /// What 99 of 100 errors are within.
+    pub p99: f64,
+    /// The largest error.
+    pub largest: f64,
+    /// Values whose bound is so wide, or that are so near a branch, that they prove little or nothing.
+    pub touching: usize,
+    /// How many there may be.
+    pub may_touch: usize,
+}
+
 impl Comparison {
     /// A comparison that fails whatever the values.
     pub fn failed(values: usize, fault: String) -> Self {
-        Self { holds: false, values, error: f64::INFINITY, bound: 0.0, unit: "none", fault: Some(fault) }
+        Self {
+            holds: false,
+            values,
+            error: f64::INFINITY,
+            bound: 0.0,
+            unit: "none",
+            spread: None,
+            fault: Some(fault),
+        }
     }
 }
 
@@ -56,7 +82,7 @@ fn compare<T: Copy + Debug>(
     let fault = first.map(|(index, actual, expected)| {
         format!("{wrong} of {values} values; first at {index}: {actual:?} instead of {expected:?}")
     });
-    Comparison { holds: wrong == 0, values, error: worst, bound, unit, fault }
+    Comparison { holds: wrong == 0, values, error: worst, bound, unit, spread: None, fault }
 }
 
 /// Integers: every bit.
@@ -106,4 +132,54 @@ pub fn levels(actual: &[u32], expected: &[u32], bound: u8) -> Comparison {
         let pairs = actual.to_le_bytes().into_iter().zip(expected.to_le_bytes());
         pairs.map(|(actual, expected)| f64::from(actual.abs_diff(expected))).fold(0.0, f64::max)
     })
+}
+
+/// One value that has a bound of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judgement {
+    /// The error over its bound; NaN and infinity fail.
+    pub ratio: f64,
+    /// The error itself.
+    pub error: f64,
+    /// Whether it proves little: its bound is wide, or it lies so near a branch that it may be something else.
+    pub touches: bool,
+}
+
+/// Values with a bound each: every error within its own, and at most a share `may_touch` of the values touching, at
+/// least one. `describe` describes a value by its index.
+pub fn each(
+    judgements: &[Judgement],
+    unit: &'static str,
+    may_touch: f64,
+    describe: impl Fn(usize) -> String,
+) -> Comparison {
+    let values = judgements.len();
+    if values == 0 {
+        return Comparison::failed(0, "no values".to_owned());
+    }
+    // Written so that a NaN is wrong.
+    let is_wrong = |judgement: &Judgement| !(judgement.ratio <= 1.0);
+    let wrong = judgements.iter().filter(|judgement| is_wrong(judgement)).count();
+    let first = judgements.iter().position(is_wrong);
+    let no_nan = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+    let error = judgements.iter().map(|judgement| no_nan(judgement.ratio)).fold(0.0, f64::max);
+    let mut errors: Vec<f64> = judgements.iter().map(|judgement| no_nan(judgement.error)).collect();
+    errors.sort_unstable_by(f64::total_cmp);
+    let spread = Spread {
+        unit,
+        p99: errors[(values * 99).div_ceil(100) - 1],
+        largest: errors[values - 1],
+        touching: judgements.iter().filter(|judgement| judgement.touches).count(),
+        may_touch: ((may_touch * values as f64) as usize).max(1),
+    };
+    let too_many = spread.touching > spread.may_touch;
+    let fault = match first {
+        Some(index) => Some(format!("{wrong} of {values} values; first at {index}: {}", describe(index))),
+        None if too_many => {
+            Some(format!("{} of {values} touch; at most {} may", spread.touching, spread.may_touch))
+        }
+        None => None,
+    };
+    let unit = "of each value's own bound";
+    Comparison { holds: fault.is_none(), values, error, bound: 1.0, unit, spread: Some(spread), fault }
 }

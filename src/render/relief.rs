@@ -26,24 +26,38 @@ pub(crate) struct ReliefView {
     pub softness: f32,
 }
 
-/// What a pipeline draws: fixed when it is compiled.
+/// What a pipeline draws: fixed when it is compiled. What may change without another pipeline is in [`Material`].
+///
+/// The default finds surfaces by [`Method::Quadtree`] and does nothing more: no shadow, normals from the heights, no
+/// silhouette, the polygon's depth, mip level 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReliefOptions {
-    /// How the surface is found.
+    /// How the surface is found: the method that the [`SurfaceTextures`] were made for.
     pub method: Method,
     /// Self-shadow.
     pub shadow: Shadow,
-    /// Normals from a normal map rather than from the heights.
-    pub normal_map: bool,
-    /// Where green of the normal map points.
-    pub green: Green,
-    /// Discards what leaves the mesh's range of uv.
+    /// Normals from a normal map, and where its green points; else those of the heights.
+    pub normal_map: Option<Green>,
+    /// Discards what leaves the mesh's range of uv, so that silhouettes follow the relief.
     pub silhouette: bool,
     /// Writes the relief's own depth rather than the polygon's. Costs early depth tests.
     pub depth: bool,
     /// Chooses the heights' mip level from the size of a pixel. Acceleration maps belong to level 0: `cone` and
     /// `quadtree` march there whatever this says.
     pub mip: bool,
+}
+
+impl Default for ReliefOptions {
+    fn default() -> Self {
+        Self {
+            method: Method::Quadtree,
+            shadow: Shadow::None,
+            normal_map: None,
+            silhouette: false,
+            depth: false,
+            mip: false,
+        }
+    }
 }
 
 /// The pipeline.
@@ -70,7 +84,7 @@ pub struct ReliefMaps<'a> {
     pub textures: &'a SurfaceTextures,
     /// Colour, sRGB.
     pub albedo: &'a ColorTexture,
-    /// Tangent-space normals, where [`ReliefOptions::normal_map`] says so; else ignored.
+    /// Tangent-space normals: needed where [`ReliefOptions::normal_map`] says so, else ignored.
     pub normals: Option<&'a ColorTexture>,
 }
 
@@ -89,8 +103,8 @@ impl ReliefRenderer {
         let constants = [
             ("METHOD", f64::from(options.method.code())),
             ("SHADOW", f64::from(options.shadow as u32)),
-            ("NORMAL_MAP", flag(options.normal_map)),
-            ("GREEN_UP", flag(options.green == Green::Up)),
+            ("NORMAL_MAP", flag(options.normal_map.is_some())),
+            ("GREEN_UP", flag(options.normal_map == Some(Green::Up))),
             ("SILHOUETTE", flag(options.silhouette)),
             ("CHOOSE_MIP", flag(options.mip && !accelerated)),
         ];
@@ -128,18 +142,9 @@ impl ReliefRenderer {
         material.validate()?;
         march.validate()?;
         maps.textures.check(self.options.method, march)?;
-        let options = self.options;
-        let is_other = options.shadow != material.shadow
-            || options.silhouette != material.silhouette
-            || options.green != material.green;
-        if is_other {
-            let value = format!("{}, {}, {:?}", material.shadow.name(), material.silhouette, material.green);
-            return Err(InputError::new(
-                "material.shadow, silhouette, green",
-                value,
-                "must be what the pipeline was compiled for",
-            )
-            .into());
+        if self.options.normal_map.is_some() && maps.normals.is_none() {
+            let bound = "must be a normal map, for which the pipeline was compiled";
+            return Err(InputError::new("maps.normals", "nothing", bound).into());
         }
         let light = glam::Vec3::from(material.light).extend(material.ambient);
         let view = ReliefView {

@@ -9,7 +9,7 @@ use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRende
 use crate::render::target::{LINEAR_FORMAT, Target};
 use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
-use crate::surface::material::Material;
+use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
@@ -25,7 +25,13 @@ pub struct SquarePicture<'a> {
     pub albedo: &'a Mips,
     /// Tangent-space normals; else those of the heights.
     pub normals: Option<&'a Mips>,
-    /// Depth, light and shadow; the light in the square's tangent space.
+    /// Where green of the normals points.
+    pub green: Green,
+    /// Self-shadow.
+    pub shadow: Shadow,
+    /// Cuts away what leaves the square.
+    pub silhouette: bool,
+    /// Depth and light; the light in the square's tangent space.
     pub material: Material,
     /// How rays are marched.
     pub march: March,
@@ -42,12 +48,10 @@ impl SquarePicture<'_> {
         self.view.validate()?;
         let options = ReliefOptions {
             method: self.textures.method,
-            shadow: self.material.shadow,
-            normal_map: self.normals.is_some(),
-            silhouette: self.material.silhouette,
-            green: self.material.green,
-            depth: false,
-            mip: false,
+            shadow: self.shadow,
+            normal_map: self.normals.map(|_| self.green),
+            silhouette: self.silhouette,
+            ..ReliefOptions::default()
         };
         let wraps = self.march.address == Address::Wrap;
         let albedo = ColorTexture::linear(gpu, self.albedo, wraps)?;

@@ -1,4 +1,4 @@
-//! What a relief is drawn with: depth, plane, light, shadow.
+//! What a relief is drawn with: depth, plane, light, the width of its shadows.
 
 use crate::InputError;
 use crate::surface::relief::MOST_SCALE;
@@ -38,7 +38,8 @@ pub enum Green {
     Down,
 }
 
-/// What a relief is drawn with, beside its maps.
+/// What a relief is drawn with, beside its maps: what may change without another pipeline. Whether there are shadows
+/// and silhouettes is not part of it (`render::ReliefOptions`, `reference::surface::picture::Scene`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Depth of the relief in uv units, 0 to [`MOST_SCALE`].
@@ -49,16 +50,10 @@ pub struct Material {
     pub light: [f32; 3],
     /// What is in shadow still gets, 0 to 1.
     pub ambient: f32,
-    /// Self-shadow.
-    pub shadow: Shadow,
     /// Heights on the way to the light that a soft shadow looks at, 1 to 1024.
     pub shadow_steps: u32,
     /// How far the surface rises above the way to the light, over its distance, where a soft shadow is full; > 0.
     pub softness: f32,
-    /// Discards what leaves the mesh's range of uv, so that silhouettes follow the relief.
-    pub silhouette: bool,
-    /// Where green of the normal map points, where there is one.
-    pub green: Green,
 }
 
 impl Default for Material {
@@ -68,11 +63,8 @@ impl Default for Material {
             plane: 1.0,
             light: [-0.529_999, 0.459_619, 0.712_718],
             ambient: 0.25,
-            shadow: Shadow::None,
             shadow_steps: 32,
             softness: 0.15,
-            silhouette: false,
-            green: Green::Up,
         }
     }
 }

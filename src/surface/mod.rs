@@ -16,6 +16,7 @@ pub mod mesh;
 pub mod mips;
 pub mod picture;
 pub mod relief;
+pub mod shade;
 pub mod tangent;
 #[cfg(feature = "verify")]
 pub mod verify;
@@ -28,4 +29,5 @@ pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
 pub use relief::{Hit, March, Method, Outcome, Ray};
+pub use shade::{Shade, ShadePoint, ShadeView};
 pub use view::SquareView;

@@ -26,7 +26,13 @@ pub struct Scene<'a> {
     pub albedo: &'a Mips,
     /// Tangent-space normals; else those of the heights.
     pub normals: Option<&'a Mips>,
-    /// Depth, light, shadow. The light is in tangent space here.
+    /// Where green of the normals points.
+    pub green: Green,
+    /// Self-shadow.
+    pub shadow: Shadow,
+    /// Cuts away what leaves the square.
+    pub silhouette: bool,
+    /// Depth and light. The light is in tangent space here.
     pub material: &'a Material,
     /// Where it is seen from.
     pub view: SquareView,
@@ -48,7 +54,7 @@ impl Scene<'_> {
     fn shade(&self, ray: &Ray) -> Option<[f32; 3]> {
         let hit = self.surface.trace(self.method, ray, self.march);
         let tiles = self.view.tiles as f32;
-        if self.material.silhouette && !hit.uv.iter().all(|axis| (0.0..=tiles).contains(axis)) {
+        if self.silhouette && !hit.uv.iter().all(|axis| (0.0..=tiles).contains(axis)) {
             return None;
         }
         let steps = self.view.uv_steps();
@@ -58,7 +64,7 @@ impl Scene<'_> {
             Some(normals) => {
                 let texel = sampled(normals, hit.uv, steps, self.march.address);
                 let [x, y] = [texel[0], texel[1]].map(|channel| channel * 2.0 - 1.0);
-                let along_v = if self.material.green == Green::Up { -y } else { y };
+                let along_v = if self.green == Green::Up { -y } else { y };
                 [x, along_v, (1.0 - x * x - y * y).max(0.0).sqrt()]
             }
         };
@@ -74,7 +80,7 @@ impl Scene<'_> {
         if light[2] <= 0.0 {
             return 1.0;
         }
-        match self.material.shadow {
+        match self.shadow {
             Shadow::None => 1.0,
             Shadow::Hard => {
                 let first = self.surface.trace(self.method, &light_ray(hit, light, scale), self.march);

@@ -1,6 +1,7 @@
 //! Relief on a curved mesh, in perspective: tangent frames from the mesh, silhouettes, and the depth of the relief.
 
 use glam::{Mat4, Vec3, Vec4, camera};
+use relievo::Error;
 use relievo::gpu::Gpu;
 use relievo::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use relievo::render::{ColorTexture, Target, target::COLOR_FORMAT};
@@ -8,7 +9,7 @@ use relievo::samples::BuiltInMap;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::tangent::Mesh;
 use relievo::surface::tangent::reference::tangents;
-use relievo::surface::{Address, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceVertex};
+use relievo::surface::{Address, Green, March, Material, Method, Mips, Shadow, SurfaceMesh, SurfaceVertex};
 
 use crate::harness::{self, Tolerance, check_golden};
 
@@ -49,31 +50,32 @@ fn barrel() -> SurfaceMesh {
 const WORLD: f32 = 1.6;
 
 fn scene(gpu: &Gpu, mesh: &SurfaceMesh, method: Method, depth: bool, silhouette: bool) -> ReliefScene {
-    let map = BuiltInMap::Cobbles.height_map(128).expect("a map");
-    let textures = SurfaceTextures::new(gpu, &map, method, Address::Wrap).expect("uploaded");
-    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(128).expect("colours"));
-    let albedo = ColorTexture::new(gpu, &albedo, true).expect("uploaded");
-    let shadow = Shadow::Hard;
     let options = ReliefOptions {
         method,
-        shadow,
-        normal_map: false,
-        green: Default::default(),
+        shadow: Shadow::Hard,
         silhouette,
         depth,
         mip: true,
+        ..ReliefOptions::default()
     };
+    scene_of(gpu, mesh, options).expect("a scene")
+}
+
+/// Cobbles, without a normal map.
+fn scene_of(gpu: &Gpu, mesh: &SurfaceMesh, options: ReliefOptions) -> Result<ReliefScene, Error> {
+    let map = BuiltInMap::Cobbles.height_map(128).expect("a map");
+    let textures = SurfaceTextures::new(gpu, &map, options.method, Address::Wrap).expect("uploaded");
+    let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(128).expect("colours"));
+    let albedo = ColorTexture::new(gpu, &albedo, true).expect("uploaded");
     let renderer = ReliefRenderer::new(gpu, COLOR_FORMAT, options).expect("compiled");
-    let material = Material { shadow, silhouette, ..Material::default() };
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };
-    let scene = renderer.scene(gpu, mesh, maps, &material, &March::default(), WORLD);
-    let mut scene = scene.expect("a scene");
+    let mut scene = renderer.scene(gpu, mesh, maps, &Material::default(), &March::default(), WORLD)?;
     let eye = Vec3::new(1.6, 1.7, 3.1);
     let view = camera::rh::view::look_at_mat4(eye, Vec3::ZERO, Vec3::Y);
     let projection = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.1, 20.0);
     let camera = ReliefCamera { clip_from_world: projection * view, eye: eye.extend(1.0) };
-    scene.set_camera(gpu, camera).expect("set");
-    scene
+    scene.set_camera(gpu, camera)?;
+    Ok(scene)
 }
 
 fn drawn(gpu: &Gpu, scenes: &[ReliefScene]) -> image::RgbaImage {
@@ -92,6 +94,36 @@ fn a_barrel_of_cobbles() {
     });
     let wrong: Vec<_> = wrong.collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Shadow and silhouette are said once, in the options: with one material each of them draws another picture.
+#[test]
+fn options_alone_decide_what_is_drawn() {
+    let gpu = harness::gpu();
+    let plain = ReliefOptions::default();
+    let pictures = [
+        plain,
+        ReliefOptions { shadow: Shadow::Hard, ..plain },
+        ReliefOptions { shadow: Shadow::Soft, ..plain },
+        ReliefOptions { silhouette: true, ..plain },
+    ]
+    .map(|options| drawn(&gpu, &[scene_of(&gpu, &barrel(), options).expect("a scene")]));
+    for (index, picture) in pictures.iter().enumerate() {
+        assert!(
+            pictures[..index].iter().all(|other| other != picture),
+            "picture {index} shows nothing of its own"
+        );
+    }
+}
+
+/// Colours are no normals.
+#[test]
+fn a_pipeline_for_normal_maps_refuses_maps_without_one() {
+    let options = ReliefOptions { normal_map: Some(Green::Up), ..ReliefOptions::default() };
+    match scene_of(&harness::gpu(), &barrel(), options) {
+        Err(Error::Input(error)) => assert_eq!(error.field, "maps.normals"),
+        other => panic!("{other:?}"),
+    }
 }
 
 /// Two squares in one plane: with the polygon's depth one hides the other; with the relief's, the higher stones of

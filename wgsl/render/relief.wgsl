@@ -3,7 +3,7 @@
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
-import package::wgsl::surface::shade::{surface_distance, surface_normal};
+import package::wgsl::surface::shade::{surface_depth, surface_distance, surface_normal, surface_towards};
 import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surface_soft_shadow};
 
 // A method of wgsl/surface/trace.wgsl.
@@ -66,7 +66,7 @@ fn vertex(
 
 struct Shaded {
     color: vec4<f32>,
-    world: vec3<f32>,
+    depth: f32,
     is_outside: bool,
 }
 
@@ -77,7 +77,7 @@ fn shaded(in: Vertex) -> Shaded {
     let normal = normalize(in.normal);
     let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
     let bitangent = in.tangent.w * cross(normal, tangent);
-    let towards = normalize(view.eye.xyz - view.eye.w * in.world);
+    let towards = surface_towards(view.eye, in.world);
     let eye = vec3<f32>(dot(tangent, towards), dot(bitangent, towards), dot(normal, towards));
     var settings = march;
     if CHOOSE_MIP {
@@ -95,9 +95,10 @@ fn shaded(in: Vertex) -> Shaded {
     let light = vec3<f32>(dot(tangent, view.light.xyz), dot(bitangent, view.light.xyz), dot(normal, view.light.xyz));
     let direct = max(dot(facing, light), 0.0) * sunlit(hit, light, settings);
     let lit = color * (view.light.w + (1.0 - view.light.w) * direct);
-    let world = in.world - towards * (surface_distance(ray, hit, view.scale) * view.world);
+    let distance = surface_distance(ray, hit, view.scale) * view.world;
+    let depth = surface_depth(view.clip_from_world, in.world, towards, distance);
     let is_outside = SILHOUETTE && !surface_inside(hit.uv, view.range.xy, view.range.zw);
-    return Shaded(vec4<f32>(lit, 1.0), world, is_outside);
+    return Shaded(vec4<f32>(lit, 1.0), depth, is_outside);
 }
 
 // How much of the light reaches a hit.
@@ -135,6 +136,5 @@ fn fragment_depth(in: Vertex) -> Deep {
     if result.is_outside {
         discard;
     }
-    let clip = view.clip_from_world * vec4<f32>(result.world, 1.0);
-    return Deep(result.color, clamp(clip.z / clip.w, 0.0, 1.0));
+    return Deep(result.color, result.depth);
 }

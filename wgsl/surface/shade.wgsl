@@ -19,3 +19,16 @@ fn surface_normal(heights: texture_2d<f32>, uv: vec2<f32>, scale: f32, march: Su
 fn surface_distance(ray: SurfaceRay, hit: SurfaceHit, scale: f32) -> f32 {
     return (hit.parameter - ray.polygon) * scale / max(ray.cosine, SURFACE_LEAST_COSINE);
 }
+
+// The unit vector towards the eye from a point of the polygon. `eye` is where it is (w = 1), or the direction towards
+// it (w = 0).
+fn surface_towards(eye: vec4<f32>, position: vec3<f32>) -> vec3<f32> {
+    return normalize(eye.xyz - eye.w * position);
+}
+
+// The depth, 0 (near) to 1 (far), of what lies `distance` behind a point of the polygon on the eye's ray, all in world
+// units: what a fragment shader writes.
+fn surface_depth(clip_from_world: mat4x4<f32>, position: vec3<f32>, towards: vec3<f32>, distance: f32) -> f32 {
+    let clip = clip_from_world * vec4<f32>(position - towards * distance, 1.0);
+    return clamp(clip.z / clip.w, 0.0, 1.0);
+}

@@ -134,6 +134,9 @@ struct Plan {
     map: HeightMap,
     albedo: Mips,
     normals: Option<Mips>,
+    green: Green,
+    shadow: Shadow,
+    silhouette: bool,
     method: Method,
     march: March,
     material: Material,
@@ -233,7 +236,17 @@ impl Relief {
         let (map, albedo) = self.maps()?;
         let normals = self.normal.as_deref().map(open).transpose()?.map(Mips::of_data);
         let albedo = Mips::of_color(albedo);
-        Ok(Plan { map, albedo, normals, method, march, material, view, backend: self.backend })
+        let shadow = match self.shadow {
+            ShadowKind::None => Shadow::None,
+            ShadowKind::Hard => Shadow::Hard,
+            ShadowKind::Soft => Shadow::Soft,
+        };
+        let green = match self.normal_green {
+            GreenKind::Up => Green::Up,
+            GreenKind::Down => Green::Down,
+        };
+        let (silhouette, backend) = (self.silhouette, self.backend);
+        Ok(Plan { map, albedo, normals, green, shadow, silhouette, method, march, material, view, backend })
     }
 
     fn material(&self) -> Result<Material, InputError> {
@@ -253,16 +266,6 @@ impl Relief {
             scale: self.scale as f32,
             plane: if self.scale > 0.0 { (-bias / self.scale) as f32 } else { 1.0 },
             light,
-            shadow: match self.shadow {
-                ShadowKind::None => Shadow::None,
-                ShadowKind::Hard => Shadow::Hard,
-                ShadowKind::Soft => Shadow::Soft,
-            },
-            silhouette: self.silhouette,
-            green: match self.normal_green {
-                GreenKind::Up => Green::Up,
-                GreenKind::Down => Green::Down,
-            },
             ..Material::default()
         };
         material.validate()?;
@@ -373,7 +376,7 @@ impl Plan {
             angle: self.view.angle,
             azimuth: self.view.azimuth,
             tile: self.view.tiles,
-            shadow: self.material.shadow,
+            shadow: self.shadow,
             map: [self.map.width(), self.map.height()],
             size: self.view.size,
             seconds: drawn.seconds,

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use relievo::Error;
 use relievo::harness::CaseResult;
+use relievo::harness::compare::Spread;
 use relievo::verify::{Report, run};
 
 use crate::Context;
@@ -63,6 +64,7 @@ fn summary(report: &Report) -> String {
             number(error),
             number(bound)
         );
+        text += &spread(cases);
     }
     for case in report.cases.iter().filter(|case| !case.comparison.holds) {
         text += &format!(
@@ -81,6 +83,23 @@ fn summary(report: &Report) -> String {
         ),
     };
     text
+}
+
+/// A line on the errors of values that have a bound each.
+fn spread(cases: &[&CaseResult]) -> String {
+    let spreads = || cases.iter().filter_map(|case| case.comparison.spread);
+    let Some(first) = spreads().next() else { return String::new() };
+    let most = |of: fn(Spread) -> f64| spreads().map(of).fold(0.0, f64::max);
+    let sum = |of: fn(Spread) -> usize| spreads().map(of).sum::<usize>();
+    format!(
+        "{:<18} 99 of 100 within {} {unit} in every case, largest {} {unit}; {} touch (at most {})\n",
+        "",
+        number(most(|spread| spread.p99)),
+        number(most(|spread| spread.largest)),
+        sum(|spread| spread.touching),
+        sum(|spread| spread.may_touch),
+        unit = first.unit,
+    )
 }
 
 fn number(value: f64) -> String {

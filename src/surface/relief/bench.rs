@@ -10,7 +10,7 @@ use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRende
 use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
 use crate::samples::BuiltInMap;
 use crate::surface::map::{Address, HeightMap};
-use crate::surface::material::{Material, Shadow};
+use crate::surface::material::Material;
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::reference::Surface;
@@ -103,15 +103,7 @@ fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTexture
 
 /// The square over the whole target.
 fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> Result<ReliefScene, Error> {
-    let options = ReliefOptions {
-        method,
-        shadow: Shadow::None,
-        normal_map: false,
-        silhouette: false,
-        green: Default::default(),
-        depth: false,
-        mip: false,
-    };
+    let options = ReliefOptions { method, ..ReliefOptions::default() };
     let textures = textures(gpu, map, method)?;
     let maps = ReliefMaps { textures: &textures, albedo, normals: None };
     let renderer = ReliefRenderer::new(gpu, COLOR_FORMAT, options)?;

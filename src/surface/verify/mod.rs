@@ -1,5 +1,9 @@
 //! Parity of `kernels/surface/`.
 
+pub mod bounds;
+pub mod depth;
+pub mod penumbra;
+
 use crate::InputError;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::Ray;

@@ -1,0 +1,95 @@
+//! Reference of `kernels/surface/shade.wgsl` and of what `wgsl/surface/shade.wgsl` says about depth.
+
+use rayon::prelude::*;
+
+use crate::surface::relief::reference::Surface;
+use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
+use crate::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
+use crate::surface::shade::{Shade, ShadePoint, ShadeView};
+
+/// How far behind the polygon a hit lies on the eye's ray, in uv units. `scale` is the relief's depth in uv units.
+pub fn distance(ray: &Ray, hit: &Hit, scale: f32) -> f32 {
+    (hit.parameter - ray.polygon) * scale / ray.cosine.max(LEAST_COSINE)
+}
+
+/// The unit vector towards the eye from a point of the polygon. `eye` is where it is (w = 1), or the direction towards
+/// it (w = 0).
+pub fn towards(eye: [f32; 4], position: [f32; 3]) -> [f32; 3] {
+    let way = [0, 1, 2].map(|i| eye[i] - eye[3] * position[i]);
+    let length = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]).sqrt();
+    way.map(|axis| axis / length)
+}
+
+/// The depth, 0 (near) to 1 (far), of what lies `distance` behind a point of the polygon on the eye's ray, all in world
+/// units. `clip_from_world` is given by columns.
+pub fn depth(clip_from_world: [[f32; 4]; 4], position: [f32; 3], towards: [f32; 3], distance: f32) -> f32 {
+    let world = [0, 1, 2].map(|i| position[i] - towards[i] * distance);
+    let clip = |row: usize| {
+        let [x, y, z, w] = clip_from_world.map(|column| column[row]);
+        x * world[0] + y * world[1] + z * world[2] + w
+    };
+    (clip(2) / clip(3)).clamp(0.0, 1.0)
+}
+
+/// Shades a point; hard shadows trace the light's ray with `method`.
+pub fn shade(
+    surface: &Surface<'_>,
+    method: Method,
+    march: &March,
+    view: &ShadeView,
+    point: &ShadePoint,
+) -> Shade {
+    let ShadePoint { light, scale, position, world, ray, hit } = point;
+    let first = surface.trace(method, &light_ray(hit, *light, *scale), march);
+    let march = March { address: surface.address, ..*march };
+    let (steps, softness) = (view.shadow_steps, view.softness);
+    let soft = soft_shadow(surface.map, hit, *light, *scale, &march, steps, softness);
+    let towards = towards(view.eye.to_array(), *position);
+    let distance = distance(ray, hit, *scale) * world;
+    let depth = depth(view.clip_from_world.to_cols_array_2d(), *position, towards, distance);
+    Shade { hard: if shaded(&first, hit) { 0.0 } else { 1.0 }, soft, depth }
+}
+
+/// [`shade`] for a list of points, on all threads.
+pub fn shade_all(
+    surface: &Surface<'_>,
+    method: Method,
+    march: &March,
+    view: &ShadeView,
+    points: &[ShadePoint],
+) -> Vec<Shade> {
+    points.par_iter().map(|point| shade(surface, method, march, view, point)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seen straight from above, in parallel: a hit is as deep as the relief there.
+    #[test]
+    fn depth_is_that_of_the_hit_rather_than_the_polygon() {
+        let ray = Ray::new([0.5, 0.5], [0.0, 0.0, 1.0], 0.2, 0.75);
+        for height in [0.0, 0.25, 0.75, 1.0] {
+            let hit = Hit { parameter: 1.0 - height, height, ..Hit::default() };
+            let behind = distance(&ray, &hit, 0.2) * 3.0;
+            assert!((behind - (0.75 - height) * 0.6).abs() < 1e-6, "{height}: {behind}");
+            let view = ShadeView::default();
+            let towards = towards(view.eye.to_array(), [7.0, -3.0, -0.5]);
+            let depth = depth(view.clip_from_world.to_cols_array_2d(), [7.0, -3.0, -0.5], towards, behind);
+            assert!((depth - 0.5 - behind).abs() < 1e-6, "{height}: {depth}");
+        }
+    }
+
+    /// In perspective at an angle: where the eye's ray goes on, not where the normal does.
+    #[test]
+    fn depth_follows_the_eyes_ray() {
+        let eye = [3.0, 0.0, 4.0, 1.0];
+        let towards = towards(eye, [0.0; 3]);
+        assert_eq!(towards, [0.6, 0.0, 0.8]);
+        // Depth is z / (5 − z) of the point −2 · towards.
+        let rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 0.0, -1.0, 5.0]];
+        let columns = [0, 1, 2, 3].map(|column| rows.map(|row| row[column]));
+        let depth = depth(columns, [0.0; 3], towards, 2.0);
+        assert!((depth - 1.6 / 6.6).abs() < 1e-6, "{depth}");
+    }
+}

@@ -1,0 +1,175 @@
+//! The bounds that parity gives each ray: they hold for other roundings than the reference's, and they are narrow.
+
+use relievo::hash::threefry2x32;
+use relievo::surface::exact::exact;
+use relievo::surface::relief::reference::Surface;
+use relievo::surface::verify::bounds::{Judged, Source, judge};
+use relievo::surface::verify::{Shape, random_map, random_rays};
+use relievo::surface::{Address, HeightMap, March, Method, Ray};
+
+/// A map with rays, and what is known of them.
+struct Scene {
+    map: HeightMap,
+    march: March,
+    rays: Vec<Ray>,
+    judged: Vec<Judged>,
+}
+
+fn scenes(method: Method) -> Vec<Scene> {
+    let sizes = [[5, 4], [64, 64], [33, 100], [129, 127]];
+    let all = sizes.into_iter().zip(Shape::ALL).zip(0..);
+    let both =
+        all.flat_map(|(scene, case)| [Address::Wrap, Address::Clamp].map(|address| (scene, case, address)));
+    let scenes = both.map(|((size, shape), case, address)| {
+        let map = random_map(case, size, shape).expect("a map");
+        let march = March { address, steps: [6, 24 + case], binary_steps: 14 };
+        let rays = random_rays(case, 1000);
+        let judged = judge(&map, method, &march, &rays, Source::Given).expect("judged");
+        Scene { map, march, rays, judged }
+    });
+    scenes.collect()
+}
+
+fn travel(ray: &Ray, map: &HeightMap) -> f64 {
+    let [x, y] = [f64::from(map.width()), f64::from(map.height())];
+    (f64::from(ray.slope[0]) * x).hypot(f64::from(ray.slope[1]) * y)
+}
+
+/// The bilinear height, in f64.
+fn height(map: &HeightMap, ray: &Ray, parameter: f64, address: Address) -> f64 {
+    let [x, y] = [0, 1].map(|i| {
+        let edge = f64::from([map.width(), map.height()][i]);
+        (f64::from(ray.origin[i]) + parameter * f64::from(ray.slope[i])) * edge - 0.5
+    });
+    let texel =
+        |dx: i32, dy: i32| f64::from(map.texel(x.floor() as i32 + dx, y.floor() as i32 + dy, address));
+    let (right, below) = (x - x.floor(), y - y.floor());
+    (texel(0, 0) * (1.0 - right) + texel(1, 0) * right) * (1.0 - below)
+        + (texel(0, 1) * (1.0 - right) + texel(1, 1) * right) * below
+}
+
+/// What a method finds in f64; none for rays from behind.
+fn in_f64(map: &HeightMap, method: Method, ray: &Ray, march: &March) -> Option<f64> {
+    let above = |parameter: f64| 1.0 - parameter - height(map, ray, parameter, march.address);
+    let (polygon, cosine) = (f64::from(ray.polygon), f64::from(ray.cosine));
+    if cosine <= 0.0 {
+        return None;
+    }
+    Some(match method {
+        Method::Plain => polygon,
+        Method::Parallax => polygon + above(polygon),
+        Method::ParallaxLimited => polygon + cosine * above(polygon),
+        Method::Cone | Method::Quadtree => exact(map, ray, march.address)?.parameter,
+        Method::Relief | Method::Occlusion => {
+            let [low, high] = march.steps.map(f64::from);
+            let steps = (low + (high - low) * (1.0 - cosine.min(1.0))).ceil();
+            let stop = (1..).map(f64::from).find(|step| *step >= steps || above(step / steps) <= 0.0)?;
+            let (mut start, mut end) = ((stop - 1.0) / steps, stop / steps);
+            if method == Method::Occlusion {
+                let (over, below) = (above(start).max(0.0), (-above(end)).max(0.0));
+                let share = if over + below > 1e-12 { over / (over + below) } else { 1.0 };
+                return Some(start + share * (end - start));
+            }
+            for _ in 0..march.binary_steps {
+                let middle = 0.5 * (start + end);
+                if above(middle) <= 0.0 { end = middle } else { start = middle }
+            }
+            0.5 * (start + end)
+        }
+    })
+}
+
+/// f64 rounds otherwise than f32 everywhere: both lie within the bounds of any rounding.
+#[test]
+fn what_methods_find_in_f64_lies_within_each_rays_bound() {
+    for method in Method::ALL {
+        let mut largest = 0.0_f64;
+        for Scene { map, march, rays, judged } in scenes(method) {
+            for (ray, judged) in rays.iter().zip(&judged) {
+                let Some(parameter) = in_f64(&map, method, ray, &march) else { continue };
+                let off = (parameter - f64::from(judged.expected.parameter)).abs();
+                let ratio = (off / judged.parameter).max(off * travel(ray, &map) / judged.texels);
+                assert!(ratio <= 1.0, "{method:?} {march:?}: {ray:?}: {parameter} beside {judged:?}");
+                largest = largest.max(ratio);
+            }
+        }
+        assert!(
+            method == Method::Plain || largest > 0.02,
+            "{method:?}: rounding comes to {largest} of the bounds"
+        );
+    }
+}
+
+/// Rays that are an ulp off, as arithmetic on them may be, hit within the bounds; steady ones make the same loads.
+#[test]
+fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
+    for method in Method::ALL {
+        let (mut steady, mut others) = (0, 0);
+        for Scene { map, march, rays, judged } in scenes(method) {
+            let surface = Surface::new(&map, method, march.address);
+            for (index, (ray, judged)) in rays.iter().zip(&judged).enumerate() {
+                for turn in 0..4 {
+                    let words = threefry2x32([turn, 7], [index as u32; 8], [0, 1, 2, 3, 4, 5, 6, 7]).0;
+                    let near = |value: f32, word: u32| match word % 3 {
+                        0 => value.next_up(),
+                        1 => value.next_down(),
+                        _ => value,
+                    };
+                    let axes = |values: [f32; 2], at: usize| {
+                        [near(values[0], words[at]), near(values[1], words[at + 1])]
+                    };
+                    let moved = Ray { origin: axes(ray.origin, 0), slope: axes(ray.slope, 2), ..*ray };
+                    let hit = surface.trace(method, &moved, &march);
+                    let off = f64::from((hit.parameter - judged.expected.parameter).abs());
+                    assert!(
+                        off <= judged.parameter,
+                        "{method:?} {march:?}: {moved:?}: {hit:?} beside {judged:?}"
+                    );
+                    let is_same = hit.samples == judged.expected.samples;
+                    assert!(
+                        is_same || !judged.is_steady,
+                        "{method:?} {march:?}: {moved:?}: {hit:?} beside {judged:?}"
+                    );
+                    steady += usize::from(judged.is_steady);
+                    others += usize::from(!is_same);
+                }
+            }
+        }
+        assert!(
+            steady > 4 * 7000,
+            "{method:?}: only {steady} of 32,000 are steady; {others} made other loads"
+        );
+    }
+}
+
+/// An ordinary ray's bound is some thousandths of a texel.
+#[test]
+fn most_bounds_are_narrow() {
+    for method in Method::ALL {
+        let mut bounds: Vec<f64> =
+            scenes(method).iter().flat_map(|scene| scene.judged.iter().map(|judged| judged.texels)).collect();
+        bounds.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| bounds[(share * bounds.len() as f64) as usize];
+        assert!(
+            at(0.5) < 1e-3 && at(0.85) < 0.02,
+            "{method:?}: half below {}, 85 of 100 below {}",
+            at(0.5),
+            at(0.85)
+        );
+    }
+}
+
+/// A ray that grazes a post meets it or not, by rounding: its bound reaches from one to the other.
+#[test]
+fn a_ray_that_grazes_says_so() {
+    let mut heights = vec![0.0; 64];
+    heights[4 * 8 + 4] = 0.5;
+    let map = HeightMap::new(8, 8, heights).expect("a map");
+    let march = March { address: Address::Clamp, ..March::default() };
+    // At height 1/2 above the post's tip, to 1e-7 or 1e-3.
+    let ray = |by: f32| Ray { origin: [0.0625, 0.5625], slope: [1.0, by], cosine: 0.5, polygon: 0.0 };
+    let judged =
+        |by: f32| judge(&map, Method::Quadtree, &march, &[ray(by)], Source::Given).expect("judged")[0];
+    assert!(judged(1e-7).touches() && judged(1e-7).texels > 3.0, "{:?}", judged(1e-7));
+    assert!(judged(1e-3).texels < 0.5 * judged(1e-7).texels, "{:?}", judged(1e-3));
+}
