@@ -15,9 +15,9 @@ use crate::skinning::weights::{MOST_INFLUENCES, Reduction};
 mod pass;
 
 #[cfg(feature = "gpu")]
-pub(crate) use pass::{DRAW_WORDS, number_at};
-#[cfg(feature = "gpu")]
 pub use pass::{LodJob, LodPass};
+#[cfg(feature = "gpu")]
+pub(crate) use pass::{draws_at, numbers_at};
 
 /// Where a crowd is seen from, and how it fades.
 #[derive(Debug, Clone, Copy, PartialEq)]
