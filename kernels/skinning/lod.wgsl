@@ -23,15 +23,24 @@ struct LodParams {
     coarser: u32,
     // From one level's list of instances to the next one's.
     stride: u32,
+    // −1 where the view mirrors, else 1.
+    side: f32,
 }
 
-// Of the indirect draw of a level.
-struct Arguments {
+// Of an indirect draw.
+struct Draw {
     indices: u32,
     instances: atomic<u32>,
     first_index: u32,
     base_vertex: u32,
     first_instance: u32,
+}
+
+// Of a level: the draw of its list, and that of the mirrored ones in it, which goes through the list up to the last of
+// these.
+struct Arguments {
+    listed: Draw,
+    mirrored: Draw,
 }
 
 @group(0) @binding(0) var<uniform> params: LodParams;
@@ -52,6 +61,12 @@ fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
     let mixed = abs(x * x.yzx + y * y.yzx + z * z.yzx);
     let sums = squares + mixed + mixed.zxy;
     return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
+}
+
+// Whether an instance of these rows may be a mirror image, a view of side 1 or −1 considered: what is nearly flat may be
+// either, and whoever draws it decides.
+fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
+    return side * dot(x, cross(y, z)) < 1e-5 * (length(x) * length(y) * length(z));
 }
 
 // How far away a place counts, which lies so from the eye: as far as it is, straight ahead; less to the side.
@@ -91,7 +106,11 @@ fn main(
             level++;
         }
         reduction = Reduction(floor(way * params.steps) / params.steps, params.most, level);
-        drawn[level * params.stride + atomicAdd(&arguments[level].instances, 1u)] = instance;
+        let place = atomicAdd(&arguments[level].listed.instances, 1u);
+        drawn[level * params.stride + place] = instance;
+        if may_mirror(x.xyz, y.xyz, z.xyz, params.side) {
+            atomicMax(&arguments[level].mirrored.instances, place + 1u);
+        }
     }
     reductions[instance] = reduction;
 }

@@ -44,7 +44,8 @@ pub struct Mesh {
     pub tangents: Vec<[f32; 4]>,
     /// One a vertex, v down the image; those of the material's texture.
     pub uv: Vec<[f32; 2]>,
-    /// Three a triangle, counter-clockwise seen from outside.
+    /// Three a triangle, counter-clockwise seen from outside, where the skin's bones take it. Where these mirror it at
+    /// rest, that is clockwise as it was bound; import turns the file's triangles round there.
     pub indices: Vec<u32>,
     /// Whether triangles are seen from inside too.
     pub double_sided: bool,

@@ -1,5 +1,5 @@
 //! Crowds of several characters in one picture: who is seen, how far each fades and with which level of detail is decided
-//! in one compute pass; meshes are skinned once; every level of a mesh, which has one material, is one indirect draw, all
+//! in one compute pass; meshes are skinned once; every level of a mesh, which has one material, is two indirect draws, all
 //! in the caller's render pass with its depth buffer.
 
 use glam::{Mat4, Vec3};
@@ -12,7 +12,7 @@ use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use crate::skinning::ball::ball_in_clips;
 use crate::skinning::frame::SkinFrame;
-use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, number_at};
+use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
 use crate::skinning::picture::Light;
 use crate::skinning::reduction::Reduction;
 use crate::skinning::vertex::Blend;
@@ -30,7 +30,7 @@ pub struct Character<'a> {
     /// [`GatedFrame::model_matrices`](crate::animation::frame::GatedFrame::model_matrices). Where it is not known which of
     /// them a frame updates, all vertices are skinned in every frame.
     pub matrices: &'a ModelMatrices,
-    /// From the model's space into the world, one an instance.
+    /// From the model's space into the world, one an instance. They may mirror.
     pub placements: &'a Buffer<Affine>,
     /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::away`]
     /// counts them.
@@ -58,7 +58,7 @@ pub struct CrowdScene {
 pub struct DrawnCharacter {
     /// One a mesh. The caller may write weights of morph targets here.
     pub frames: Vec<SkinFrame>,
-    /// One a mesh. The second of the first's arguments of each level is how many instances are drawn.
+    /// One a mesh. The second of the first's ten arguments of each level is how many instances are drawn.
     pub scenes: Vec<SkinnedScene>,
     /// Which instances these are, level by level, [`list_stride`](crate::skinning::lod::list_stride) words each.
     pub drawn: Buffer<u32>,
@@ -177,7 +177,7 @@ impl DrawnCharacter {
         for (other, drawn) in self.frames.iter().zip(&self.scenes).skip(1) {
             let reductions = &other.crowd.reductions;
             encoder.copy_buffer_to_buffer(frame.raw(), 0, reductions.raw(), 0, reductions.bytes());
-            for number in (0..self.levels()).map(number_at) {
+            for number in (0..self.levels()).flat_map(numbers_at) {
                 encoder.copy_buffer_to_buffer(scene.raw(), number, drawn.arguments.raw(), number, 4);
             }
         }

@@ -1,5 +1,5 @@
-//! Draws skinned instances of a mesh into the caller's render pass: one indirect draw for all, or for all of a level of
-//! detail. A mesh has one material: a model of several is drawn mesh by mesh.
+//! Draws skinned instances of a mesh into the caller's render pass: two indirect draws for all, or for all of a level of
+//! detail, the second of what is mirrored. A mesh has one material: a model of several is drawn mesh by mesh.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
@@ -12,8 +12,8 @@ use crate::render::albedo::Albedo;
 use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
-use crate::skinning::lod::{DRAW_WORDS, list_stride};
-use crate::skinning::picture::Light;
+use crate::skinning::lod::{draws_at, list_stride};
+use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 
@@ -25,6 +25,7 @@ pub(crate) struct SkinnedView {
     pub color: Vec4,
     pub vertices: u32,
     pub cutoff: f32,
+    pub side: f32,
 }
 
 /// Draws meshes on targets of a format.
@@ -40,7 +41,7 @@ pub struct SkinnedInstances<'a> {
     pub mesh: &'a MeshBuffers,
     /// As [`crate::skinning::skin::SkinPass`] writes them.
     pub skinned: &'a Buffer<Vertex>,
-    /// From the model's space into the world, one an instance.
+    /// From the model's space into the world, one an instance. They may mirror: outside stays outside.
     pub placements: &'a Buffer<Affine>,
     /// The instances that are drawn: one list, at most as long as there are places, of the mesh itself; or one a level of
     /// detail, [`list_stride`] words each. Lists of levels that the mesh lacks are drawn with its last.
@@ -59,13 +60,14 @@ impl SkinnedRenderer {
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let renderer = Self { color };
-        for double_sided in [false, true] {
-            renderer.pipeline(gpu, double_sided, Alpha::Opaque)?;
+        for sides in [Sides::Both, Sides::Outer, Sides::OuterMirrored] {
+            renderer.pipeline(gpu, sides, Alpha::Opaque)?;
         }
         Ok(renderer)
     }
 
-    fn pipeline(&self, gpu: &Gpu, double_sided: bool, alpha: Alpha) -> Result<RenderPipeline, GpuError> {
+    fn pipeline(&self, gpu: &Gpu, sides: Sides, alpha: Alpha) -> Result<RenderPipeline, GpuError> {
+        let is = |wanted: Sides| f64::from(sides == wanted);
         let draws = Draws {
             shader: &shaders::RENDER_SKINNED,
             fragment: match alpha {
@@ -73,17 +75,21 @@ impl SkinnedRenderer {
                 Alpha::Mask(_) => "masked",
                 Alpha::Screen => "screened",
             },
-            constants: &[("DOUBLE_SIDED", f64::from(double_sided))],
+            constants: &[("DOUBLE_SIDED", is(Sides::Both)), ("MIRRORED", is(Sides::OuterMirrored))],
             topology: wgpu::PrimitiveTopology::TriangleList,
-            cull: (!double_sided).then_some(wgpu::Face::Back),
+            cull: match sides {
+                Sides::Both => None,
+                Sides::Outer => Some(wgpu::Face::Back),
+                Sides::OuterMirrored => Some(wgpu::Face::Front),
+            },
             vertices: &[],
         };
-        let key = format!("{} {:?} {double_sided} {}", draws.shader.name, self.color, draws.fragment);
+        let key = format!("{} {:?} {sides:?} {}", draws.shader.name, self.color, draws.fragment);
         gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
     }
 
     /// Binds instances. Until [`SkinnedScene::arguments`] says otherwise, as many of the first list are drawn as it has
-    /// room for, one a place at most, and none of the others.
+    /// room for, one a place at most, and none of the others; any of them may be mirrored.
     ///
     /// # Errors
     /// [`InputError`] for too few vertices or places, and other than whole lists of at most [`MOST_LEVELS`] levels;
@@ -100,10 +106,11 @@ impl SkinnedRenderer {
             color: albedo.factor.into(),
             vertices: vertices as u32,
             cutoff: if let Alpha::Mask(cutoff) = albedo.alpha { cutoff } else { 0.0 },
+            side: 1.0,
         };
         let uniform = Uniform::new(gpu, "skinned view", &view)?;
         let texture = albedo.texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let (pipeline, layouts) = self.pipeline(gpu, mesh.double_sided, albedo.alpha)?;
+        let (pipelines, layouts) = self.pipelines(gpu, mesh.double_sided, albedo.alpha)?;
         let group = |level: usize| {
             let resources = [
                 uniform.raw().as_entire_binding(),
@@ -119,17 +126,44 @@ impl SkinnedRenderer {
         let instances = drawn.len().min(placements.len()) as u32;
         let arguments = (0..levels).flat_map(|level| {
             let ClusterLevel { first_index, indices, .. } = mesh.level(level as u32);
-            [indices, if level == 0 { instances } else { 0 }, first_index, 0, 0]
+            [indices, if level == 0 { instances } else { 0 }, first_index, 0, 0].repeat(2)
         });
         Ok(SkinnedScene {
             arguments: Buffer::from_slice(gpu, "draw", &arguments.collect::<Vec<_>>())?,
             groups: (0..levels).map(group).collect::<Result<_, _>>()?,
             indices: mesh.indices.clone(),
-            pipeline,
+            pipelines,
             view,
             uniform,
         })
     }
+
+    /// What draws all instances of both sides; or those that are not mirrored, and those that are.
+    fn pipelines(
+        &self,
+        gpu: &Gpu,
+        double_sided: bool,
+        alpha: Alpha,
+    ) -> Result<(Vec<wgpu::RenderPipeline>, Vec<wgpu::BindGroupLayout>), GpuError> {
+        let sides: &[Sides] =
+            if double_sided { &[Sides::Both] } else { &[Sides::Outer, Sides::OuterMirrored] };
+        let (pipelines, mut layouts): (Vec<_>, Vec<_>) =
+            sides.iter().map(|sides| self.pipeline(gpu, *sides, alpha)).collect::<Result<_, _>>()?;
+        // Of the same shader, and so the same.
+        Ok((pipelines, layouts.swap_remove(0)))
+    }
+}
+
+/// Which sides of triangles a draw shows, and of which instances: what a placement or the view mirrors runs clockwise on
+/// the screen, seen from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sides {
+    /// Both, of all.
+    Both,
+    /// The outer ones of what is not mirrored.
+    Outer,
+    /// The outer ones of what is.
+    OuterMirrored,
 }
 
 /// How many lists of drawn instances there are, and the words of each.
@@ -158,10 +192,12 @@ fn list(drawn: &Buffer<u32>, at: usize, words: usize) -> wgpu::BindingResource<'
 /// Instances of a mesh: set the camera, then draw in any render pass.
 #[derive(Debug, Clone)]
 pub struct SkinnedScene {
-    /// Of the indirect draw of each level that `drawn` has a list of, five words: indices, instances, the first index, and
-    /// two zeros. The caller or a kernel may change the second.
+    /// Of each level that `drawn` has a list of two indirect draws, five words each: indices, instances, the first index,
+    /// and two zeros. The first draw leaves out the instances that are mirrored, and the second draws no others; each goes
+    /// through so many of the list as its second word says. Where both sides are seen, the first draws all. The caller or
+    /// a kernel may change both numbers; the second draw's need not go beyond the last mirrored instance.
     pub arguments: Buffer<u32>,
-    pipeline: wgpu::RenderPipeline,
+    pipelines: Vec<wgpu::RenderPipeline>,
     view: SkinnedView,
     uniform: Uniform<SkinnedView>,
     groups: Vec<Group>,
@@ -175,16 +211,19 @@ impl SkinnedScene {
     /// [`GpuError`].
     pub fn set_camera(&mut self, gpu: &Gpu, clip_from_world: Mat4) -> Result<(), GpuError> {
         self.view.clip_from_world = clip_from_world;
+        self.view.side = if is_mirrored(&clip_from_world) { -1.0 } else { 1.0 };
         self.uniform.write(gpu, &self.view)
     }
 
     /// Draws the instances.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
         pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
-        for (level, group) in self.groups.iter().enumerate() {
-            pass.set_bind_group(0, group, &[]);
-            pass.draw_indexed_indirect(self.arguments.raw(), (size_of::<u32>() * DRAW_WORDS * level) as u64);
+        for (draw, pipeline) in self.pipelines.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            for (level, group) in self.groups.iter().enumerate() {
+                pass.set_bind_group(0, group, &[]);
+                pass.draw_indexed_indirect(self.arguments.raw(), draws_at(level)[draw]);
+            }
         }
     }
 }

@@ -42,7 +42,7 @@ pub struct MeshBuffers {
     pub targets: usize,
     /// Bones of the skeleton.
     pub all_bones: usize,
-    /// [`Mesh::double_sided`]. Placements that mirror turn outside in: set this for them.
+    /// [`Mesh::double_sided`].
     pub double_sided: bool,
 }
 

@@ -22,12 +22,16 @@ pub mod tangent;
 pub mod verify;
 pub mod view;
 
+#[cfg(feature = "gpu")]
+pub use height_batch::HeightBatch;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
 pub use material::{Green, Material, Shadow};
 pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
+#[cfg(feature = "gpu")]
+pub use relief::textures::SurfaceTextures;
 pub use relief::{Hit, March, Method, Outcome, Ray};
 pub use shade::{Shade, ShadePoint, ShadeView};
 pub use view::SquareView;

@@ -88,8 +88,9 @@ fn creatures_and_figures_in_one_picture() {
         assert_eq!((character.frames.len(), character.scenes.len()), (meshes, meshes));
         let counts = |scene: &relievo::render::SkinnedScene| {
             let words = scene.arguments.read_blocking(&gpu).expect("read");
-            let [indices, instances, ref rest @ ..] = words[..] else { panic!("five words") };
-            assert!(indices > 0 && *rest == [0; 3]);
+            let [indices, instances, ref rest @ ..] = words[..] else { panic!("ten words") };
+            // Nobody is mirrored.
+            assert!(indices > 0 && *rest == [0, 0, 0, indices, 0, 0, 0, 0]);
             instances as usize
         };
         let seen = counts(&character.scenes[0]);

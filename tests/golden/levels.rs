@@ -178,9 +178,11 @@ fn a_crowd_with_levels() {
             let counts = (0..5)
                 .map(|level| now.iter().filter(|now| now.most > 0 && now.level == level).count() as u32);
             let arguments = scene.arguments.read_blocking(gpu).expect("read");
-            for ((level, count), words) in (0..).zip(counts).zip(arguments.chunks(5)) {
+            for ((level, count), words) in (0..).zip(counts).zip(arguments.chunks(10)) {
                 let held = frame.clusters.level(level);
-                assert_eq!(words, [mesh.triangles(level).len() as u32, count, held.first_index, 0, 0]);
+                let draw = |count| [mesh.triangles(level).len() as u32, count, held.first_index, 0, 0];
+                // Nobody is mirrored.
+                assert_eq!(words, [draw(count), draw(0)].as_flattened());
                 used[level as usize] += count;
             }
             // Nobody moves: only what comes into view, or gets finer.

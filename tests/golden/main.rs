@@ -16,6 +16,7 @@ mod gltf;
 mod ground;
 mod levels;
 mod materials;
+mod mirrored;
 mod scene;
 mod skinned;
 mod tiling;

@@ -2,6 +2,8 @@
 
 // Seen from both sides: what faces away turns its normal round.
 override DOUBLE_SIDED: bool = false;
+// Draws what is mirrored, and leaves out what is not; else the other way round. Seen from both sides, all is drawn at once.
+override MIRRORED: bool = false;
 
 struct SkinnedView {
     clip_from_world: mat4x4<f32>,
@@ -12,6 +14,8 @@ struct SkinnedView {
     // Of the mesh.
     vertices: u32,
     cutoff: f32,
+    // −1 where the view mirrors, else 1.
+    side: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: SkinnedView;
@@ -34,18 +38,25 @@ struct Vertex {
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u32) -> Vertex {
     let instance = drawn[index];
+    let x = placements[3u * instance];
+    let y = placements[3u * instance + 1u];
+    let z = placements[3u * instance + 2u];
+    let determinant = dot(x.xyz, cross(y.xyz, z.xyz));
+    if !DOUBLE_SIDED && (view.side * determinant < 0.0) != MIRRORED {
+        // Beyond the picture.
+        return Vertex(vec4<f32>(2.0, 2.0, 2.0, 1.0), vec3<f32>(0.0), vec2<f32>(0.0));
+    }
     let at = 5u * (instance * view.vertices + vertex);
     let middle = skinned[at + 1u];
     let position = vec4<f32>(skinned[at], middle.x, 1.0);
     let normal = vec3<f32>(middle.y, skinned[at + 2u]);
-    let x = placements[3u * instance];
-    let y = placements[3u * instance + 1u];
-    let z = placements[3u * instance + 2u];
     let world = vec4<f32>(dot(x, position), dot(y, position), dot(z, position), 1.0);
-    // By the cofactors: right for uneven scales too.
+    // By the cofactors: right for uneven scales too. Where the placement mirrors, these point inwards. That is right where
+    // both sides are seen: the rasterizer takes the inner one for the front then.
     let facing = vec3<f32>(
         dot(cross(y.xyz, z.xyz), normal), dot(cross(z.xyz, x.xyz), normal), dot(cross(x.xyz, y.xyz), normal));
-    return Vertex(view.clip_from_world * world, facing, texture_coordinates[vertex]);
+    let outwards = select(facing, -facing, !DOUBLE_SIDED && determinant < 0.0);
+    return Vertex(view.clip_from_world * world, outwards, texture_coordinates[vertex]);
 }
 
 // The rank of a pixel's place among 4 × 4 (Bayer 1973), between 0 and 1.
@@ -63,7 +74,7 @@ fn colored(in: Vertex) -> vec4<f32> {
 fn lit(color: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
     var normal = normalize(in.normal);
     if DOUBLE_SIDED {
-        normal = select(-normal, normal, is_front);
+        normal = select(-normal, normal, is_front == (view.side > 0.0));
     }
     let direct = max(dot(normal, view.light.xyz), 0.0);
     return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);

@@ -10,8 +10,8 @@ use gltf_json::validation::Checked;
 use super::document::Document;
 use super::materials::{Coordinates, Materials};
 use super::nodes::{Nodes, node_name};
-use super::rigid::Rigid;
 use super::tangents::{Surface, Tangents};
+use super::winding::{mirrored, mirrors, turn_mirrored};
 use crate::InputError;
 use crate::asset::clip::Interpolation;
 use crate::asset::influences::{Influence, Influences};
@@ -31,11 +31,13 @@ pub fn meshes(
     nodes: &Nodes,
     materials: &mut Materials,
 ) -> Result<Vec<Mesh>, InputError> {
-    let skinned = nodes.skinned.iter().map(|(node, skin)| (*node, *skin, None));
+    let skinned = nodes.skinned.iter().map(|(node, skin)| (*node, *skin, false));
     let rigid = nodes.rigid.iter().zip(nodes.own_skins()..);
-    let rigid = rigid.map(|(rigid, skin)| (rigid.node, skin, Some(rigid)));
+    let rigid = rigid.map(|(rigid, skin)| (rigid.node, skin, true));
+    let mirrored = mirrored(&nodes.skeleton);
+    let mirrors: Vec<_> = nodes.skins.iter().map(|skin| mirrors(&mirrored, skin)).collect();
     let mut meshes = Vec::new();
-    for (node, skin, rigid) in skinned.chain(rigid) {
+    for (node, skin, is_rigid) in skinned.chain(rigid) {
         let Some(mesh) = document.root.nodes[node].mesh else { continue };
         let mesh = mesh.value();
         let weights = weights(document, node, mesh)?;
@@ -47,8 +49,9 @@ pub fn meshes(
             let path = format!("meshes[{mesh}].primitives[{at}]");
             document.budget.spend(&path, PRIMITIVE + keys)?;
             let is_bare = materials.is_unread;
-            let reader = Reader { document, primitive, path, rigid, is_bare };
-            let read = reader.mesh(&nodes.skins[skin], weights.len())?;
+            let reader = Reader { document, primitive, path, is_rigid, is_bare };
+            let mut read = reader.mesh(&nodes.skins[skin], weights.len())?;
+            turn_mirrored(&mut read, &mirrors[skin]);
             let material =
                 primitive.material.filter(|_| !is_bare).map(|material| materials.read(document, material));
             meshes.push(Mesh {
@@ -123,7 +126,7 @@ struct Reader<'a, 'd> {
     primitive: &'a Primitive,
     path: String,
     /// Of a node without a skin.
-    rigid: Option<&'a Rigid>,
+    is_rigid: bool,
     /// Whether materials are left out.
     is_bare: bool,
 }
@@ -146,12 +149,12 @@ impl Reader<'_, '_> {
         let normals = self.normals(&positions, &indices)?;
         let tangents = self.tangents(&positions, &normals, uv.as_deref(), &indices)?;
         self.check_copies(vertices, tangents.copied.len())?;
-        let influences = match self.rigid {
-            Some(_) => {
+        let influences = match self.is_rigid {
+            true => {
                 let one = Influence { bone: 0, weight: 1.0 };
                 Influences::new(&self.named("POSITION"), 1, (0..vertices).map(|_| vec![one]))?
             }
-            None => self.influences(vertices, skin.bones.len())?,
+            false => self.influences(vertices, skin.bones.len())?,
         };
         let targets = self.targets(vertices, targets)?;
         let name = String::new();
@@ -173,9 +176,6 @@ impl Reader<'_, '_> {
             levels: vec![],
         };
         tangents.apply(&mut mesh);
-        if self.rigid.is_some_and(|rigid| rigid.is_mirrored) {
-            mesh.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
-        }
         Ok(mesh)
     }
 

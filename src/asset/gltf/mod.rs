@@ -22,6 +22,9 @@
 //!   coordinates of the normal texture where there is one, before any `KHR_texture_transform`. Where corners of a vertex
 //!   have different tangents, it is repeated behind all others of its primitive, one copy a tangent. Meshes that Draco
 //!   compressed are left out.
+//! - Triangles of what is mirrored at rest are turned round, mesh by mesh, and in a mesh whose bones mirror some of it and
+//!   some not triangle by triangle: [`Mesh::indices`](crate::asset::Mesh::indices). What a clip mirrors, or mirrors back,
+//!   by a scale of another sign than at rest, is seen from inside.
 //! - Of materials: base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or in files beside the
 //!   document; any set of texture coordinates, `KHR_texture_transform` applied to these), samplers, alpha, and
 //!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Screen). Colours of
@@ -48,6 +51,7 @@ mod nodes;
 mod rigid;
 mod scene;
 mod tangents;
+mod winding;
 
 use std::path::Path;
 

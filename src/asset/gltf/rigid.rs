@@ -15,8 +15,6 @@ pub struct Rigid {
     pub anchor: usize,
     /// From the mesh's space into the anchor's.
     pub bind: [f32; 16],
-    /// Whether it is turned outside in, at rest: glTF then turns its triangles round.
-    pub is_mirrored: bool,
 }
 
 /// All of the scene's, in the order of the nodes. An anchor is a joint, a node above joints, or an animated one; else a
@@ -51,8 +49,8 @@ fn with_ancestors(scene: &Scene, nodes: &[usize]) -> Vec<bool> {
     marked
 }
 
-/// What nodes follow: the anchor, what takes the node's space into its, and whether the node is mirrored.
-struct Followed(Vec<Option<(usize, DMat4, bool)>>);
+/// What nodes follow: the anchor, and what takes the node's space into its.
+struct Followed(Vec<Option<(usize, DMat4)>>);
 
 impl Followed {
     /// Of these nodes, which have all that lies above them.
@@ -68,10 +66,9 @@ impl Followed {
         while let Some(node) = waiting.pop() {
             let local = local(root, node)?;
             let above = scene.parents[node].and_then(|parent| followed.0[parent]);
-            let is_mirrored = (local.determinant() < 0.0) != above.is_some_and(|(.., mirrored)| mirrored);
             followed.0[node] = Some(match above {
-                Some((anchor, bind, _)) if !is_anchor(node) => (anchor, bind * local, is_mirrored),
-                _ => (node, DMat4::IDENTITY, is_mirrored),
+                Some((anchor, bind)) if !is_anchor(node) => (anchor, bind * local),
+                _ => (node, DMat4::IDENTITY),
             });
             let children = root.nodes[node].children.iter().flatten().map(|child| child.value());
             waiting.extend(children.filter(|child| wanted[*child]));
@@ -80,10 +77,10 @@ impl Followed {
     }
 
     fn rigid(&self, node: usize) -> Result<Rigid, InputError> {
-        let (anchor, bind, is_mirrored) = self.0[node].unwrap_or((node, DMat4::IDENTITY, false));
+        let (anchor, bind) = self.0[node].unwrap_or((node, DMat4::IDENTITY));
         let bind = bind.to_cols_array().map(|x| x as f32);
         inverse_bind(&format!("nodes[{node}].matrix"), &bind)?;
-        Ok(Rigid { node, anchor, bind, is_mirrored })
+        Ok(Rigid { node, anchor, bind })
     }
 }
 

@@ -39,7 +39,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let placements: Vec<Affine> = (0..count).map(place).collect();
         let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
         let reductions = Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?;
-        let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 5)?);
+        let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 10)?);
         let job = pass.prepare(gpu, &view, &buffer, &reductions, &drawn, &arguments)?;
         // A place in; a reduction and a number out.
         let copied = copy_of(gpu, 16 * count / 2)?;

@@ -21,9 +21,9 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub(crate) use pass::{DRAW_WORDS, number_at};
-#[cfg(feature = "gpu")]
 pub use pass::{LodJob, LodPass};
+#[cfg(feature = "gpu")]
+pub(crate) use pass::{draws_at, numbers_at};
 
 /// Where a crowd is seen from, and how it fades.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,6 +7,7 @@ use super::{LodView, list_stride, list_words};
 use crate::asset::mesh::MOST_LEVELS;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::skinning::picture::is_mirrored;
 use crate::skinning::reduction::Reduction;
 use crate::{Error, InputError};
 
@@ -24,6 +25,7 @@ pub(crate) struct LodParams {
     pub distances: [Vec4; MOST_LEVELS / 4],
     pub coarser: u32,
     pub stride: u32,
+    pub side: f32,
 }
 
 impl LodParams {
@@ -44,16 +46,25 @@ impl LodParams {
             }),
             coarser: begins.len() as u32,
             stride: list_stride(instances) as u32,
+            side: if is_mirrored(&view.clip_from_world) { -1.0 } else { 1.0 },
         }
     }
 }
 
 /// Words of the arguments of an indirect draw with indices.
-pub(crate) const DRAW_WORDS: usize = 5;
+const DRAW_WORDS: usize = 5;
 
-/// The byte of arguments where a level's number of instances is.
-pub(crate) fn number_at(level: usize) -> u64 {
-    (size_of::<u32>() * (DRAW_WORDS * level + 1)) as u64
+/// Words of the arguments of a level: of the draw of its list, and of that of the mirrored ones in it.
+const LEVEL_WORDS: usize = 2 * DRAW_WORDS;
+
+/// The bytes of arguments where a level's two draws begin.
+pub(crate) fn draws_at(level: usize) -> [u64; 2] {
+    [0, DRAW_WORDS].map(|draw| (size_of::<u32>() * (LEVEL_WORDS * level + draw)) as u64)
+}
+
+/// The bytes of arguments where the numbers of instances of a level's two draws are.
+pub(crate) fn numbers_at(level: usize) -> [u64; 2] {
+    draws_at(level).map(|draw| draw + size_of::<u32>() as u64)
 }
 
 /// Decides what is drawn.
@@ -72,8 +83,9 @@ impl LodPass {
     }
 
     /// Prepares the reductions of all instances; of each level of the view the list of those that are seen, in
-    /// [`list_words`] words of `drawn` together; and their number, the second of five `arguments` a level of indirect
-    /// draws ([`crate::render::SkinnedScene::arguments`]).
+    /// [`list_words`] words of `drawn` together; and of the ten `arguments` a level of indirect draws
+    /// ([`crate::render::SkinnedScene::arguments`]) the second, their number, and the seventh, the list's length up to the
+    /// last instance that is mirrored.
     ///
     /// # Errors
     /// [`InputError`] for a view out of range and too small buffers; [`GpuError`].
@@ -91,7 +103,7 @@ impl LodPass {
         reductions.check_holds("reductions", instances)?;
         let levels = 1 + view.levels.distances().len();
         drawn.check_holds("drawn", list_words(instances, levels))?;
-        arguments.check_holds("arguments", DRAW_WORDS * levels)?;
+        arguments.check_holds("arguments", LEVEL_WORDS * levels)?;
         let uniform = Uniform::new(gpu, "lod", &LodParams::new(view, instances))?;
         let resources = [
             uniform.raw().as_entire_binding(),
@@ -147,8 +159,10 @@ impl LodJob {
     ) {
         let all = all.into_iter();
         // The numbers of instances.
-        for (lod, level) in all.clone().flat_map(|lod| (0..lod.levels).map(move |level| (lod, level))) {
-            encoder.clear_buffer(lod.arguments.raw(), number_at(level), Some(4));
+        for lod in all.clone() {
+            for number in (0..lod.levels).flat_map(numbers_at) {
+                encoder.clear_buffer(lod.arguments.raw(), number, Some(4));
+            }
         }
         let descriptor = wgpu::ComputePassDescriptor { label: Some("skinning/lod"), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);
@@ -184,14 +198,14 @@ mod tests {
         let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
         let reductions = Buffer::new(&gpu, "reductions", 4).expect("allocated");
         let drawn = Buffer::new(&gpu, "drawn", list_words(4, 3)).expect("allocated");
-        let arguments = Buffer::new(&gpu, "arguments", 15).expect("allocated");
+        let arguments = Buffer::new(&gpu, "arguments", 30).expect("allocated");
         let pass = LodPass::new(&gpu).expect("compiled");
         let prepare = |view: &LodView| pass.prepare(&gpu, view, &placements, &reductions, &drawn, &arguments);
         let lod = prepare(&view(&[1.0, 2.0])).expect("prepared");
         let seen = || {
             gpu.run("lod", |encoder| lod.record(encoder)).expect("run");
             let words = arguments.read_blocking(&gpu).expect("read");
-            [words[1], words[6], words[11]]
+            [words[1], words[11], words[21]]
         };
         assert_eq!(seen(), [1, 1, 2]);
         for (distances, counts) in [(&[3.0][..], [3, 1, 0]), (&[], [4, 0, 0]), (&[0.0, 3.0], [0, 3, 1])] {

@@ -4,6 +4,7 @@ use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
 use crate::asset::transform::Affine;
 use crate::skinning::lod::LodView;
+use crate::skinning::picture::is_mirrored;
 use crate::skinning::reduction::Reduction;
 
 /// How an instance at this place is seen.
@@ -34,6 +35,14 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let away = view.away(center);
     let way = (away - view.near) / (view.far - view.near);
     Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), away, way: way.clamp(0.0, 1.0) }
+}
+
+/// Whether an instance may be seen as a mirror image: its placement mirrors, or the view does, and not both. What is
+/// nearly flat may be either.
+pub fn may_mirror(view: &LodView, placement: &Affine) -> bool {
+    let [x, y, z] = placement.map(|row| Vec4::from_array(row).truncate());
+    let side = if is_mirrored(&view.clip_from_world) { -1.0 } else { 1.0 };
+    side * x.dot(y.cross(z)) < 1e-5 * (x.length() * y.length() * z.length())
 }
 
 /// What an instance is drawn with; [`Reduction::UNSEEN`] where it is not seen.

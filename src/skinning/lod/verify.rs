@@ -9,18 +9,21 @@ use crate::gpu::Buffer;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
-use crate::skinning::lod::reference::{Seen, lod, seen};
+use crate::skinning::lod::reference::{Seen, lod, may_mirror, seen};
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, standing};
 use crate::skinning::reduction::Reduction;
+
+/// Of a level: indices, instances and the first index of two draws, before the decision.
+const ARGUMENTS: [u32; 10] = [7, 99, 3, 0, 0, 7, 98, 3, 0, 0];
 
 /// How near to a decision rounding may decide otherwise: places are within 200 of the origin, and their sums carry some
 /// 20ε of that.
 const TOUCH: f32 = 3e-4;
 
-/// Where cameras look, and where levels begin.
+/// Where cameras look, and where levels begin. The second is a mirror image.
 const DIRECTIONS: [(&str, Vec3, &[f32]); 4] = [
     ("south", Vec3::Z, &[]),
-    ("aside", Vec3::new(1.0, -0.2, 0.3), &[40.0]),
+    (MIRROR, Vec3::new(1.0, -0.2, 0.3), &[40.0]),
     ("up", Vec3::Y, &[-1.0, 9.0, 20.0]),
     (
         "back",
@@ -29,7 +32,9 @@ const DIRECTIONS: [(&str, Vec3, &[f32]); 4] = [
     ),
 ];
 
-/// Instances everywhere around several cameras; nobody in sight, and all; without levels, with one more, and with as many
+const MIRROR: &str = "aside, mirrored";
+
+/// Instances everywhere around several cameras, every third mirrored; nobody in sight, and all; without levels, with one more, and with as many
 /// as there may be, some of them empty. Those at the very edge of the view, of a step of the fade and of a level are left
 /// out, and counted. What is not listed stays as it was.
 ///
@@ -40,34 +45,41 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = LodPass::new(gpu)?;
     for (case, count) in (0..).zip([1, 63, 64, 65, 1000]) {
         let mut draw = Draw::new(case ^ 0x10d);
-        let mut place = |_| {
+        let mut place = |instance| {
             let at = [0; 3].map(|_| 100.0 * draw.signed());
-            standing(
+            let [x, y, z] = standing(
                 Vec3::from(at) * Vec3::new(1.0, 0.1, 1.0),
                 3.0 * draw.signed(),
                 1.0 + 0.5 * draw.signed(),
-            )
+            );
+            // Above the ground, as in water.
+            [x, if instance % 3 == 1 { [-y[0], -y[1], -y[2], y[3]] } else { y }, z]
         };
         let placements: Vec<Affine> = (0..count).map(&mut place).collect();
         for (name, towards, levels) in DIRECTIONS {
-            let view = LodView { levels: LevelRanges::new(levels)?, ..view(towards) };
+            let mut view = LodView { levels: LevelRanges::new(levels)?, ..view(towards) };
+            if name == MIRROR {
+                view.clip_from_world = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * view.clip_from_world;
+            }
             let levels = 1 + levels.len();
             let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
             let (reductions, drawn) =
                 (Poisoned::<Reduction>::new(gpu, count)?, Poisoned::new(gpu, list_words(count, levels))?);
-            let arguments = Buffer::from_slice(gpu, "arguments", &[7, 99, 3, 0, 0].repeat(levels))?;
+            let arguments = Buffer::from_slice(gpu, "arguments", &ARGUMENTS.repeat(levels))?;
             let job = pass.prepare(gpu, &view, &buffer, &reductions.buffer, &drawn.buffer, &arguments)?;
             // Twice: the number of instances begins anew.
             gpu.run("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
             let arguments = arguments.read_blocking(gpu)?;
             let (mut lists, mut found) = (Vec::new(), Vec::new());
             let kept = drawn.check(gpu, |drawn| split(drawn, &arguments, count, &mut lists))?;
+            let mirrored = mirrored(&view, &placements, &arguments, &lists);
             let guard = reductions.check(gpu, |reductions| {
                 found = reductions.to_vec();
                 compare::exact(&[0], &[0])
             })?;
             cases.add(format!("{count} instances, {name}: the lists' ends"), kept);
             cases.add(format!("{count} instances, {name}: the reductions' end"), guard);
+            cases.add(format!("{count} instances, {name}: the last mirrored one"), mirrored);
             cases.add(format!("{count} instances, {name}"), compared(&view, &placements, &found, &lists));
         }
     }
@@ -95,15 +107,24 @@ fn view(towards: Vec3) -> LodView {
 /// The lists of all levels, as long as the arguments say. What is behind each is still poison, and the arguments' other
 /// words are as they were.
 fn split(drawn: &[u32], arguments: &[u32], count: usize, lists: &mut Vec<Vec<u32>>) -> Comparison {
-    let stride = if arguments.len() == 5 { count } else { list_stride(count) };
+    let stride = if arguments.len() == 10 { count } else { list_stride(count) };
     let mut behind = Vec::new();
-    for (list, arguments) in drawn.chunks(stride).zip(arguments.chunks(5)) {
+    for (list, arguments) in drawn.chunks(stride).zip(arguments.chunks(10)) {
         let (listed, rest) = list.split_at((arguments[1] as usize).min(list.len()));
         lists.push(listed.to_vec());
         behind.extend(rest.iter().map(|word| word ^ POISON));
-        behind.extend([arguments[0] ^ 7, arguments[2] ^ 3, arguments[3], arguments[4]]);
+        let kept = [0, 2, 3, 4, 5, 7, 8, 9];
+        behind.extend(kept.map(|at: usize| arguments[at] ^ ARGUMENTS[at]));
     }
     compare::exact(&behind, &vec![0; behind.len()])
+}
+
+/// How many of each list have all of those that are mirrored.
+fn mirrored(view: &LodView, placements: &[Affine], arguments: &[u32], lists: &[Vec<u32>]) -> Comparison {
+    let is_mirrored = |drawn: &u32| may_mirror(view, &placements[*drawn as usize]);
+    let last = |list: &Vec<u32>| list.iter().rposition(is_mirrored).map_or(0, |place| place as u32 + 1);
+    let found: Vec<u32> = arguments.chunks(10).map(|arguments| arguments[6]).collect();
+    compare::exact(&found, &lists.iter().map(last).collect::<Vec<_>>())
 }
 
 /// For each instance how often it is listed, and how often for its level; its fade, most influences and level.

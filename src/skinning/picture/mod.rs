@@ -3,7 +3,7 @@
 pub mod reference;
 pub mod texture;
 
-use glam::{Mat4, Vec2, Vec3, camera};
+use glam::{DVec3, Mat4, Vec2, Vec3, camera};
 
 use crate::InputError;
 use crate::skinning::vertex::Vertex;
@@ -40,6 +40,16 @@ impl Light {
     }
 }
 
+/// Whether what is seen through this matrix, from some space to clip space, is a mirror image: triangles that run
+/// counter-clockwise in that space, seen from outside, then run clockwise on the screen. Of a parallel view, whose depth
+/// must grow with the distance, that of all three axes decides.
+pub fn is_mirrored(clip: &Mat4) -> bool {
+    // Wide: a product of three small scales may be no f32.
+    let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());
+    let ahead = if ahead == DVec3::ZERO { depth } else { ahead };
+    right.cross(up).dot(ahead) > 0.0
+}
+
 /// From the model's space to clip space: all of these vertices in the middle of a square picture, seen from +Z, a little
 /// from the left and above.
 pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
@@ -71,4 +81,32 @@ fn around(places: impl Iterator<Item = Vec3>) -> Mat4 {
     let view = camera::rh::view::look_at_mat4(eye, center, Vec3::Y);
     let near = distance - 1.01 * radius;
     camera::rh::proj::directx::perspective(field_of_view, 1.0, near, distance + 1.01 * radius) * view
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use camera::rh::{proj::directx, view::look_at_mat4};
+
+    #[test]
+    fn mirror_images_are_told_from_pictures() {
+        let look = look_at_mat4(Vec3::new(3.0, 4.0, 5.0), Vec3::new(0.0, 1.0, -2.0), Vec3::Y);
+        for lens in [
+            directx::perspective(0.8, 1.5, 0.1, 90.0),
+            directx::perspective_infinite_reverse(0.8, 1.5, 0.1),
+            directx::frustum(0.3, 0.9, -0.2, 0.1, 0.5, 40.0),
+            directx::orthographic(-3.0, 2.0, -1.0, 4.0, -10.0, 50.0),
+        ] {
+            for turn in [
+                Mat4::IDENTITY,
+                Mat4::from_rotation_x(2.0),
+                Mat4::from_scale(Vec3::new(-1e-13, -1e-13, 2e-13)),
+            ] {
+                assert!(!is_mirrored(&(lens * look * turn)), "{lens} {turn}");
+                let mirror = Mat4::from_scale(Vec3::new(1.0, 1.0, -3.0));
+                assert!(is_mirrored(&(lens * look * turn * mirror)), "{lens} {turn}");
+                assert!(is_mirrored(&(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * lens * look * turn)));
+            }
+        }
+    }
 }

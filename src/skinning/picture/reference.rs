@@ -5,14 +5,14 @@ use glam::{Mat4, Vec3, Vec4};
 use super::texture::Surface;
 use crate::asset::Mesh;
 use crate::asset::material::{Alpha, screen};
-use crate::skinning::picture::Light;
+use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
 
 /// Where and how meshes are seen.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene {
-    /// From the model's space to clip space.
+    /// From the model's space to clip space. It may mirror; outside stays outside.
     pub clip_from_model: Mat4,
     /// What lights them.
     pub light: Light,
@@ -37,7 +37,12 @@ impl Scene {
     /// The meshes over a linear `background`; one sample a pixel.
     pub fn draw(&self, parts: &[Part<'_>], background: [f32; 3]) -> LinearImage {
         let pixels = (self.size[0] * self.size[1]) as usize;
-        let mut canvas = Canvas { scene: self, depths: vec![1.0; pixels], pixels: vec![background; pixels] };
+        let mut canvas = Canvas {
+            scene: self,
+            is_mirrored: is_mirrored(&self.clip_from_model),
+            depths: vec![1.0; pixels],
+            pixels: vec![background; pixels],
+        };
         for part in parts {
             for triangle in part.mesh.triangles(part.level).chunks_exact(3) {
                 let corner = |corner: usize| self.corner(part, triangle[corner] as usize);
@@ -66,6 +71,7 @@ struct Corner {
 
 struct Canvas<'a> {
     scene: &'a Scene,
+    is_mirrored: bool,
     depths: Vec<f32>,
     pixels: Vec<[f32; 3]>,
 }
@@ -76,6 +82,8 @@ struct Triangle<'a> {
     corners: [Corner; 3],
     screen: [Vec4; 3],
     area: f32,
+    /// Seen from outside.
+    is_front: bool,
 }
 
 impl Canvas<'_> {
@@ -90,12 +98,13 @@ impl Canvas<'_> {
             Vec4::new((0.5 + 0.5 * x) * size[0], (0.5 - 0.5 * y) * size[1], z, 1.0 / clip.w)
         });
         let [a, b, c] = screen;
-        // Negative from outside: y points down here.
+        // Negative from outside, but for mirror images: y points down here.
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        if area == 0.0 || area > 0.0 && !part.mesh.double_sided {
+        let is_front = (area < 0.0) != self.is_mirrored;
+        if area == 0.0 || !is_front && !part.mesh.double_sided {
             return;
         }
-        let triangle = Triangle { part, corners, screen, area };
+        let triangle = Triangle { part, corners, screen, area, is_front };
         let range = |low: f32, high: f32, edge: f32| {
             (low.floor().max(0.0) as u32)..(high.ceil().clamp(0.0, edge) as u32)
         };
@@ -134,7 +143,7 @@ impl Canvas<'_> {
         self.depths[pixel] = depth;
         let weights = triangle.weights(x, y).to_array();
         let normals = triangle.corners.iter().zip(weights).map(|(corner, weight)| weight * corner.normal);
-        let side = if triangle.area > 0.0 { -1.0 } else { 1.0 };
+        let side = if triangle.is_front { 1.0 } else { -1.0 };
         let Light { direction, ambient } = self.scene.light;
         let facing = side * normals.sum::<Vec3>().normalize_or_zero().dot(direction.normalize());
         self.pixels[pixel] = [r, g, b].map(|color| color * (ambient + (1.0 - ambient) * facing.max(0.0)));

@@ -1,0 +1,47 @@
+//! Winding: what is mirrored at rest has its triangles turned round, so that they are counter-clockwise seen from outside
+//! wherever the mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4): of a skinned mesh, whose own
+//! node counts for nothing, that of each joint's place in the scene times its inverse bind matrix.
+
+use glam::DMat4;
+
+use crate::asset::Mesh;
+use crate::asset::skeleton::{Skeleton, Skin};
+
+/// For each bone whether its place in the scene is mirrored when nothing is animated. One that is flat counts as
+/// unmirrored.
+pub fn mirrored(skeleton: &Skeleton) -> Vec<bool> {
+    let mut mirrored: Vec<bool> = Vec::with_capacity(skeleton.len());
+    for bone in skeleton.bones() {
+        // Sign by sign: a product of many scales may be too large or too small for a number.
+        let is_turned = bone.rest.scale.iter().filter(|scale| **scale < 0.0).count() % 2 == 1;
+        mirrored.push(is_turned != bone.parent.is_some_and(|parent| mirrored[parent as usize]));
+    }
+    mirrored
+}
+
+/// For each bone of a skin whether it turns what follows it outside in; none where no bone does. `mirrored` are all bones'.
+pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
+    let is_inverted = |bind: &[f32; 16]| DMat4::from_cols_array(&bind.map(f64::from)).determinant() < 0.0;
+    let binds = skin.bones.iter().zip(&skin.inverse_binds);
+    let all: Vec<_> = binds.map(|(bone, bind)| mirrored[*bone as usize] != is_inverted(bind)).collect();
+    if all.contains(&true) { all } else { Vec::new() }
+}
+
+/// Turns round the triangles whose three corners follow mirrored bones with more than half of their weight.
+pub fn turn_mirrored(mesh: &mut Mesh, mirrors: &[bool]) {
+    // Nothing of a skin without mirrored bones is looked at: files may have many meshes of large skins.
+    if mirrors.is_empty() {
+        return;
+    }
+    let is_mirrored = |bone: u32| mirrors[bone as usize];
+    let weight = |vertex: u32| -> f32 {
+        let mirrored =
+            mesh.influences.of(vertex as usize).iter().filter(|influence| is_mirrored(influence.bone));
+        mirrored.map(|influence| influence.weight).sum()
+    };
+    for triangle in mesh.indices.chunks_exact_mut(3) {
+        if triangle.iter().map(|vertex| weight(*vertex)).sum::<f32>() > 1.5 {
+            triangle.swap(1, 2);
+        }
+    }
+}
