@@ -23,9 +23,10 @@ pub mod skin;
 pub mod weights;
 
 pub use extent::Extent;
-pub use levels::{MeshLevels, add_levels, level_errors};
+pub use levels::{MeshLevels, add_levels, level_errors, own_levels};
 pub use material::Material;
 pub use mesh::{Mesh, MeshLevel, reaches};
 pub use morph::{MorphTarget, WeightKeys};
+pub use pose::poses_of;
 pub use skin::{Blend, Vertex};
 pub use weights::{Influence, Influences, Reduction};
