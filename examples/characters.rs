@@ -1,6 +1,11 @@
 //! Several characters in one picture: the built-in creature, and every `.glb` or `.gltf` that is named. Each plays its
-//! first clip; instances are posed, seen, faded, skinned and drawn by the device, with as few triangles as it takes for
-//! no vertex to be more than half a pixel off. Writes `characters.png`.
+//! first clip; instances are posed, seen, faded, skinned and drawn by the device, with as few influences and triangles as
+//! it takes for no vertex to be more than half a pixel off. Writes `characters.png`.
+//!
+//! The half pixel is the sum of two quarters. One is for influences that fade: every vertex that is drawn. The other is
+//! for triangles: from every vertex of a mesh to what is drawn of it. Both against the same pose with all influences and
+//! triangles, in the clip that is played, looked at 60 times a second. Normals and textures are no part of it; places
+//! between vertices may be further off ([`relievo::skinning::MeshLevels::new`] says how far).
 //!
 //! `cargo run --release --example characters -- [FILE …]`
 
@@ -23,7 +28,7 @@ use relievo::skinning::ball::ball_in_clips;
 use relievo::skinning::lod::standing;
 use relievo::skinning::picture::Light;
 use relievo::skinning::vertex::Blend;
-use relievo::skinning::{Extent, add_levels, level_errors};
+use relievo::skinning::{Extent, add_levels, level_errors, poses_of};
 use relievo::surface::mips::Mips;
 
 /// Instances of each character.
@@ -34,6 +39,9 @@ const SIZE: [u32; 2] = [960, 540];
 
 /// Radians, vertical.
 const FIELD_OF_VIEW: f32 = 0.8;
+
+/// How far vertices may be off because influences fade, and as far again because triangles are left out.
+const PIXELS: f32 = 0.25;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Yours: `Gpu::from_wgpu(device, queue)`.
@@ -48,12 +56,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let clay: Albedo = ColorTexture::new(&gpu, &clay, true)?.into();
     let mut crowd = CrowdScene::new(&gpu, COLOR_FORMAT, Light::default())?;
     let mut animations = Vec::new();
-    for model in &mut models {
-        let poses = 60;
-        add_levels(model, &[0], poses)?;
-    }
-    for (index, model) in models.iter().enumerate() {
+    let characters = models.len();
+    for (index, model) in models.iter_mut().enumerate() {
         let clip = model.clips.first().ok_or("a character needs a clip")?;
+        let poses = poses_of(clip)?;
+        add_levels(model, &[0], poses)?;
+        let (model, clip) = (&*model, &model.clips[0]);
+        let (fade, levels) = ranges(model, poses)?;
         let (set, duration) = (ClipSet::new(&[clip])?, clip.duration());
         let play = |at: usize| Instance::new(0, Wrap::Loop, duration * (0.618 * at as f32).fract(), 1.0);
         let posed = Crowd::new(&gpu, &set, &(0..COUNT).map(play).collect::<Vec<_>>())?;
@@ -61,7 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let place = PlacePass::new(&gpu)?.prepare(&gpu, &clips, &posed)?;
         let sample = SamplePass::new(&gpu, RotationPath::Slerp)?.prepare(&gpu, &clips, &posed)?;
         let concat = ConcatPass::new(&gpu, Walk::of(&gpu))?.prepare(&gpu, &model.skeleton, &posed)?;
-        let placements = Buffer::from_slice(&gpu, "placements", &places(model, index, models.len()))?;
+        let placements = Buffer::from_slice(&gpu, "placements", &places(model, index, characters))?;
         let albedos = Albedo::of_meshes(&gpu, model, &clay, ColorTexture::new)?;
         crowd.add(
             &gpu,
@@ -69,8 +78,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 model,
                 matrices: &ModelMatrices::new(&posed.models),
                 placements: &placements,
-                fade: [10.0, 40.0],
-                levels: &level_begins(model),
+                fade,
+                levels: &levels,
                 blend: Blend::Linear,
                 albedos: &albedos,
             },
@@ -100,18 +109,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// From where on levels of detail are half a pixel off.
-fn level_begins(model: &Model) -> Vec<f32> {
-    let (center, radius) = ball_in_clips(model);
-    let scale = scale(radius);
-    let extent = Extent { center, radius: scale * radius, stray: 0.0 };
+/// Between which distances a model fades, and from where on it has each of its levels of detail.
+fn ranges(model: &Model, poses: usize) -> Result<([f32; 2], Vec<f32>), relievo::InputError> {
+    let scale = scale(ball_in_clips(model).1);
+    let extent = Extent::of_model(model, &[0], poses)?.scaled(scale);
     let lens = Lens::new(SIZE[1], FIELD_OF_VIEW, 0.1);
-    extent.level_ranges(&lens, 0.5, level_errors(&model.meshes).into_iter().map(|error| scale * error))
+    let errors = level_errors(&model.meshes).into_iter().map(|error| scale * error);
+    Ok((extent.fade_range(&lens, PIXELS), extent.level_ranges(&lens, PIXELS, errors)))
 }
 
 /// Makes a ball three metres large.
 fn scale(radius: f32) -> f32 {
-    1.5 / radius.max(1e-6)
+    1.5 / radius.max(f32::MIN_POSITIVE)
 }
 
 /// In rows away from the eye, every character two metres large, turned every way.

@@ -15,6 +15,7 @@
 //! - a loop: a jump from the last pose to the first.
 
 use super::clip_set::{ClipEntry, ClipSet};
+use crate::asset::Bone;
 use crate::asset::clip::{Clip, Interpolation, Part, Track};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
@@ -251,15 +252,16 @@ pub fn whole_reaches(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32
     whole
 }
 
-/// The root of the sum of squares over points, `reaches` from each bone at or below, of how far they move: at rest, on
-/// average over directions.
+/// The root of the sum of squares over points, `reaches` from each bone at or below, of how far they move: at rest, in the
+/// model's units, on average over directions.
 pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
     let models = crate::animation::concat::reference::concat(skeleton, &skeleton.rest());
     let origin = |bone: usize| glam::DVec3::from_array(models[bone].map(|row| f64::from(row[3])));
+    let scales_above = skeleton.scales_above();
     // Of each bone: points, and squares of their distances.
     let mut sums = vec![[0.0; 3]; models.len()];
     for (bone, reach) in reaches.iter().enumerate() {
-        let own = f64::from(*reach).powi(2);
+        let own = (f64::from(*reach) * scales_above[bone] * skeleton.bones()[bone].scale()).powi(2);
         let path = std::iter::successors(Some(bone), |bone| {
             skeleton.bones()[*bone].parent.map(|parent| parent as usize)
         });
@@ -270,7 +272,11 @@ pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
             (*points, *across, *along) = (*points + 1.0, *across + square * 2.0 / 3.0, *along + square / 3.0);
         }
     }
-    sums.into_iter().map(|sums| sums.map(f64::sqrt)).collect()
+    let lever = |((sums, above), bone): (([f64; 3], f64), &Bone)| {
+        let [points, across, along] = sums.map(f64::sqrt);
+        [points * above, across, along / bone.scale()]
+    };
+    sums.into_iter().zip(scales_above).zip(skeleton.bones()).map(lever).collect()
 }
 
 /// How much each bone should take of what the bones above it leave of the allowed way.

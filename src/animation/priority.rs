@@ -6,9 +6,9 @@
 //!
 //! | term | value | divided by |
 //! |---|---|---|
-//! | translation | metres from this key to the next, in the parent's space | the clip's largest |
+//! | translation | way from this key to the next, times the largest scales above at rest | the clip's largest |
 //! | rotation | radians from this key to the next | the clip's largest |
-//! | scale | length of the difference of both scales | the clip's largest |
+//! | scale | length of the difference of both scales, divided by the bone's largest at rest | the clip's largest |
 //! | children | direct and indirect children | the skeleton's largest |
 //! | depth | D − d + 1 for a bone d steps from the root, D the deepest's | D + 1 |
 //! | user | given for each bone, ½ unless told | 1 |
@@ -31,7 +31,7 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 
-/// Largest values below this count as none: radians, factors, and shares of the model's size.
+/// Largest values below this count as none: radians, factors of the scale at rest, and shares of the model's size.
 pub const NOISE: f64 = 1e-6;
 
 /// The user's term of a bone about which nothing is said.
@@ -149,7 +149,7 @@ struct Difference {
     time: f32,
     /// The time of the next key; its own, where none follows.
     until: f32,
-    /// Metres, radians, factors.
+    /// Units of the model, radians, factors of the scale at rest.
     change: [f64; 3],
 }
 
@@ -166,8 +166,13 @@ impl Differences {
             return Err(InputError::new("clip.bones", clip.bones(), bound));
         }
         let mut all = Self { keys: Vec::new(), offsets: vec![0], size: size(skeleton) };
-        for bone in 0..skeleton.len() {
+        let above = skeleton.scales_above();
+        for (bone, node) in skeleton.bones().iter().enumerate() {
             let times = key_times(clip, bone);
+            let change = |from: &Transform, to: &Transform| {
+                let [translation, rotation, scale] = change(from, to);
+                [translation * above[bone], rotation, scale / node.scale()]
+            };
             let at = |time: f32| sample_bone(clip, bone, time, RotationPath::Slerp);
             for (key, time) in times.iter().enumerate() {
                 let next = times.get(key + 1).or_else(|| times.first().filter(|_| loops));
@@ -232,7 +237,7 @@ fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
     4.0 * libm::asin((a.distance(b) / 2.0).min(1.0))
 }
 
-/// The diagonal of the box around all bones at rest, in metres.
+/// The diagonal of the box around all bones at rest, units of the model.
 pub fn size(skeleton: &Skeleton) -> f64 {
     let models = concat(skeleton, &skeleton.rest());
     let places = models.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));
@@ -365,6 +370,47 @@ mod tests {
         let found = Priorities::new(&skeleton(), &clip, true, &Weights::default(), &[0.5; 4]).expect("valid");
         assert!((size(&skeleton()) - 2.0).abs() < 1e-6);
         assert!(found.keys.iter().all(|key| key.terms[..3] == [0.0; 3]));
+    }
+
+    /// Below a bone of another scale, translations count as far as they are seen, and noise stays noise.
+    #[test]
+    fn units_do_not_matter() {
+        // 2 m tall, and as it was when bones were scaled and moved in other units; the arm is twice the hand's.
+        let found = |scale: f32, noise: f32| {
+            let rest = |at: usize| Transform {
+                translation: [0.0, if at == 0 { 1.0 } else { 1.0 / scale }, 0.0],
+                scale: if at == 0 { [scale; 3] } else { [1.0; 3] },
+                ..Transform::IDENTITY
+            };
+            let plain = skeleton();
+            let bones =
+                plain.bones().iter().enumerate().map(|(at, bone)| Bone { rest: rest(at), ..bone.clone() });
+            let skeleton = Skeleton::of_joints(bones.collect()).expect("valid");
+            let moved = |x: f32| keys(&[0.0, 1.0], &[[0.0; 4], [x * noise, 0.0, 0.0, 0.0]]);
+            // Rounding of the scale, as far as it goes with noise alone.
+            let grown = scale * (1.0 + 5e-7);
+            let bones = [
+                BoneKeys {
+                    translation: moved(1.0),
+                    scale: keys(&[0.0, 1.0], &[[scale, scale, scale, 0.0], [grown, scale, scale, 0.0]]),
+                    ..BoneKeys::default()
+                },
+                BoneKeys { translation: moved(2.0 / scale), ..BoneKeys::default() },
+                BoneKeys { translation: moved(0.5 / scale), ..BoneKeys::default() },
+                BoneKeys::default(),
+            ];
+            let clip = Clip::new("test", &skeleton, &bones, 0.0).expect("valid");
+            let found =
+                Priorities::new(&skeleton, &clip, false, &Weights::default(), &[0.5; 4]).expect("valid");
+            found.keys.iter().step_by(2).map(|key| [key.terms[0], key.terms[2]]).collect::<Vec<_>>()
+        };
+        for scale in [1.0, 0.01, 100.0, 1.0 / 64.0] {
+            let terms = found(scale, 1.0);
+            for (terms, wanted) in terms.iter().zip([0.5, 1.0, 0.25]) {
+                assert!((terms[0] - wanted).abs() < 1e-6 && terms[1] == 0.0, "{terms:?} at {scale}");
+            }
+            assert!(found(scale, 4e-7).iter().all(|terms| *terms == [0.0; 2]), "at {scale}");
+        }
     }
 
     #[test]

@@ -17,6 +17,14 @@ pub struct Bone {
     pub rest: Transform,
 }
 
+impl Bone {
+    /// The largest of its scales at rest; 1 where all are 0.
+    pub(crate) fn scale(&self) -> f64 {
+        let largest = self.rest.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
+        if largest > 0.0 { largest.into() } else { 1.0 }
+    }
+}
+
 /// Bones, each after its parent. Nodes that no skin uses belong to it where joints hang below them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skeleton {
@@ -102,7 +110,18 @@ impl Skeleton {
         self.bones.iter().map(|bone| bone.rest).collect()
     }
 
-    /// How long each bone is at rest, in metres: as far as its farthest child, or as its parent where it has none.
+    /// By how much what is below each bone's parent is larger at rest than in its own units: the product of the largest
+    /// scales of the bones above. Scales of 0 count as 1.
+    pub(crate) fn scales_above(&self) -> Vec<f64> {
+        let mut above = Vec::with_capacity(self.bones.len());
+        for bone in &self.bones {
+            let scale = |parent: u32| above[parent as usize] * self.bones[parent as usize].scale();
+            above.push(bone.parent.map_or(1.0, scale));
+        }
+        above
+    }
+
+    /// How long each bone is at rest, in its own units: as far as its farthest child, or as its parent where it has none.
     pub fn lengths(&self) -> Vec<f64> {
         let reach = |bone: &Bone| glam::DVec3::from(bone.rest.translation.map(f64::from)).length();
         let mut lengths = vec![0.0_f64; self.bones.len()];
@@ -114,7 +133,7 @@ impl Skeleton {
         }
         for (length, bone) in lengths.iter_mut().zip(&self.bones) {
             if *length == 0.0 {
-                *length = reach(bone);
+                *length = reach(bone) / bone.scale();
             }
         }
         lengths

@@ -35,8 +35,9 @@ pub struct Character<'a> {
     /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::away`]
     /// counts them.
     pub fade: [f32; 2],
-    /// From which on levels 1, 2 … of the meshes are used, likewise, not descending; of a mesh that has fewer, its last.
-    /// Without, all are drawn whole.
+    /// From which on levels 1, 2 … of the character are used, likewise, not descending: where each of its
+    /// [`level_errors`](crate::skinning::level_errors) may be, by
+    /// [`Extent::level_ranges`](crate::skinning::Extent::level_ranges). Without, meshes are drawn whole.
     pub levels: &'a [f32],
     /// How influences are blended.
     pub blend: Blend,

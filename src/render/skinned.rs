@@ -44,7 +44,8 @@ pub struct SkinnedInstances<'a> {
     /// From the model's space into the world, one an instance. They may mirror: outside stays outside.
     pub placements: &'a Buffer<Affine>,
     /// The instances that are drawn: one list, at most as long as there are places, of the mesh itself; or one a level of
-    /// detail, [`list_stride`] words each. Lists of levels that the mesh lacks are drawn with its last.
+    /// detail ([`MeshBuffers::levels`]), [`list_stride`] words each. Lists of levels that there are not are drawn with the
+    /// last.
     pub drawn: &'a Buffer<u32>,
     /// Colour.
     pub albedo: &'a Albedo,

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::pose::poses_of;
 use crate::animation::bounds::reference::bounds;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::reference::sample;
@@ -9,11 +10,12 @@ use crate::asset::Model;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::reaches;
 
-/// Moments of each clip that are looked at.
-const MOMENTS: u32 = 32;
+/// Moments of each clip that are looked at, at least and at most: an hour at 60 a second.
+const MOMENTS: [usize; 2] = [32, 216_001];
 
-/// A ball in the model's space around all meshes at rest and at 32 moments of every clip, larger by a twentieth for what
-/// lies between these: for [`LodView`](super::lod::LodView). Of vertices it knows how far they reach from their bones
+/// A ball in the model's space around all meshes at rest and in every clip, larger by a twentieth for what lies between
+/// the moments that are looked at: 60 a second and at least 32 of a clip; of clips of more than an hour 216,001, which
+/// then lie further apart. For [`LodView`](super::lod::LodView). Of vertices it knows how far they reach from their bones
 /// alone, so it may be half again as large as it had to be; morph targets count as [`reaches`] says.
 ///
 /// # Panics
@@ -24,8 +26,10 @@ pub fn ball_in_clips(model: &Model) -> (Vec3, f32) {
     let followed = followed(model);
     let weighted: Vec<usize> = (0..reaches.len()).filter(|bone| followed[*bone]).collect();
     let of_clips = model.clips.iter().flat_map(|clip| {
-        let time = |moment| clip.duration() * moment as f32 / (MOMENTS - 1) as f32;
-        (0..MOMENTS).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
+        let [least, most] = MOMENTS;
+        let moments = poses_of(clip).unwrap_or(most).max(least);
+        let time = move |moment| clip.duration() * (moment as f32 / (moments - 1) as f32);
+        (0..moments).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
     });
     let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
     let reaches: Vec<f32> = weighted.iter().map(|bone| reaches[*bone]).collect();
@@ -58,6 +62,8 @@ fn followed(model: &Model) -> Vec<bool> {
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
+    use crate::asset::Clip;
+    use crate::asset::clip::{BoneKeys, Interpolation, Keys};
     use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::reference::palette_for;
     use crate::skinning::reduction::Reduction;
@@ -83,5 +89,22 @@ mod tests {
         assert!((farthest..1.6 * farthest).contains(&radius), "{radius} for {farthest}");
         let bare = Model { meshes: vec![], ..model };
         assert_eq!(ball_in_clips(&bare), (Vec3::ZERO, 0.0));
+    }
+
+    /// A jump of a tenth of a second in a minute and a half.
+    #[test]
+    fn the_ball_holds_what_long_clips_do() {
+        let mut model = crate::samples::creature().expect("valid");
+        let still = ball_in_clips(&Model { clips: vec![], ..model.clone() }).1;
+        let mut keys = vec![BoneKeys::default(); model.skeleton.len()];
+        let at = |y: f32| [0.0, y, 0.0, 0.0];
+        keys[0].translation = Some(Keys {
+            times: vec![0.0, 50.0, 50.05, 50.1, 90.0],
+            values: [0.0, 0.0, 8.0, 0.0, 0.0].map(at).to_vec(),
+            interpolation: Interpolation::Linear,
+        });
+        model.clips = vec![Clip::new("jump", &model.skeleton, &keys, 90.0).expect("valid")];
+        let radius = ball_in_clips(&model).1;
+        assert!(radius > still + 3.5, "{radius}, {still} without a clip");
     }
 }

@@ -4,6 +4,7 @@
 use glam::UVec4;
 
 use super::clusters::{ClusterLevel, Clusters};
+use super::levels::{level_errors, own_levels};
 use crate::asset::Model;
 use crate::asset::mesh::{MOST_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;
@@ -22,7 +23,7 @@ pub struct MeshBuffers {
     pub uv: Buffer<[f32; 2]>,
     /// Three a triangle, of all levels of detail: see [`Clusters::indices`].
     pub indices: Buffer<u32>,
-    /// See [`Clusters::levels`].
+    /// What the mesh has at each level of its character ([`level_errors`]), the first of which is the mesh itself.
     pub levels: Vec<ClusterLevel>,
     /// See [`Clusters::influences`].
     pub influences: Buffer<u32>,
@@ -47,13 +48,15 @@ pub struct MeshBuffers {
 }
 
 impl MeshBuffers {
-    /// Uploads one of a model's meshes.
+    /// Uploads one of a model's meshes. At each level of the model's character ([`level_errors`]) the clusters have the
+    /// mesh's own that is as near ([`own_levels`]).
     ///
     /// # Errors
     /// [`InputError`] for a mesh that does not fit its skin; [`GpuError`].
     pub fn new(gpu: &Gpu, model: &Model, mesh: &Mesh) -> Result<(Self, Clusters), Error> {
         let all_bones = model.skeleton.len();
-        let clusters = Clusters::new(mesh, &model.skins, &model.skeleton)?;
+        let own = own_levels(mesh, &level_errors(&model.meshes));
+        let clusters = Clusters::new(mesh, &model.skins, &model.skeleton)?.with_levels(&own);
         let skin = &model.skins[mesh.skin];
         let binds: Vec<_> = skin.inverse_binds.iter().map(rows).collect();
         let (delta_offsets, deltas) = deltas(&mesh.targets, &clusters);
@@ -81,12 +84,12 @@ impl MeshBuffers {
         self.vertices.len().div_ceil(super::clusters::CLUSTER)
     }
 
-    /// A level of detail; of one that the mesh lacks, its last.
+    /// A level of detail of the character; of one that there is not, the last.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Clusters of each level, as kernels look them up: of those that the mesh lacks, its last one's.
+    /// Clusters of each level of the character, as kernels look them up: of those that there are not, the last one's.
     pub(crate) fn clusters_of_levels(&self) -> [UVec4; MOST_LEVELS / 4] {
         let of = |level: usize| self.level(level as u32).clusters;
         std::array::from_fn(|at| UVec4::from_array(std::array::from_fn(|lane| of(4 * at + lane))))

@@ -39,7 +39,8 @@ pub struct Clusters {
     pub uv: Vec<[f32; 2]>,
     /// The triangles of all levels, one behind the other, in the mesh's order, of vertices in this order.
     pub indices: Vec<u32>,
-    /// The mesh itself, with all of its vertices, and its levels ([`Mesh::levels`]).
+    /// The mesh itself, with all of its vertices, and its levels ([`Mesh::levels`]); or what it has of those of a
+    /// character ([`Clusters::with_levels`]).
     pub levels: Vec<ClusterLevel>,
     /// Two words a cluster: where its influences begin, and how many its vertices have at most. There, in columns of 64
     /// words: the bones, two a word, the strongest in the lower half of the first; then the weights of all but the
@@ -88,6 +89,14 @@ impl Clusters {
         })
     }
 
+    /// The same with other levels: at each of a character's that of the mesh's own which
+    /// [`own_levels`](super::own_levels) says.
+    #[must_use]
+    pub fn with_levels(mut self, own: &[u32]) -> Self {
+        self.levels = own.iter().map(|level| self.level(*level)).collect();
+        self
+    }
+
     /// Where each of the mesh's vertices lies.
     pub fn places(&self) -> Vec<u32> {
         places(&self.order)
@@ -103,7 +112,7 @@ impl Clusters {
         self.order.is_empty()
     }
 
-    /// A level; of one that the mesh lacks, its last.
+    /// A level; of one that there is not, the last.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
@@ -270,6 +279,9 @@ mod tests {
         }
         let ends = [1, 2].map(|level| clusters.level(level).first_index);
         assert_eq!(ends, [indices, clusters.indices.len() as u32 - 3]);
+        let of_character = clusters.clone().with_levels(&[0, 0, 2, 1, 9]);
+        let levels = [0, 0, 2, 1, 2].map(|level| clusters.level(level));
+        assert_eq!((of_character.levels, of_character.order), (levels.to_vec(), clusters.order.clone()));
         let mut order = clusters.order.clone();
         order.sort_unstable();
         assert!(order.into_iter().eq(0..whole.vertices));

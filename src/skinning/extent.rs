@@ -4,8 +4,9 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::ball::ball_in_clips;
 use super::lod::{MARGIN, middle_of};
-use super::pose::{Pose, mean, moments};
+use super::pose::{Moment, Pose, mean, moments};
 use crate::InputError;
 use crate::animation::Lens;
 use crate::asset::Mesh;
@@ -29,23 +30,44 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Looks at `poses` of each of these clips, evenly spaced from start to end. Poses between them may go 1 % further:
-    /// 60 a second of a clip are many enough. Poses of other clips, and layers above these, are not known.
+    /// Looks at `poses` of each of these clips, evenly spaced from start to end; at rest, where there are no clips. Poses
+    /// between them may go 1 % further: [`poses_of`](super::poses_of) a clip are many enough. Poses of other clips, and
+    /// layers above these, are not known.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh or clips that the model lacks, none of these, no poses, and a mesh that does not fit
-    /// its skin.
+    /// [`InputError`] for a mesh or clips that the model lacks, no poses, and a mesh that does not fit its skin.
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
         let mesh = &model.meshes[mesh];
-        let pose = |moment: &(usize, f32)| Pose::new(model, mesh, *moment);
-        let looks = moments.par_iter().map(|moment| look(&pose(moment), mesh));
-        let none = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
-        let all = looks.reduce(|| none, Look::with);
+        let all = look_at(model, mesh, &moments);
         let center = middle_of(all.low, all.high);
-        let distances = moments.par_iter().map(|moment| farthest(&pose(moment), mesh, center));
-        let radius = MARGIN * distances.reduce(|| 0.0, f32::max);
-        Ok(Self { center, radius, stray: STRAY_MARGIN * all.stray })
+        Ok(Self { center, radius: radius(model, mesh, &moments, center), stray: STRAY_MARGIN * all.stray })
+    }
+
+    /// All meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them: the ball's middle is that of
+    /// [`ball_in_clips`], from which a scene counts how far away instances are; the ball holds the vertices of all meshes,
+    /// and none of these strays further. Otherwise as [`Extent::new`].
+    ///
+    /// # Errors
+    /// As [`Extent::new`]; for a model without meshes.
+    pub fn of_model(model: &Model, clips: &[usize], poses: usize) -> Result<Self, InputError> {
+        if model.meshes.is_empty() {
+            return Err(InputError::new("model.meshes", "none", "must be at least one"));
+        }
+        let mut all = Self { center: ball_in_clips(model).0, radius: 0.0, stray: 0.0 };
+        for index in 0..model.meshes.len() {
+            let moments = moments(model, index, clips, poses)?;
+            let mesh = &model.meshes[index];
+            all.radius = all.radius.max(radius(model, mesh, &moments, all.center));
+            all.stray = all.stray.max(STRAY_MARGIN * look_at(model, mesh, &moments).stray);
+        }
+        Ok(all)
+    }
+
+    /// That of instances which are so many times as large.
+    #[must_use]
+    pub fn scaled(self, scale: f32) -> Self {
+        Self { center: scale * self.center, radius: scale * self.radius, stray: scale * self.stray }
     }
 
     /// Where a crowd may begin to fade, and where it may be rigid
@@ -98,6 +120,8 @@ struct Look {
 }
 
 impl Look {
+    const NONE: Self = Self { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
+
     fn with(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
@@ -107,8 +131,13 @@ impl Look {
     }
 }
 
+fn look_at(model: &Model, mesh: &Mesh, moments: &[Moment]) -> Look {
+    let looks = moments.par_iter().map(|moment| look(&Pose::new(model, mesh, *moment), mesh));
+    looks.reduce(|| Look::NONE, Look::with)
+}
+
 fn look(pose: &Pose, mesh: &Mesh) -> Look {
-    let mut all = Look { low: Vec3::MAX, high: Vec3::MIN, stray: 0.0 };
+    let mut all = Look::NONE;
     for vertex in 0..mesh.vertices() {
         let influences = mesh.influences.of(vertex);
         let places = pose.places(vertex, influences);
@@ -118,8 +147,13 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
     all
 }
 
-fn farthest(pose: &Pose, mesh: &Mesh, center: Vec3) -> f32 {
-    pose.positions(mesh).into_iter().map(|place| place.distance(center)).fold(0.0, f32::max)
+/// Of a ball around a place that holds all vertices.
+fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
+    let farthest = |moment: &Moment| {
+        let places = Pose::new(model, mesh, *moment).positions(mesh);
+        places.into_iter().map(|place| place.distance(center)).fold(0.0, f32::max)
+    };
+    MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
 }
 
 /// The largest of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, over i > 1 and all λ. In 1/λ the sum is straight between the values at
@@ -160,9 +194,34 @@ mod tests {
             Extent::new(&model, mesh, clips, poses).expect_err("refused").field
         };
         assert_eq!(field(1, &[0], 1), "mesh");
-        assert_eq!(field(0, &[], 1), "clips.len");
         assert_eq!(field(0, &[0, 3], 1), "clips[1]");
         assert_eq!(field(0, &[0], 0), "poses");
+    }
+
+    /// Every mesh is in the ball, whose middle is that of the ball that scenes look at.
+    #[test]
+    fn models_have_one_extent() {
+        let mut model = crate::samples::creature().expect("valid");
+        let one = Extent::new(&model, 0, &[0], 9).expect("valid");
+        let mut hat = model.meshes[0].clone();
+        hat.positions.iter_mut().for_each(|position| position[1] += 3.0);
+        model.meshes.push(hat);
+        let all = Extent::of_model(&model, &[0], 9).expect("valid");
+        let each = [0, 1].map(|mesh| Extent::new(&model, mesh, &[0], 9).expect("valid"));
+        assert_eq!(each[0], one);
+        assert_eq!((all.center, all.stray), (ball_in_clips(&model).0, each[0].stray.max(each[1].stray)));
+        let places = |mesh: &Mesh| Pose::new(&model, mesh, Moment::In(0, 0.3)).positions(mesh);
+        let farthest = model.meshes.iter().flat_map(places).map(|place| place.distance(all.center));
+        let farthest = farthest.fold(0.0, f32::max);
+        assert!((0.9 * all.radius..=all.radius).contains(&farthest), "{farthest} of {}", all.radius);
+        assert!(all.radius > one.radius + 1.0);
+        let twice = all.scaled(2.0);
+        assert_eq!(
+            (twice.center, twice.radius, twice.stray),
+            (2.0 * all.center, 2.0 * all.radius, 2.0 * all.stray)
+        );
+        model.meshes.clear();
+        assert_eq!(Extent::of_model(&model, &[0], 9).expect_err("refused").field, "model.meshes");
     }
 
     #[test]

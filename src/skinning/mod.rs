@@ -26,6 +26,7 @@ pub mod verify;
 pub mod vertex;
 
 pub use extent::Extent;
-pub use levels::{MeshLevels, add_levels, level_errors};
+pub use levels::{MeshLevels, add_levels, level_errors, own_levels};
+pub use pose::poses_of;
 pub use reduction::Reduction;
 pub use vertex::{Blend, Vertex};

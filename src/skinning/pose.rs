@@ -1,18 +1,40 @@
-//! A mesh at moments of clips, blended linearly: what load-time steps look at.
+//! A mesh at moments of clips and at rest, blended linearly: what load-time steps look at.
 
 use glam::Vec3;
 
+use super::Reduction;
+use super::palette::Palette;
 use crate::InputError;
 use crate::animation::concat::reference::concat;
 use crate::animation::sample::reference::sample;
-use crate::asset::Model;
 use crate::asset::keyframe::RotationPath;
-use crate::asset::transform::Affine;
+use crate::asset::transform::{Affine, Transform};
+use crate::asset::{Clip, Model};
 use crate::asset::{Influence, Mesh};
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::reference::palette;
-use crate::skinning::skin::reference::transformed;
+use crate::skinning::skin::reference::{skin, transformed};
 use crate::skinning::vertex::Vertex;
+
+/// Poses a second of a clip that are enough for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent).
+const POSES_A_SECOND: f32 = 60.0;
+
+/// The longest clip, in seconds, that is looked at so often: an hour, of 216,001 poses.
+pub const LONGEST_LOOK: f32 = 3600.0;
+
+/// How many poses [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) have to look at so that a clip is seen
+/// 60 times a second, its start and its end included; at least 2.
+///
+/// # Errors
+/// [`InputError`] for a clip that is longer than [`LONGEST_LOOK`].
+pub fn poses_of(clip: &Clip) -> Result<usize, InputError> {
+    let seconds = clip.duration();
+    if seconds > LONGEST_LOOK {
+        let bound = format!("must be at most {LONGEST_LOOK} s for a look at {POSES_A_SECOND} poses a second");
+        return Err(InputError::new("clip.duration", seconds, bound));
+    }
+    Ok((POSES_A_SECOND * seconds).max(1.0).ceil() as usize + 1)
+}
 
 /// A mesh at a moment.
 pub(super) struct Pose {
@@ -20,24 +42,30 @@ pub(super) struct Pose {
     vertices: Vec<Vertex>,
 }
 
-/// `poses` moments of each clip, evenly spaced from start to end: the clip, and the share of its duration.
+/// When a mesh is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Moment {
+    /// Where no clip plays.
+    Rest,
+    /// In a clip, after this share of its duration.
+    In(usize, f32),
+}
+
+/// `poses` moments of each clip, evenly spaced from start to end; at rest, where there are no clips.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or clips that the model lacks, none of these, no poses, and a mesh that does not fit its
-/// skin.
+/// [`InputError`] for a mesh or clips that the model lacks, no poses, and a mesh that does not fit its skin.
 pub(super) fn moments(
     model: &Model,
     mesh: usize,
     clips: &[usize],
     poses: usize,
-) -> Result<Vec<(usize, f32)>, InputError> {
+) -> Result<Vec<Moment>, InputError> {
     let Some(mesh) = model.meshes.get(mesh) else {
         return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())));
     };
-    for (field, len) in [("clips.len", clips.len()), ("poses", poses)] {
-        if len == 0 {
-            return Err(InputError::new(field, 0, "must be at least 1, to see what vertices do"));
-        }
+    if poses == 0 {
+        return Err(InputError::new("poses", 0, "must be at least 1, to see what vertices do"));
     }
     if let Some(at) = clips.iter().position(|clip| *clip >= model.clips.len()) {
         let bound = format!("must be below {}", model.clips.len());
@@ -45,19 +73,28 @@ pub(super) fn moments(
     }
     mesh.validate(&model.skins)?;
     model.skins[mesh.skin].validate(&model.skeleton)?;
+    if clips.is_empty() {
+        return Ok(vec![Moment::Rest]);
+    }
     let share = |at: usize| at as f32 / (poses - 1).max(1) as f32;
-    Ok(clips.iter().flat_map(|clip| (0..poses).map(move |at| (*clip, share(at)))).collect())
+    Ok(clips.iter().flat_map(|clip| (0..poses).map(move |at| Moment::In(*clip, share(at)))).collect())
 }
 
 impl Pose {
-    /// `share` of the clip's duration after its start.
-    pub(super) fn new(model: &Model, mesh: &Mesh, (clip, share): (usize, f32)) -> Self {
-        let time = share * model.clips[clip].duration();
-        let models = concat(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp));
-        Self {
-            palette: palette(&model.skins[mesh.skin], &models),
-            vertices: morph(mesh, &mesh.weights_at(clip, time)),
+    pub(super) fn new(model: &Model, mesh: &Mesh, moment: Moment) -> Self {
+        match moment {
+            Moment::Rest => Self::of(model, mesh, &model.skeleton.rest(), &mesh.weights),
+            Moment::In(clip, share) => {
+                let time = share * model.clips[clip].duration();
+                let locals = sample(&model.clips[clip], time, RotationPath::Slerp);
+                Self::of(model, mesh, &locals, &mesh.weights_at(clip, time))
+            }
         }
+    }
+
+    fn of(model: &Model, mesh: &Mesh, locals: &[Transform], weights: &[f32]) -> Self {
+        let models = concat(&model.skeleton, locals);
+        Self { palette: palette(&model.skins[mesh.skin], &models), vertices: morph(mesh, weights) }
     }
 
     /// Where each of a vertex's bones alone would have it.
@@ -77,8 +114,48 @@ impl Pose {
         };
         (0..self.vertices.len()).map(position).collect()
     }
+
+    /// Where all vertices face: unit vectors, or 0.
+    pub(super) fn normals(self, mesh: &Mesh) -> Vec<[f32; 3]> {
+        let palette = Palette::Linear(self.palette);
+        let placed = skin(&self.vertices, &mesh.influences, &palette, Reduction::FULL);
+        placed.into_iter().map(|vertex| vertex.normal).collect()
+    }
 }
 
 pub(super) fn mean(influences: &[Influence], places: &[Vec3]) -> Vec3 {
     influences.iter().zip(places).map(|(influence, place)| influence.weight * *place).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::clip::BoneKeys;
+    use crate::asset::skeleton::{Bone, Skeleton};
+
+    #[test]
+    fn clips_are_looked_at_60_times_a_second() {
+        let rest = Transform::IDENTITY;
+        let bone = Bone { name: String::new(), parent: None, rest };
+        let skeleton = Skeleton::of_joints(vec![bone]).expect("valid");
+        let poses = |seconds: f32| {
+            let clip = Clip::new("", &skeleton, &[BoneKeys::default()], seconds).expect("valid");
+            poses_of(&clip)
+        };
+        assert_eq!([0.0, 0.01, 1.0, 1.01].map(poses), [2, 2, 61, 62].map(Ok));
+        // None is too long for that, but those that are refused.
+        assert_eq!([16.75, 60.0, 3600.0].map(poses), [1006, 3601, 216_001].map(Ok));
+        assert_eq!(poses(3601.0).expect_err("refused").field, "clip.duration");
+    }
+
+    #[test]
+    fn models_without_clips_are_looked_at_at_rest() {
+        let model = crate::samples::creature().expect("valid");
+        assert_eq!(moments(&model, 0, &[], 9), Ok(vec![Moment::Rest]));
+        let mesh = &model.meshes[0];
+        // It was bound as it rests.
+        let places = Pose::new(&model, mesh, Moment::Rest).positions(mesh);
+        let off = places.iter().zip(&mesh.positions).map(|(a, b)| a.distance(Vec3::from(*b)));
+        assert!(off.fold(0.0, f32::max) < 1e-5);
+    }
 }

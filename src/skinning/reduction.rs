@@ -13,8 +13,9 @@ pub struct Reduction {
     pub fade: f32,
     /// The k of `truncate`, at least 1; 0 of instances that are not seen, which are not skinned.
     pub most: u32,
-    /// The mesh's level of detail: 0 is the mesh itself ([`Mesh::levels`](super::mesh::Mesh::levels)). Of one that it
-    /// lacks, its last.
+    /// The character's level of detail: 0 is its meshes themselves; at level n each has the coarsest of
+    /// [`Mesh::levels`](crate::asset::Mesh::levels) that is off by no more than the n-th of
+    /// [`level_errors`](super::level_errors). Of one that there is not, the last.
     pub level: u32,
 }
 

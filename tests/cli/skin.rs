@@ -138,6 +138,50 @@ fn triangles_are_left_out() {
     assert_eq!((near.1.len(), far.1), (places.len(), places));
 }
 
+/// A sheet whose middle stands up for a thirtieth of a second in a hundred: 60 poses a second see it.
+#[test]
+fn every_sixtieth_of_a_second_counts() {
+    let mut scene = Scene::of_two_bones();
+    let corners = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
+    let positions: Vec<f32> = corners.iter().flat_map(|[x, y]| [*x, *y, 0.0]).collect();
+    let positions = scene.floats("VEC3", &positions);
+    scene.json["accessors"][positions]["min"] = json!([0, 0, 0]);
+    scene.json["accessors"][positions]["max"] = json!([2, 1, 0]);
+    let joints: Vec<u32> = (0..6).flat_map(|at| [u32::from(at % 3 == 1), 0, 0, 0]).collect();
+    let joints = scene.integers("VEC4", 1, &joints);
+    let weights = scene.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(6));
+    let indices = scene.integers("SCALAR", 1, &[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    scene.json["meshes"] = json!([{"primitives": [{
+        "attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights},
+        "indices": indices,
+    }]}]);
+    scene.push("nodes", json!({"name": "sheet", "skin": 0, "mesh": 0}));
+    scene.json["nodes"][1]["translation"] = json!([0, 0, 0]);
+    let times = scene.floats("SCALAR", &[0.0, 50.03, 50.04, 50.06, 50.07, 100.0]);
+    let still = [0.0; 3];
+    let up = [0.0, 0.0, 1.0];
+    let values = scene.floats("VEC3", [still, still, up, up, still, still].as_flattened());
+    scene.push(
+        "animations",
+        json!({
+            "samplers": [{"input": times, "output": values}],
+            "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
+        }),
+    );
+    let bench = Bench::new();
+    std::fs::write(bench.path("sheet.gltf"), scene.gltf()).expect("writable");
+    let left = |within: &str| {
+        let (model, out) = (bench.path("sheet.gltf"), bench.path("out"));
+        let clip = ["--clip", "0", "--time", "0", "--backend", "cpu", "--within", within];
+        let run = relievo(&[&["skin", "--model", &model, "--out", &out][..], &clip].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        run.stdout
+    };
+    assert_eq!(left("0.9"), "sheet_0: 4 of 4 triangles, 0 metres off\n");
+    let coarse = left("1.2");
+    assert!(coarse.starts_with("sheet_0: 2 of 4 triangles, 1."), "{coarse}");
+}
+
 #[test]
 fn what_cannot_be_skinned_is_refused() {
     let bench = Bench::new();

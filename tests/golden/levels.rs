@@ -12,6 +12,7 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::skinning::ball::ball_in_clips;
+use relievo::skinning::level_errors;
 use relievo::skinning::lod::reference::{lod, seen};
 use relievo::skinning::lod::{LevelRanges, LodView, NO_FADE, standing};
 use relievo::skinning::morph::reference::morph;
@@ -33,10 +34,11 @@ const CLAY: [u8; 3] = [200, 140, 90];
 
 const SIZE: [u32; 2] = [2 * 176, 2 * 112];
 
-/// Where levels begin, world units: one more than any mesh has.
-const BEGINS: [f32; 4] = [6.0, 9.0, 14.0, 22.0];
+/// Where the character's levels begin, world units: as many as its meshes have errors, one more than either has levels.
+const BEGINS: [f32; 4] = [5.0, 6.0, 9.0, 14.0];
 
-/// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with one.
+/// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with one, that
+/// is less off than any of the limb's.
 fn model() -> Model {
     let mut model = limb();
     let level = |step: usize, rings: Range<usize>| {
@@ -48,13 +50,17 @@ fn model() -> Model {
     let mut sleeve = model.meshes[0].clone();
     let middle = 8..RINGS - 9;
     sleeve.indices = level(1, middle.clone()).indices;
-    sleeve.levels = vec![level(4, middle)];
+    sleeve.levels = vec![MeshLevel { error: 0.01, ..level(4, middle) }];
     let wider = |[x, y, z]: [f32; 3]| [x, 1.25 * y, 1.25 * z];
     sleeve.positions.iter_mut().for_each(|position| *position = wider(*position));
     model.meshes[0].levels = [2, 4, 8].map(|step| level(step, 0..RINGS - 1)).to_vec();
     model.meshes.push(sleeve);
+    assert_eq!(level_errors(&model.meshes), [0.01, 0.02, 0.04, 0.08]);
     model
 }
+
+/// Of each mesh, its own level at each of the character's.
+const OWN: [[u32; 5]; 2] = [[0, 0, 1, 2, 3], [0, 1, 1, 1, 1]];
 
 struct Crowd {
     gpu: Gpu,
@@ -121,7 +127,8 @@ impl Crowd {
         let scene = Scene { clip_from_model: view.clip_from_world, light: Light::default(), size: SIZE };
         let parts: Vec<_> = (skinned.iter().enumerate())
             .map(|(at, vertices)| {
-                let (mesh, level) = (&self.model.meshes[at % meshes], levels[at / meshes]);
+                let mesh = &self.model.meshes[at % meshes];
+                let level = OWN[at % meshes][levels[at / meshes] as usize];
                 Part { mesh, level, vertices, surface: &surface }
             })
             .collect();
@@ -174,13 +181,15 @@ fn a_crowd_with_levels() {
         assert!(!whole.within(Tolerance::IMAGE), "{eye}: levels do not show: {whole:?}");
 
         let drawn = &scene.characters()[0];
-        for (mesh, (frame, scene)) in model.meshes.iter().zip(drawn.frames.iter().zip(&drawn.scenes)) {
+        let scenes = drawn.frames.iter().zip(&drawn.scenes);
+        for ((mesh, own), (frame, scene)) in model.meshes.iter().zip(OWN).zip(scenes) {
             let counts = (0..5)
                 .map(|level| now.iter().filter(|now| now.most > 0 && now.level == level).count() as u32);
             let arguments = scene.arguments.read_blocking(gpu).expect("read");
             for ((level, count), words) in (0..).zip(counts).zip(arguments.chunks(10)) {
                 let held = frame.clusters.level(level);
-                let draw = |count| [mesh.triangles(level).len() as u32, count, held.first_index, 0, 0];
+                let triangles = mesh.triangles(own[level as usize]).len() as u32;
+                let draw = |count| [triangles, count, held.first_index, 0, 0];
                 // Nobody is mirrored.
                 assert_eq!(words, [draw(count), draw(0)].as_flattened());
                 used[level as usize] += count;

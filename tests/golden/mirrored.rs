@@ -3,6 +3,7 @@
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
+use relievo::animation::ModelMatrices;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
 use relievo::asset::transform::Affine;
@@ -92,8 +93,9 @@ fn drawn(gpu: &Gpu, double_sided: bool, clip_from_world: Mat4, is_by_hand: bool)
     let placements = &Buffer::from_slice(gpu, "placements", &places()).expect("uploaded");
     let character = Character {
         model: &model,
-        models: &Buffer::from_slice(gpu, "models", &bones.repeat(4)).expect("uploaded"),
-        moved: None,
+        matrices: &ModelMatrices::new(
+            &Buffer::from_slice(gpu, "models", &bones.repeat(4)).expect("uploaded"),
+        ),
         placements,
         fade: NO_FADE,
         levels: &[],

@@ -3,4 +3,6 @@
 mod blending;
 mod fading;
 mod gating;
+mod levels;
+mod scales;
 mod shapes;

@@ -92,11 +92,14 @@ const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 ///     surface, in the frames that were timed;
 ///     "unseen" are those of instances out of view too, which are not skinned, nor among the "points"
 ///
+/// A crowd that is drawn needs a clip of at most an hour, which is looked at 60 times a second.
+///
 /// With --scene, instead: the whole frame at each distance in five ways, which differ in nothing else: "off" (all bones,
 /// influences and triangles), "animation" (the gate), "skinning" (--skinning), "both" of these, and "all" (both, and
 /// --mesh, where it is not full). DIR/scene.json: what report.json says of the crowd, "vertices", "skinning", "mesh", for
 /// each mesh "fade" (units from which on it fades, and from which on it is rigid, or null), "stray_metres" (how far the
-/// whole fade takes a vertex), "levels" [{"triangles", "vertices", "error_metres", "from" (units)}], and "distances":
+/// whole fade takes a vertex), "levels" [{"triangles", "vertices", "error_metres", "from" (units)}], its own that are used,
+/// and "distances":
 /// "distance", "tall_pixels" (size of the nearest instance), "mean_omega", for each way the fields above, and "cheaper"
 /// {"frame", "compute"}, off divided by both, and "all_cheaper", by all. scene.png: "frame_nanoseconds" against distance;
 /// crowd_<distance>.png: the last way.

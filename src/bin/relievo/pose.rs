@@ -206,15 +206,6 @@ pub fn open(path: &Path) -> Result<Model, Error> {
     if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file(path) }
 }
 
-/// Poses of a clip a second that load-time steps look at, and the most.
-const POSES: [f32; 2] = [60.0, 1000.0];
-
-/// How many poses of a clip load-time steps look at.
-pub fn poses(clip: &Clip) -> usize {
-    let [rate, most] = POSES;
-    (rate * clip.duration()).clamp(1.0, most).ceil() as usize + 1
-}
-
 /// The place of a model's own clip among its clips.
 pub fn place(model: &Model, clip: &Clip) -> usize {
     model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default()

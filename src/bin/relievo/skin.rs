@@ -14,6 +14,7 @@ use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::poses_of;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
@@ -22,7 +23,7 @@ use relievo::{Error, InputError};
 
 use crate::Context;
 use crate::output::{Staged, say};
-use crate::pose::{Backend, MomentArgs, on_cpu, open, poses};
+use crate::pose::{Backend, MomentArgs, on_cpu, open};
 use crate::progress::during;
 
 /// Writes the meshes of a model at a moment of a clip, or at rest: where every vertex is, and a picture.
@@ -47,7 +48,8 @@ pub struct Skin {
     #[arg(long)]
     dual_quaternion: bool,
     /// Leaves triangles out: each mesh is the coarsest of its levels of detail whose surface is never further off than
-    /// this, in any pose of the clip or at rest, and says what is left. Vertices stay in the file's order.
+    /// this, in any pose of the clip or at rest, and says what is left. Vertices stay in the file's order. The clip is
+    /// looked at 60 times a second, and lasts an hour at most.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     within: Option<f32>,
     /// What computes and draws; both agree within rounding.
@@ -125,7 +127,7 @@ fn coarsen(model: &mut Model, clip: usize, metres: f32) -> Result<(), Error> {
     if !(metres >= 0.0 && metres.is_finite()) {
         return Err(InputError::new("within", metres, "must be finite, and not negative").into());
     }
-    let poses = poses(&model.clips[clip]);
+    let poses = poses_of(&model.clips[clip])?;
     during("simplifying", || add_levels(model, &[clip], poses))?;
     for mesh in &mut model.meshes {
         let all = mesh.indices.len() / 3;

@@ -41,13 +41,13 @@ impl Welded {
     }
 
     /// The normal of each first one: the mean of all.
-    pub(super) fn normals(&self, mesh: &Mesh) -> Vec<[f32; 3]> {
-        let mut normals = mesh.normals.clone();
+    pub(super) fn normals(&self, normals: &[[f32; 3]]) -> Vec<[f32; 3]> {
+        let mut means = normals.to_vec();
         for (first, all) in &self.all {
-            let sum: Vec3 = all.iter().map(|vertex| Vec3::from(mesh.normals[*vertex as usize])).sum();
-            normals[*first as usize] = sum.normalize_or_zero().to_array();
+            let sum: Vec3 = all.iter().map(|vertex| Vec3::from(normals[*vertex as usize])).sum();
+            means[*first as usize] = sum.normalize_or_zero().to_array();
         }
-        normals
+        means
     }
 
     /// What each vertex has become after so many collapses, among first ones.

@@ -48,7 +48,8 @@ pub struct LodView {
     pub levels: LevelRanges,
 }
 
-/// World units, as [`LodView::away`] counts them, from which on levels 1, 2 … of a mesh are used, in place of finer ones.
+/// World units, as [`LodView::away`] counts them, from which on levels 1, 2 … of a character
+/// ([`level_errors`](super::level_errors)) are used, in place of finer ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelRanges {
     distances: [f32; MOST_LEVELS - 1],

@@ -225,8 +225,8 @@ impl<'a> Drawing<'a> {
                 let own = skin.skinned.read_blocking(self.gpu)?;
                 let reductions = skin.crowd.reductions.read_blocking(self.gpu)?;
                 let levelled = self.stage.levelled.as_ref().filter(|_| look.way.triangles != Triangles::All);
-                let seen =
-                    Seen { reductions: &reductions, levels: levelled.map(|levelled| &levelled.levels[mesh]) };
+                let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));
+                let seen = Seen { reductions: &reductions, levels };
                 look.spread.add(self.stage, self.scene, seen, Skinned { vertices: &own, places }, fresh);
                 let levels = reductions.iter().filter(|reduction| reduction.most > 0);
                 let levels = levels.map(|reduction| skin.clusters.level(reduction.level));
@@ -406,14 +406,13 @@ pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 
     }
 }
 
-/// Metres from where on a mesh has each of its levels.
+/// Metres from where on a mesh is as at levels 1, 2 … of the character.
 pub fn level_begins(stage: &Stage<'_>, triangles: Triangles, mesh: usize) -> Vec<f32> {
-    match triangles {
-        Triangles::All => Vec::new(),
-        Triangles::Bounded(pixels) => {
-            let errors = stage.model(triangles).meshes[mesh].levels.iter().map(|level| level.error);
-            stage.extents[mesh].level_ranges(&stage.lens, pixels, errors)
+    match (triangles, &stage.levelled) {
+        (Triangles::Bounded(pixels), Some(levelled)) => {
+            stage.extents[mesh].level_ranges(&stage.lens, pixels, levelled.errors.iter().copied())
         }
+        _ => Vec::new(),
     }
 }
 

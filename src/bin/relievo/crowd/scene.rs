@@ -160,7 +160,8 @@ fn report<'a>(stage: &Stage<'a>, gpu: &'a Gpu, distances: Vec<Row>) -> Result<Re
         levels: (stage.model(plan.triangles).meshes.iter().enumerate())
             .map(|(at, mesh)| {
                 let begins = level_begins(stage, plan.triangles, at);
-                LevelReport::of_mesh(mesh, &begins, stage.metres_a_unit)
+                let own = stage.levelled.as_ref().map_or(&[][..], |levelled| &levelled.own[at]);
+                LevelReport::of_mesh(mesh, own, &begins, stage.metres_a_unit)
             })
             .collect(),
         instances: plan.instances,

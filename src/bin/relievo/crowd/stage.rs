@@ -17,7 +17,7 @@ use super::plan::Plan;
 #[cfg(feature = "gpu")]
 use super::triangles::{Levelled, Triangles};
 #[cfg(feature = "gpu")]
-use crate::pose::poses;
+use crate::progress::during;
 
 /// A crowd, its clip, and what all gates need.
 pub struct Stage<'a> {
@@ -78,7 +78,7 @@ impl<'a> Stage<'a> {
             #[cfg(feature = "gpu")]
             levelled: match plan.triangles {
                 Triangles::Bounded(_) => {
-                    Some(Levelled::new(&plan.model, plan.clip_index, poses(&plan.clip))?)
+                    Some(Levelled::new(&plan.model, plan.clip_index, skinning::poses_of(&plan.clip)?)?)
                 }
                 Triangles::All => None,
             },
@@ -179,9 +179,12 @@ pub fn moving_bones(table: &GateTable) -> usize {
 
 #[cfg(feature = "gpu")]
 fn extents_of(plan: &Plan, meshes: usize) -> Result<Vec<skinning::Extent>, InputError> {
-    (0..meshes)
-        .map(|mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses(&plan.clip)))
-        .collect()
+    if meshes == 0 {
+        return Ok(Vec::new());
+    }
+    let poses = skinning::poses_of(&plan.clip)?;
+    let extent = |mesh| skinning::Extent::new(&plan.model, mesh, &[plan.clip_index], poses);
+    during("measuring", || (0..meshes).map(extent).collect())
 }
 
 /// The corners of a box around bones and as far as they are long.

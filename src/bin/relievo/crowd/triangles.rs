@@ -5,7 +5,7 @@ use std::fmt;
 use relievo::InputError;
 #[cfg(feature = "gpu")]
 use relievo::asset::{Mesh, Model};
-use relievo::skinning::{MeshLevels, add_levels};
+use relievo::skinning::{MeshLevels, add_levels, level_errors, own_levels};
 
 use super::skinning::bounded;
 #[cfg(feature = "gpu")]
@@ -45,6 +45,10 @@ pub struct Levelled {
     pub model: Model,
     /// One a mesh.
     pub levels: Vec<MeshLevels>,
+    /// How far all of it may be off at levels 1, 2 … of an instance.
+    pub errors: Vec<f32>,
+    /// Of each mesh, for each level of an instance its own.
+    pub own: Vec<Vec<u32>>,
 }
 
 #[cfg(feature = "gpu")]
@@ -53,7 +57,9 @@ impl Levelled {
     pub fn new(model: &Model, clip: usize, poses: usize) -> Result<Self, InputError> {
         let mut model = model.clone();
         let levels = during("simplifying", || add_levels(&mut model, &[clip], poses))?;
-        Ok(Self { model, levels })
+        let errors = level_errors(&model.meshes);
+        let own = model.meshes.iter().map(|mesh| own_levels(mesh, &errors)).collect();
+        Ok(Self { model, levels, errors, own })
     }
 }
 
@@ -70,9 +76,12 @@ pub struct LevelReport {
 
 #[cfg(feature = "gpu")]
 impl LevelReport {
-    /// Of a mesh's levels, with the metres from which on each is used.
-    pub fn of_mesh(mesh: &Mesh, begins: &[f32], metres_a_unit: f32) -> Vec<Self> {
-        let report = |(level, begin): (&relievo::asset::MeshLevel, &f32)| {
+    /// Of a mesh's levels that are used: `own` has the mesh's level at each of an instance, and `begins` the metres from
+    /// which on instances have levels 1, 2 ….
+    pub fn of_mesh(mesh: &Mesh, own: &[u32], begins: &[f32], metres_a_unit: f32) -> Vec<Self> {
+        let used = own.windows(2).zip(begins).filter(|(pair, _)| pair[0] < pair[1]);
+        let report = |(pair, begin): (&[u32], &f32)| {
+            let level = &mesh.levels[pair[1] as usize - 1];
             let mut vertices = level.indices.clone();
             vertices.sort_unstable();
             vertices.dedup();
@@ -83,7 +92,7 @@ impl LevelReport {
                 from: begin / metres_a_unit,
             }
         };
-        mesh.levels.iter().zip(begins).map(report).collect()
+        used.map(report).collect()
     }
 }
 

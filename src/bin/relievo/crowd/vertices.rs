@@ -49,8 +49,8 @@ pub struct Skinned<'a> {
 pub struct Seen<'a> {
     /// One an instance; those that are out of view are not skinned.
     pub reductions: &'a [Reduction],
-    /// Of a mesh that has levels of detail.
-    pub levels: Option<&'a MeshLevels>,
+    /// Of a mesh that has levels of detail: for each level of an instance its own.
+    pub levels: Option<(&'a MeshLevels, &'a [u32])>,
 }
 
 impl Spread {
@@ -82,18 +82,18 @@ impl Spread {
                     }
                     let (origin, turn) = (scene.origins[instance], scene.turns[instance]);
                     let view = View { origin, turn, lens: stage.lens };
-                    let level = seen.levels.filter(|_| reduction.level > 0);
+                    // Its own level 1 is the first of its levels.
+                    let level = seen.levels.and_then(|(levels, own)| {
+                        let own = own.get(reduction.level as usize).or(own.last())?;
+                        Some((levels, (*own as usize).checked_sub(1)?))
+                    });
                     let own =
                         |vertex: u32| Vec3::from(stales[stale.places[vertex as usize] as usize].position);
                     for vertex in 0..vertices {
                         let wanted = Vec3::from(freshes[fresh.places[vertex] as usize].position);
                         let drawn = match level {
                             None => own(vertex as u32),
-                            Some(levels) => {
-                                let last = levels.levels.len().saturating_sub(1);
-                                let level = (reduction.level as usize - 1).min(last);
-                                levels.nearest(level, vertex, wanted, own)
-                            }
+                            Some((levels, level)) => levels.nearest(level, vertex, wanted, own),
                         };
                         found.add_one(&view, drawn, wanted);
                     }

@@ -1,0 +1,119 @@
+//! The poses that decide on a mesh's levels, and how large it is in them. What a level may be off is a share of that size:
+//! not of the positions that a mesh was bound with, whose units the inverse bind matrices may change.
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::places;
+use crate::asset::Model;
+use crate::asset::mesh::Mesh;
+use crate::skinning::pose::{Moment, Pose};
+
+/// So many of the clips' moments are key poses.
+const MOMENTS: usize = 24;
+
+/// A rest pose that is smaller or larger by more than this than the clips make the mesh is none that is seen.
+const UNLIKE: f32 = 2.0;
+
+/// Key poses, in multiples of a unit of their own, so that the numbers are of the same size in every model. The first is the
+/// rest pose, or where that is unlike the others in size, the largest of these.
+pub(super) struct Keys {
+    pub poses: Vec<Vec<[f32; 3]>>,
+    /// Of the first one.
+    pub normals: Vec<[f32; 3]>,
+    /// Of the first one the diagonal of a box around the mesh's triangles: 1 to 2, or 0.
+    pub size: f32,
+    /// A power of two, units of the model.
+    pub unit: f32,
+}
+
+impl Keys {
+    pub fn new(model: &Model, mesh: &Mesh, moments: &[Moment]) -> Self {
+        let every = moments.len().div_ceil(MOMENTS);
+        let played = moments.par_iter().step_by(every).copied().filter(|moment| *moment != Moment::Rest);
+        let all = rayon::iter::once(Moment::Rest).chain(played);
+        let mut all: Vec<Key> = all.map(|moment| Key::new(model, mesh, moment)).collect();
+        // The first of several.
+        let largest = (1..all.len()).rev().max_by(|a, b| all[*a].size.total_cmp(&all[*b].size));
+        if let Some(largest) = largest.filter(|largest| all[0].is_unlike(all[*largest].size)) {
+            all.swap(0, largest);
+            all.remove(largest);
+        }
+        let (first, size) = (all[0].moment, all[0].size);
+        let unit = power_of_two(size);
+        all.par_iter_mut().for_each(|key| key.places.as_flattened_mut().iter_mut().for_each(|x| *x /= unit));
+        let normals = Pose::new(model, mesh, first).normals(mesh);
+        Self { poses: all.into_iter().map(|key| key.places).collect(), normals, size: size / unit, unit }
+    }
+
+    /// Units that one of texture coordinates covers in the first pose, on average: so a texture counts by how far it slips
+    /// over the surface. 0 where there is none.
+    pub fn texture_scale(&self, mesh: &Mesh) -> f32 {
+        let (mut surface, mut texture) = (0.0_f64, 0.0_f64);
+        for triangle in mesh.indices.chunks_exact(3) {
+            let corners = [0, 1, 2].map(|corner| triangle[corner] as usize);
+            let [a, b, c] = corners.map(|corner| Vec3::from(self.poses[0][corner]).as_dvec3());
+            surface += (b - a).cross(c - a).length();
+            let [d, e, f] = corners.map(|corner| Vec2::from(mesh.uv[corner]).as_dvec2());
+            texture += (e - d).perp_dot(f - d).abs();
+        }
+        if texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
+    }
+}
+
+/// A mesh at a moment.
+struct Key {
+    moment: Moment,
+    places: Vec<[f32; 3]>,
+    size: f32,
+}
+
+impl Key {
+    fn new(model: &Model, mesh: &Mesh, moment: Moment) -> Self {
+        let places: Vec<[f32; 3]> = places(model, mesh, moment, 1.0).iter().map(Vec3::to_array).collect();
+        let size = diagonal(&places, &mesh.indices);
+        Self { moment, places, size }
+    }
+
+    fn is_unlike(&self, size: f32) -> bool {
+        UNLIKE * self.size < size || self.size > UNLIKE * size
+    }
+}
+
+/// Of a box around the corners of triangles.
+fn diagonal(pose: &[[f32; 3]], indices: &[u32]) -> f32 {
+    let corners = indices.iter().map(|vertex| Vec3::from(pose[*vertex as usize]));
+    let (low, high) =
+        corners.fold((Vec3::MAX, Vec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    if indices.is_empty() {
+        return 0.0;
+    }
+    // In f64, where the squares of all sizes are numbers.
+    low.as_dvec3().distance(high.as_dvec3()) as f32
+}
+
+/// The largest that is not above a size; 1 for 0 and for what is no number.
+fn power_of_two(size: f32) -> f32 {
+    let is_normal = size.is_normal();
+    if is_normal { f32::from_bits(size.to_bits() & 0xff80_0000) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_powers_of_two() {
+        for (size, exponent) in [(1.0, 0.0), (1.99, 0.0), (2.0, 1.0), (0.3, -2.0), (1e30, 99.0)] {
+            assert_eq!(power_of_two(size), libm::exp2f(exponent));
+        }
+        assert_eq!([0.0, 1e-40, f32::INFINITY, f32::NAN].map(power_of_two), [1.0; 4]);
+    }
+
+    #[test]
+    fn what_has_no_triangle_has_no_size() {
+        let places = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0], [900.0; 3]];
+        assert_eq!(diagonal(&places, &[0, 1, 2]), 5.0);
+        assert_eq!(diagonal(&places, &[]), 0.0);
+    }
+}

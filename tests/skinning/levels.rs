@@ -1,0 +1,105 @@
+//! Levels of detail of a character of two meshes: each is as coarse as it may be, and what is drawn keeps what was promised
+//! in pixels.
+
+use glam::{Vec3, Vec4, camera};
+use relievo::animation::Lens;
+use relievo::asset::Model;
+use relievo::skinning::lod::reference::lod;
+use relievo::skinning::lod::{LevelRanges, LodView, standing};
+use relievo::skinning::morph::reference::morph;
+use relievo::skinning::palette::Palette;
+use relievo::skinning::palette::reference::palette;
+use relievo::skinning::skin::reference::skin;
+use relievo::skinning::{Extent, MeshLevels, Reduction, add_levels, level_errors, own_levels, poses_of};
+
+use crate::shapes::{model, models};
+
+/// Of the fade, and as much of the levels.
+const PIXELS: f32 = 0.25;
+
+/// The creature, with 2,000 triangles, in a shell of 300 that is all bumps.
+fn two() -> (Model, Vec<MeshLevels>) {
+    let mut model = model();
+    add_levels(&mut model, &[0], 2).expect("valid");
+    let levels = std::mem::take(&mut model.meshes[0].levels);
+    let of = |most: usize| {
+        let found = levels.iter().find(|level| level.indices.len() < 3 * most);
+        found.expect("there").indices.clone()
+    };
+    let mut shell = model.meshes[0].clone();
+    shell.indices = of(300);
+    for position in &mut shell.positions {
+        let [x, y, z] = *position;
+        let bump = 0.05 * libm::sinf(91.0 * x + 57.0 * y + 71.0 * z);
+        *position = [x + bump, y, z - bump];
+    }
+    model.meshes[0].indices = of(2200);
+    model.meshes.push(shell);
+    let poses = poses_of(&model.clips[0]).expect("short");
+    let found = add_levels(&mut model, &[0], poses).expect("valid");
+    (model, found)
+}
+
+#[test]
+fn each_mesh_changes_where_its_own_error_allows() {
+    let (model, found) = two();
+    let errors = level_errors(&model.meshes);
+    let own = [0, 1].map(|mesh| own_levels(&model.meshes[mesh], &errors));
+    let first = |mesh: usize| own[mesh].iter().position(|level| *level > 0).expect("has levels");
+    // Where the other is whole, the fine one has less than a third of its triangles.
+    let alone = own[0][first(1) - 1];
+    assert!(alone >= 3, "{own:?}");
+    let left = model.meshes[0].triangles(alone).len();
+    assert!(3 * left < model.meshes[0].indices.len(), "{left}");
+
+    let extent = Extent::of_model(&model, &[0], poses_of(&model.clips[0]).expect("short")).expect("valid");
+    let lens = Lens::new(1080, 1.0, 0.1);
+    let begins = extent.level_ranges(&lens, PIXELS, errors.iter().copied());
+    let [near, far] = extent.fade_range(&lens, PIXELS);
+    let screen = |place: Vec3| place.truncate() / place.z * lens.focal_pixels;
+    let view = LodView {
+        clip_from_world: camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 1e5),
+        eye: Vec3::ZERO,
+        near,
+        far,
+        steps: 64,
+        most: 8,
+        center: extent.center,
+        radius: extent.radius,
+        levels: LevelRanges::new(&begins).expect("ascending"),
+    };
+    let mut largest = 0.0_f32;
+    for (at, begin) in begins.iter().enumerate() {
+        // Straight ahead and to a side; just beyond where the level begins, which is where it shows most.
+        let side = [Vec3::NEG_Z, Vec3::new(0.3, -0.35, -1.0).normalize()][at % 2];
+        let away = 1.0001 * begin / (side.z * side.z);
+        let turn = 2.4 * at as f32;
+        let turned = standing(Vec3::ZERO, turn, 1.0);
+        let middle = Vec3::from(turned.map(|row| Vec3::from_slice(&row).dot(extent.center)));
+        let placement = standing(away * side - middle, turn, 1.0);
+        let reduction = lod(&view, &placement);
+        assert_eq!((reduction.most, reduction.level), (8, view.levels.at(1.0001 * begin)));
+        let time = model.clips[0].duration() * (0.618 * at as f32).fract();
+        for (mesh, (own, found)) in model.meshes.iter().zip(own.iter().zip(&found)) {
+            let bones = Palette::Linear(palette(&model.skins[0], &models(&model, "walk", time)));
+            let placed = |reduction: Reduction| -> Vec<Vec3> {
+                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &bones, reduction);
+                let place = |position: [f32; 3]| {
+                    let position = Vec3::from(position).extend(1.0);
+                    Vec3::from(placement.map(|row| Vec4::from(row).dot(position)))
+                };
+                vertices.iter().map(|vertex| place(vertex.position)).collect()
+            };
+            let (full, drawn) = (placed(Reduction::FULL), placed(reduction));
+            let Some(level) = (own[reduction.level as usize] as usize).checked_sub(1) else { continue };
+            for (vertex, wanted) in full.into_iter().enumerate() {
+                let nearest = found.nearest(level, vertex, wanted, |vertex| drawn[vertex as usize]);
+                let off = screen(nearest).distance(screen(wanted));
+                // Places round: hundreds of pixels, and metres far away.
+                assert!(off <= 2.0 * PIXELS + 2e-3, "{off} pixels at {begin}: level {level}");
+                largest = largest.max(off);
+            }
+        }
+    }
+    assert!(largest > 0.5 * PIXELS, "far too careful: {largest} pixels");
+}
