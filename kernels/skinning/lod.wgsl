@@ -54,11 +54,14 @@ fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
     return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
 }
 
+// The least normal f32, 2^-126, exactly: what is less may be flushed to zero.
+const LEAST_NORMAL = 1.1754943508222875e-38;
+
 // How far away a place counts, which lies so from the eye: as far as it is, straight ahead; less to the side.
 fn away_at(towards: vec3<f32>) -> f32 {
     let distance = length(towards);
     let depth = max(dot(params.ahead.xyz, towards), 0.0);
-    return select(distance, depth * (depth / max(distance, 1.17549435e-38)), params.ahead.w > 0.0);
+    return select(distance, depth * (depth / max(distance, LEAST_NORMAL)), params.ahead.w > 0.0);
 }
 
 @compute @workgroup_size(64)

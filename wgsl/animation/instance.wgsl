@@ -1,5 +1,4 @@
 // What one character plays.
-
 struct AnimationInstance {
     clip: u32,
     // 0 loop, 1 clamp
