@@ -9,13 +9,13 @@ CARGO ?= cargo
 ONLY ?=
 OUT ?= target/demo
 
-.PHONY: demo test bench bless lint setup adapter
+.PHONY: demo test bench bless lint setup adapter browser
 
 demo: adapter
 	$(CARGO) run --bin relievo -- demo --out $(OUT)
 	@echo "open $(OUT)/index.html"
 
-test: adapter
+test: browser
 	$(CARGO) test
 	$(CARGO) test --no-default-features
 
@@ -40,3 +40,7 @@ setup:
 # Opens a device, which tells more than a driver's file.
 adapter:
 	@CARGO=$(CARGO) scripts/setup.sh adapter
+
+# After the adapter: two installations at once would wait for each other's lock, and fail.
+browser: adapter
+	@CARGO=$(CARGO) scripts/setup.sh browser

@@ -1,6 +1,12 @@
 //! Composes every shader of `kernels/` and `wgsl/render/` with WESL, validates the flat result with naga and
-//! writes it, with a manifest of entry points and bindings, to `OUT_DIR`. An unknown import, an unused
-//! binding or an invalid shader fails the build and names file and line.
+//! writes it, with a manifest of entry points, bindings, override constants and structs, to `OUT_DIR`, and beside
+//! it the modules for others' shaders. An unknown import, an unused binding or an invalid shader fails the build
+//! and names file and line.
+
+#[path = "build/limits.rs"]
+mod limits;
+#[path = "build/modules.rs"]
+mod modules;
 
 #[path = "build/bindings.rs"]
 mod bindings;
@@ -13,9 +19,11 @@ mod shaders {
     use std::fmt::Write as _;
     use std::path::{Path, PathBuf};
 
-    use naga::{AddressSpace, ShaderStage, StorageAccess, TypeInner};
+    use naga::common::wgsl::TypeContext as _;
+    use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
+    use crate::{limits, modules};
 
     pub fn build() {
         let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
@@ -58,7 +66,13 @@ mod shaders {
             }
             let folder = file.parent().and_then(|folder| folder.file_name()).expect("below wgsl/");
             let name = folder.to_string_lossy().into_owned();
-            let module = Shader::compose(root, &file, name.clone(), Keep::All);
+            // WESL knows whether everything that is imported exists.
+            Shader::compose(root, &file, name.clone(), Keep::All);
+            let source = modules::joined(root, &file);
+            let module = Shader::validated(root, &file, name.clone(), source);
+            if let Some(what) = modules::unfit(&module.module) {
+                refuse(file.strip_prefix(root).unwrap_or(&file), &what);
+            }
             let path = out.join(format!("module_{name}.wgsl"));
             std::fs::write(&path, &module.flat).expect("OUT_DIR is writable");
             all.push(format!("Module {{ name: {name:?}, source: include_str!({path:?}) }}"));
@@ -168,6 +182,14 @@ mod shaders {
             // Without mangling the flat shader reads like its sources; a clash of names is a naga error.
             let flat = flatten(root, file, keep, wesl::ManglerKind::None);
             let flat = format!("// relievo {name}: generated from {}\n\n{flat}", relative.display());
+            let shader = Self::validated(root, file, name, flat);
+            shader.refuse_unused_bindings(root, file);
+            shader
+        }
+
+        /// What naga knows of a flat shader.
+        fn validated(root: &Path, file: &Path, name: String, flat: String) -> Self {
+            let relative = file.strip_prefix(root).expect("below the root");
             let module = naga::front::wgsl::parse_str(&flat).unwrap_or_else(|error| {
                 let at = error.location(&flat).map_or(0, |location| location.line_number as usize);
                 refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
@@ -180,9 +202,7 @@ mod shaders {
                 let at = error.location(&flat).map_or(0, |location| location.line_number as usize);
                 refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
             });
-            let shader = Self { name, flat, module, info };
-            shader.refuse_unused_bindings(root, file);
-            shader
+            Self { name, flat, module, info }
         }
 
         /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat
@@ -210,7 +230,30 @@ mod shaders {
         }
 
         fn describe(&self, manifest: &mut String, path: &Path) {
-            let mut entries = String::new();
+            let mut bindings = self.bindings();
+            bindings.sort();
+            let bindings: String = bindings.into_iter().map(|(_, _, text)| text).collect();
+            let limits = (limits::beyond_defaults(&self.module, &self.info).into_iter())
+                .map(|(name, needed)| format!("Limit {{ name: {name:?}, needed: {needed} }}"))
+                .collect::<Vec<_>>()
+                .join(", ");
+            writeln!(
+                manifest,
+                "/// `{name}`\npub static {constant}: Shader = Shader {{\n    name: {name:?},\n    \
+                 source: include_str!({path:?}),\n    entry_points: &[\n{entries}    ],\n    \
+                 bindings: &[\n{bindings}    ],\n    overrides: &[\n{overrides}    ],\n    \
+                 limits: &[{limits}],\n    structs: &[\n{structs}    ],\n}};",
+                name = self.name,
+                constant = self.constant(),
+                entries = self.entry_points(),
+                overrides = self.overrides(),
+                structs = self.structs(),
+            )
+            .expect("a string");
+        }
+
+        fn entry_points(&self) -> String {
+            let mut text = String::new();
             for entry in &self.module.entry_points {
                 let stage = match entry.stage {
                     ShaderStage::Vertex => "Stage::Vertex",
@@ -218,30 +261,57 @@ mod shaders {
                     ShaderStage::Compute => "Stage::Compute",
                     other => panic!("{}: {other:?} stages are not part of WebGPU", self.name),
                 };
+                let is_vertex = entry.stage == ShaderStage::Vertex;
                 writeln!(
-                    entries,
-                    "        EntryPoint {{ name: {:?}, stage: {stage}, workgroup_size: {:?} }},",
-                    entry.name, entry.workgroup_size
+                    text,
+                    "        EntryPoint {{ name: {:?}, stage: {stage}, workgroup_size: {:?}, inputs: &[{}] }},",
+                    entry.name,
+                    entry.workgroup_size,
+                    if is_vertex { self.inputs(&entry.function) } else { String::new() },
                 )
                 .expect("a string");
             }
-            let mut bindings = self.bindings();
-            bindings.sort();
-            let bindings: String = bindings.into_iter().map(|(_, _, text)| text).collect();
-            let overrides = (self.module.overrides.iter())
-                .map(|(_, constant)| format!("{:?}", constant.name.as_deref().unwrap_or_default()))
-                .collect::<Vec<_>>()
-                .join(", ");
-            writeln!(
-                manifest,
-                "/// `{name}`\npub static {constant}: Shader = Shader {{\n    name: {name:?},\n    \
-                 source: include_str!({path:?}),\n    entry_points: &[\n{entries}    ],\n    \
-                 bindings: &[\n{bindings}    ],\n    overrides: &[{overrides}],\n    structs: &[\n{structs}    ],\n}};",
-                name = self.name,
-                constant = self.constant(),
-                structs = self.structs(),
-            )
-            .expect("a string");
+            text
+        }
+
+        /// What a vertex entry takes from vertex buffers.
+        fn inputs(&self, function: &naga::Function) -> String {
+            let mut inputs = Vec::new();
+            for argument in &function.arguments {
+                match argument.binding {
+                    Some(Binding::Location { location, .. }) => {
+                        let name = argument.name.as_deref().unwrap_or_default();
+                        let ty = self.type_name(argument.ty);
+                        inputs.push(format!("Input {{ location: {location}, name: {name:?}, ty: {ty:?} }}"));
+                    }
+                    Some(Binding::BuiltIn(_)) => {}
+                    None => panic!("{}: vertex inputs in a struct: teach build.rs", self.name),
+                }
+            }
+            inputs.join(", ")
+        }
+
+        fn overrides(&self) -> String {
+            let mut text = String::new();
+            for (_, constant) in self.module.overrides.iter() {
+                let name = constant.name.as_deref().unwrap_or_default();
+                let default = constant.init.map(|init| &self.module.global_expressions[init]);
+                let default = match default {
+                    Some(Expression::Literal(Literal::Bool(value))) => f64::from(u8::from(*value)),
+                    Some(Expression::Literal(Literal::U32(value))) => f64::from(*value),
+                    Some(Expression::Literal(Literal::I32(value))) => f64::from(*value),
+                    Some(Expression::Literal(Literal::F32(value))) => f64::from(*value),
+                    other => panic!("{}: override {name}: teach build.rs the default {other:?}", self.name),
+                };
+                let ty = self.type_name(constant.ty);
+                writeln!(text, "        Override {{ name: {name:?}, ty: {ty:?}, default: {default:?} }},")
+                    .expect("a string");
+            }
+            text
+        }
+
+        fn type_name(&self, ty: naga::Handle<naga::Type>) -> String {
+            self.module.to_ctx().type_to_string(ty)
         }
 
         fn bindings(&self) -> Vec<(u32, u32, String)> {
@@ -263,15 +333,17 @@ mod shaders {
                         self.name, variable.name
                     ),
                 };
-                let stages = (self.module.entry_points.iter().enumerate())
+                let mut stages = (self.module.entry_points.iter().enumerate())
                     .filter(|(index, _)| !self.info.get_entry_point(*index)[handle].is_empty())
                     .map(|(_, entry)| format!("Stage::{:?}", entry.stage))
-                    .collect::<Vec<_>>()
-                    .join(", ");
+                    .collect::<Vec<_>>();
+                stages.dedup();
+                let stages = stages.join(", ");
                 let name = variable.name.as_deref().unwrap_or_default();
                 let (group, binding) = (binding.group, binding.binding);
+                let ty = self.type_name(variable.ty);
                 found.push((group, binding, format!(
-                    "        Binding {{ group: {group}, binding: {binding}, name: {name:?}, kind: {kind}, stages: &[{stages}] }},\n"
+                    "        Binding {{ group: {group}, binding: {binding}, name: {name:?}, kind: {kind}, ty: {ty:?}, stages: &[{stages}] }},\n"
                 )));
             }
             found
@@ -292,7 +364,9 @@ mod shaders {
                 };
                 let members = (members.iter())
                     .map(|member| {
-                        format!("({:?}, {})", member.name.as_deref().unwrap_or_default(), member.offset)
+                        let (name, offset) = (member.name.as_deref().unwrap_or_default(), member.offset);
+                        let ty = self.type_name(member.ty);
+                        format!("Member {{ name: {name:?}, offset: {offset}, ty: {ty:?} }}")
                     })
                     .collect::<Vec<_>>()
                     .join(", ");

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Makes sure that there is what the build needs besides cargo, and with `adapter` that a Vulkan adapter works:
-# installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no
+# Makes sure that there is what the build needs besides cargo, with `adapter` that a Vulkan adapter works, and with
+# `browser` that there is the Chromium that the tests compile shaders in: installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no
 # network, where all is there.
 set -euo pipefail
 cargo=${CARGO:-cargo}
@@ -12,6 +12,14 @@ have_driver() {
 }
 have_loader() {
     ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' || compgen -G '/usr/lib/*/libvulkan.so.1' >/dev/null
+}
+# One that was chosen by name is the user's business.
+have_browser() {
+    [ -z "${RELIEVO_CHROMIUM:-}" ] || return 0
+    for name in chromium chromium-browser google-chrome google-chrome-stable; do
+        command -v "$name" >/dev/null && return 0
+    done
+    return 1
 }
 # A driver's file may be there without its library or its hardware: only opening a device tells.
 have_adapter() {
@@ -36,6 +44,7 @@ if [ "$(uname -s)" = Linux ]; then
     have_loader || missing+=(libvulkan1)
     # FLIP, the image comparison of the tests, is C++.
     command -v c++ >/dev/null || missing+=(g++)
+    [ "${1:-}" != browser ] || have_browser || missing+=(chromium)
 fi
 [ ${#missing[@]} = 0 ] || provide "${missing[@]}"
 

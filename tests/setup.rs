@@ -44,6 +44,53 @@ fn what_is_missing_is_named_with_the_command_that_gets_it() {
     assert!(stderr(&setup(&[], &[("c++", "")], &[])).contains("cargo is missing"));
 }
 
+/// The suite alone needs it: neither `make demo` nor `make lint` does.
+#[test]
+fn a_browser_is_missing_for_the_tests_alone() {
+    let tools = [("cargo", ""), ("c++", "")];
+    let output = setup(&["browser"], &tools, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = stderr(&output);
+    assert!(text.contains("sudo apt-get install chromium"), "{text}");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    let is_silent =
+        |output: &Output| output.status.success() && output.stderr.is_empty() && output.stdout.is_empty();
+    assert!(is_silent(&setup(&[], &tools, &[])));
+    assert!(is_silent(&setup(&["browser"], &tools, &[("RELIEVO_CHROMIUM", "/opt/chrome")])));
+    for name in ["chromium", "google-chrome"] {
+        assert!(is_silent(&setup(&["browser"], &[tools[0], tools[1], (name, "")], &[])), "{name}");
+    }
+}
+
+/// Root gets it installed: from the lists that are there, or else from new ones.
+#[test]
+fn root_gets_the_browser_installed() {
+    let root = [("cargo", ""), ("c++", ""), ("id", "echo 0")];
+    let asked = tempfile::NamedTempFile::new().expect("a temporary file");
+    let apt = |exit: &str| format!("echo \"$@\" >> {}; {exit}", asked.path().display());
+    for (exit, expected) in [
+        ("exit 0", &["install -y --no-install-recommends chromium"][..]),
+        (
+            // Unknown until the lists are new.
+            "[ $1 = update ] || grep -q update \"$MARKS\"",
+            &[
+                "install -y --no-install-recommends chromium",
+                "update",
+                "install -y --no-install-recommends chromium",
+            ],
+        ),
+    ] {
+        std::fs::write(asked.path(), "").expect("writable");
+        let script = apt(exit);
+        let fakes = [root[0], root[1], root[2], ("apt-get", script.as_str())];
+        let marks = asked.path().to_str().expect("UTF-8");
+        let output = setup(&["browser"], &fakes, &[("MARKS", marks)]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let text = std::fs::read_to_string(asked.path()).expect("readable");
+        assert_eq!(text.lines().collect::<Vec<_>>(), expected);
+    }
+}
+
 #[test]
 fn a_driver_without_a_working_adapter_is_missing() {
     let broken = [("cargo", "[ \"$1\" = build ]"), ("c++", "")];

@@ -22,7 +22,8 @@ const GROWTH = 1.0 + 1.0 / 524288.0;
 const OF_CENTRE = 1.0 / 2097152.0;
 // 2^-62
 const LEAST = 2.16840434e-19;
-const LARGEST = 3.40282347e38;
+// The largest f32, no digit more: compilers refuse what lies beyond.
+const LARGEST = 3.4028234663852886e38;
 
 struct Box {
     low: vec3<f32>,

@@ -63,6 +63,9 @@ fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
     return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
 }
 
+// The least normal f32, 2^-126, exactly: what is less may be flushed to zero.
+const LEAST_NORMAL = 1.1754943508222875e-38;
+
 // Whether an instance of these rows may be a mirror image, a view of side 1 or −1 considered: what is nearly flat may be
 // either, and whoever draws it decides.
 fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
@@ -73,7 +76,7 @@ fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
 fn away_at(towards: vec3<f32>) -> f32 {
     let distance = length(towards);
     let depth = max(dot(params.ahead.xyz, towards), 0.0);
-    return select(distance, depth * (depth / max(distance, 1.17549435e-38)), params.ahead.w > 0.0);
+    return select(distance, depth * (depth / max(distance, LEAST_NORMAL)), params.ahead.w > 0.0);
 }
 
 @compute @workgroup_size(64)

@@ -3,6 +3,8 @@
 // of one instance: every one, or with COMPACTED those of a list. Instances run faster than clusters, so that a cluster's
 // vertices stay in the cache.
 import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::skinning::rows::{Rows, rows_of_dual};
+import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
 override COMPACTED: bool = false;
 // Dual quaternions in place of matrices.
@@ -39,12 +41,6 @@ struct SkinParams {
 // As `vertices`, instance by instance.
 @group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
 
-struct Rows {
-    x: vec4<f32>,
-    y: vec4<f32>,
-    z: vec4<f32>,
-}
-
 // A sum of bones: rows of matrices, or rotation, dual part, diagonal and what is above it.
 struct Sum {
     a: vec4<f32>,
@@ -65,26 +61,10 @@ fn added(sum: Sum, at: u32, weight: f32, side: f32) -> Sum {
 }
 
 fn matrix_of(sum: Sum) -> Rows {
-    if !DUAL {
-        return Rows(sum.a, sum.b, sum.c);
+    if DUAL {
+        return rows_of_dual(sum.a, sum.b, sum.c, sum.d);
     }
-    let q = sum.a;
-    let d = sum.b;
-    // Times 2 over the squared length, in place of normalizing.
-    let twice = 2.0 * (1.0 / dot(q, q));
-    let t = twice * (q.w * d.xyz - d.w * q.xyz + cross(q.xyz, d.xyz));
-    let u = sum.c;
-    let above = sum.d;
-    let x = vec3<f32>(
-        1.0 - twice * (q.y * q.y + q.z * q.z), twice * (q.x * q.y - q.w * q.z), twice * (q.x * q.z + q.w * q.y));
-    let y = vec3<f32>(
-        twice * (q.x * q.y + q.w * q.z), 1.0 - twice * (q.x * q.x + q.z * q.z), twice * (q.y * q.z - q.w * q.x));
-    let z = vec3<f32>(
-        twice * (q.x * q.z - q.w * q.y), twice * (q.y * q.z + q.w * q.x), 1.0 - twice * (q.x * q.x + q.y * q.y));
-    return Rows(
-        vec4<f32>(x.x * u.x, x.x * above.x + x.y * u.y, x.x * above.y + x.y * above.z + x.z * u.z, t.x),
-        vec4<f32>(y.x * u.x, y.x * above.x + y.y * u.y, y.x * above.y + y.y * above.z + y.z * u.z, t.y),
-        vec4<f32>(z.x * u.x, z.x * above.x + z.y * u.y, z.x * above.y + z.y * above.z + z.z * u.z, t.z));
+    return Rows(sum.a, sum.b, sum.c);
 }
 
 // The matrix of a vertex: its column of the cluster's influences begins at `column`.
@@ -175,8 +155,8 @@ fn main(
     let c = vertices[first + 2u];
     let d = vertices[first + 3u];
     let e = vertices[first + 4u];
-    let old = vec3<f32>(a, b.x);
-    let old_normal = vec3<f32>(b.y, c);
+    let old = vertex_position(a, b);
+    let old_normal = vertex_normal(b, c);
     let along = vec3<f32>(d, e.x);
     let x = rows.x.xyz;
     let y = rows.y.xyz;

@@ -6,7 +6,7 @@ use super::shaders::Shader;
 pub(crate) fn check(shader: &Shader, name: &str, size: u64, offsets: &[u64]) -> Result<(), String> {
     let found = shader.structs.iter().find(|layout| layout.name == name);
     let layout = found.ok_or_else(|| format!("{} has no struct `{name}`", shader.name))?;
-    let expected: Vec<u64> = layout.members.iter().map(|(_, offset)| (*offset).into()).collect();
+    let expected: Vec<u64> = layout.members.iter().map(|member| member.offset.into()).collect();
     if offsets != expected || size != u64::from(layout.size) {
         return Err(format!("{name}: offsets {offsets:?} size {size}, but {layout:?} in {}", shader.name));
     }

@@ -21,6 +21,20 @@ pub struct EntryPoint {
     pub stage: Stage,
     /// Invocations a workgroup; zeros outside compute.
     pub workgroup_size: [u32; 3],
+    /// What it takes from vertex buffers; nothing outside vertex stages.
+    pub inputs: &'static [Input],
+}
+
+/// A vertex attribute.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Input {
+    /// Its `@location`.
+    pub location: u32,
+    /// The argument's name.
+    pub name: &'static str,
+    /// WGSL's name of its type: `vec3<f32>`.
+    #[serde(rename = "type")]
+    pub ty: &'static str,
 }
 
 /// What a binding takes.
@@ -54,6 +68,9 @@ pub struct Binding {
     pub name: &'static str,
     /// What it takes.
     pub kind: BindingKind,
+    /// WGSL's name of its type: `array<vec4<f32>>`. Structs are among [`Shader::structs`].
+    #[serde(rename = "type")]
+    pub ty: &'static str,
     /// The stages that use it.
     pub stages: &'static [Stage],
 }
@@ -65,8 +82,41 @@ pub struct Struct {
     pub name: &'static str,
     /// Bytes.
     pub size: u32,
-    /// Names and byte offsets.
-    pub members: &'static [(&'static str, u32)],
+    /// In the order of their offsets.
+    pub members: &'static [Member],
+}
+
+/// A member of a struct.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Member {
+    /// Its name.
+    pub name: &'static str,
+    /// Bytes from the struct's start.
+    pub offset: u32,
+    /// WGSL's name of its type.
+    #[serde(rename = "type")]
+    pub ty: &'static str,
+}
+
+/// A pipeline-overridable constant.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Override {
+    /// Its name.
+    pub name: &'static str,
+    /// WGSL's name of its type: `bool`, `i32`, `u32` or `f32`.
+    #[serde(rename = "type")]
+    pub ty: &'static str,
+    /// Its value where a pipeline sets none, as WebGPU's `constants` take it: 0 or 1 for `bool`.
+    pub default: f64,
+}
+
+/// A limit of the device that a shader needs raised.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Limit {
+    /// WebGPU's name of the limit: `maxStorageBuffersPerShaderStage`.
+    pub name: &'static str,
+    /// The least that suffices.
+    pub needed: u32,
 }
 
 /// A flat WGSL shader.
@@ -81,20 +131,23 @@ pub struct Shader {
     pub entry_points: &'static [EntryPoint],
     /// What it binds.
     pub bindings: &'static [Binding],
-    /// Names of its pipeline-overridable constants.
-    pub overrides: &'static [&'static str],
-    /// Its structs.
-    #[serde(skip)]
+    /// Its pipeline-overridable constants.
+    pub overrides: &'static [Override],
+    /// The limits that it needs raised above WebGPU's defaults. None for every shader but `animation/decide`, which
+    /// [`Dispatches::of`](crate::animation::decide::Dispatches::of) takes only where a device allows it.
+    pub limits: &'static [Limit],
+    /// The structs of its bindings and functions.
     pub structs: &'static [Struct],
 }
 
-/// WGSL to put before your own shader, for programs that do not compose theirs with WESL: functions and structs
-/// without entry points or bindings.
-#[derive(Debug, Clone, Copy)]
+/// WGSL to put before your own shader, for programs that do not compose theirs with WESL: functions, structs and
+/// constants without entry points, bindings or override constants. No two modules declare the same name.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Module {
-    /// The folder below `wgsl/`.
+    /// The folder below `wgsl/`: `animation`, `skinning`, `surface` or `terrain`.
     pub name: &'static str,
-    /// WGSL.
+    /// WGSL, with a comment on every declaration.
+    #[serde(skip)]
     pub source: &'static str,
 }
 

@@ -104,25 +104,21 @@ fn a_gate_that_misses_nothing_changes_nothing() {
 fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
     let model = creature().expect("valid");
     let set = ClipSet::new(&[&model.clips[0]]).expect("one skeleton");
+    let (skeleton, clips, path) = (&model.skeleton, [&model.clips[0]], RotationPath::Slerp);
+    let reaches = vec![0.1; skeleton.len()];
     let table = match choice {
-        Choice::Gate(_) => GateTable::of_movers(&Order::new(&model.skeleton), &set, &[&model.clips[0]]),
-        Choice::Budget(_) => {
-            let reaches = vec![0.1; model.skeleton.len()];
-            GateTable::of_expectations(
-                &model.skeleton,
-                &set,
-                &[&model.clips[0]],
-                &reaches,
-                RotationPath::Slerp,
-            )
-        }
+        BOUNDED => GateTable::of_bounds(skeleton, &set, &clips, &reaches, path),
+        Choice::Gate(_) => GateTable::of_movers(&Order::new(skeleton), &set, &clips),
+        Choice::Budget(_) => GateTable::of_expectations(skeleton, &set, &clips, &reaches, path),
     };
+    let table = table.expect("fits");
     let buffers = ClipBuffers::new(gpu, &set).expect("uploaded");
     let plays: Vec<_> = (0..40).map(|at| Instance::new(0, Wrap::Loop, 0.1 * at as f32, 1.0)).collect();
     let crowd = Crowd::new(gpu, &set, &plays).expect("fits");
-    let prepared = GatedFrame::new(gpu, &model.skeleton, &buffers, &crowd, &table.expect("fits"), choice);
+    let prepared = GatedFrame::new(gpu, skeleton, &buffers, &crowd, &table, choice);
     let prepared = prepared.expect("prepared");
-    let lod = |at: u32| Lod { omega: 65536 / (1 + at % 2), ..Lod::FULL };
+    let allowed = table.units(0.01);
+    let lod = |at: u32| Lod { omega: 65536 / (1 + at % 2), allowed, ..Lod::FULL };
     prepared.gating.lods.write(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
     for number in 0..4 {
         prepared.set(gpu, &frame(number), number as f32 / 8.0).expect("set");
@@ -136,7 +132,7 @@ fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
 #[test]
 fn devices_with_default_limits_play_the_same_frames() {
     let (own, foreign) = (gpu(), foreign());
-    for choice in [Choice::Gate(Gate::Uniform), Choice::Budget(1000)] {
+    for choice in [Choice::Gate(Gate::Uniform), BOUNDED, Choice::Budget(1000)] {
         let [(bits, models), (same_bits, same_models)] = [&own, &foreign].map(|gpu| played(gpu, choice));
         assert!(bits.iter().any(|word| *word != 0), "{choice:?}: nothing was active");
         assert_eq!(bits, same_bits, "{choice:?}");

@@ -1,10 +1,10 @@
 //! The other commands.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::harness::{all_adapters, gpu, relievo};
 
-fn json(path: &std::path::Path) -> Value {
+fn read_json(path: &std::path::Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("written")).expect("JSON")
 }
 
@@ -30,7 +30,7 @@ fn verify_writes_every_case() {
     let run = relievo(&["verify", "--only", "terrain/thermal", "--json", path.to_str().expect("UTF-8")]);
     assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
     assert!(run.stdout.contains("holds") && run.stdout.contains("all "), "{}", run.stdout);
-    let report = json(&path);
+    let report = read_json(&path);
     assert_eq!(report["holds"], true);
     let cases = report["cases"].as_array().expect("cases");
     assert!(cases.len() > 20 && cases.iter().all(|case| case["stem"] == "terrain/thermal"));
@@ -43,7 +43,7 @@ fn bench_writes_the_documented_summary() {
     let path = folder.path().join("deep/summary.json");
     let run = relievo(&["bench", "--only", "baseline/words", "--json", path.to_str().expect("UTF-8")]);
     assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
-    let summary = json(&path);
+    let summary = read_json(&path);
     assert!(["device", "driver", "commit"].iter().all(|field| summary[field].is_string()));
     assert!(summary["threads"].as_u64().is_some_and(|threads| threads > 0));
     let rows = summary["rows"].as_array().expect("rows");
@@ -62,8 +62,8 @@ fn shaders_are_flat_and_described() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let run = relievo(&["shaders", "--out", folder.path().join("wgsl").to_str().expect("UTF-8")]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    let manifest = json(&folder.path().join("wgsl/manifest.json"));
-    let entries = manifest.as_array().expect("a list");
+    let manifest = read_json(&folder.path().join("wgsl/manifest.json"));
+    let entries = manifest["shaders"].as_array().expect("a list");
     assert_eq!(entries.len(), relievo::gpu::shaders::ALL.len());
     for entry in entries {
         let file = folder.path().join("wgsl").join(entry["file"].as_str().expect("a name"));
@@ -79,12 +79,51 @@ fn shaders_are_flat_and_described() {
             assert!(threads.is_power_of_two() && threads <= 256, "{}: {threads}", entry["name"]);
         });
     }
-    for module in relievo::gpu::shaders::MODULES {
-        let file = folder.path().join(format!("wgsl/module_{}.wgsl", module.name));
+    let modules = manifest["modules"].as_array().expect("a list");
+    assert_eq!(modules.len(), relievo::gpu::shaders::MODULES.len());
+    for (module, functions) in modules.iter().zip([
+        &["slerp", "inside_clip"][..],
+        &["rows_of_dual", "placed_normal"],
+        &["surface_trace", "surface_soft_shadow"],
+        &["zone_share", "slope_normal", "threefry2x32"],
+    ]) {
+        let file = folder.path().join("wgsl").join(module["file"].as_str().expect("a name"));
         let source = std::fs::read_to_string(file).expect("written");
-        assert!(source.contains("fn surface_trace(") && source.contains("fn surface_soft_shadow("));
-        assert!(!source.contains("@binding") && !source.contains("@compute"), "{}", module.name);
+        for function in functions {
+            assert!(source.contains(&format!("fn {function}(")), "{module} has no {function}");
+        }
+        assert!(!source.contains("@binding") && !source.contains("@compute"), "{module}");
+        assert!(!source.contains("\nimport "), "{module}");
     }
+}
+
+/// What an engine without wgpu makes layouts, buffers and pipelines from.
+#[test]
+fn the_manifest_tells_types_defaults_offsets_and_limits() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = relievo(&["shaders", "--out", folder.path().join("wgsl").to_str().expect("UTF-8")]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let manifest = read_json(&folder.path().join("wgsl/manifest.json"));
+    let shader = |name: &str| {
+        let shaders = manifest["shaders"].as_array().expect("a list");
+        shaders.iter().find(|shader| shader["name"] == name).expect("there").clone()
+    };
+    let sample = shader("animation/sample");
+    let splines = json!({ "name": "SPLINES", "type": "bool", "default": 1.0 });
+    assert!(sample["overrides"].as_array().expect("a list").contains(&splines), "{}", sample["overrides"]);
+    let params = json!({
+        "group": 0, "binding": 0, "name": "params", "kind": "uniform", "type": "SampleParams", "stages": ["compute"],
+    });
+    assert_eq!(sample["bindings"][0], params);
+    assert_eq!(sample["bindings"][3]["type"], "array<vec4<f32>>");
+    let layout = &sample["structs"].as_array().expect("a list")[0];
+    assert_eq!(layout["name"], "SampleParams");
+    assert_eq!(layout["members"][4], json!({ "name": "layers", "offset": 16, "type": "u32" }));
+    let vertex = &shader("render/relief")["entry_points"][0];
+    assert_eq!(vertex["inputs"][2], json!({ "location": 2, "name": "tangent", "type": "vec4<f32>" }));
+    let limit = json!([{ "name": "maxStorageBuffersPerShaderStage", "needed": 20 }]);
+    assert_eq!(shader("animation/decide")["limits"], limit);
+    assert_eq!(sample["limits"], json!([]));
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! What the test programs share: the adapter, goldens with blessing, and reports of failed images.
 #![allow(dead_code, reason = "each test program uses its own part")]
 
+pub mod browser;
+
 use std::path::{Path, PathBuf};
 
 use image::RgbaImage;

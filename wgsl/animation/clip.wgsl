@@ -1,6 +1,4 @@
 // A clip's place in a set.
-
-// A clip's place in a set.
 struct ClipEntry {
     // Its first timeline.
     first_timeline: u32,

@@ -1,12 +1,13 @@
 // Where in its clip a time falls.
 
-// 0 is WRAP_LOOP.
+// Stays at the clip's start and end. 0 loops.
 const WRAP_CLAMP = 1u;
 
 // After so many turns, f32 knows no place in a clip.
 const MOST_TURNS = 16777216.0;
 
-// Seconds since the clip's start, inside the clip. Its start, where a loop's time is so large that it is nowhere.
+// Seconds since the clip's start, 0 to `duration`, of a time in clip seconds, which may be negative; a loop never reaches
+// its end. Its start, where a loop's time is so large that it is nowhere.
 fn inside_clip(wrap: u32, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;

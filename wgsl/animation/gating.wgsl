@@ -12,8 +12,10 @@ struct Lod {
     flags: u32,
 }
 
+// Flags: nothing is sampled; everything is, now.
 const LOD_HIDDEN = 1u;
 const LOD_REFRESH = 2u;
+// Full detail.
 const OMEGA_ONE = 65536u;
 
 // Where an instance stands.
@@ -30,19 +32,23 @@ struct Phase {
     ahead_fraction: u32,
 }
 
+// Verdicts: the gate decides; nothing is sampled; everything is; what layers blend is.
 const PHASE_FREE = 0u;
 const PHASE_HIDDEN = 1u;
 const PHASE_FORCED = 2u;
 const PHASE_BLENDED = 3u;
 
+// PHASE_FREE, PHASE_HIDDEN, PHASE_FORCED or PHASE_BLENDED.
 fn verdict_of(phase: Phase) -> u32 {
     return phase.fraction_and_verdict >> 20u;
 }
 
+// Whether bones that are sampled ahead get another pose.
 fn is_ahead(phase: Phase) -> bool {
     return phase.ahead_row != phase.row || phase.ahead_fraction != fraction_of(phase);
 }
 
+// The way to the next row, 0 to 65536.
 fn fraction_of(phase: Phase) -> u32 {
     return phase.fraction_and_verdict & 0xfffffu;
 }

@@ -1,4 +1,5 @@
 // How far bones have moved along their clips, in units of the table.
+
 // value * fraction / 65536, fraction at most 65536, without overflow.
 fn share_of(value: u32, fraction: u32) -> u32 {
     return (value >> 16u) * fraction + (((value & 0xffffu) * (fraction & 0xffffu)) >> 16u)

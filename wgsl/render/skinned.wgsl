@@ -1,4 +1,6 @@
 // Draws skinned instances of a mesh: textured, lit, each at a place of its own; opaque, cut out, or through a screen.
+import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
+import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
 // Seen from both sides: what faces away turns its normal round.
 override DOUBLE_SIDED: bool = false;
@@ -48,15 +50,13 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u3
     }
     let at = 5u * (instance * view.vertices + vertex);
     let middle = skinned[at + 1u];
-    let position = vec4<f32>(skinned[at], middle.x, 1.0);
-    let normal = vec3<f32>(middle.y, skinned[at + 2u]);
-    let world = vec4<f32>(dot(x, position), dot(y, position), dot(z, position), 1.0);
-    // By the cofactors: right for uneven scales too. Where the placement mirrors, these point inwards. That is right where
-    // both sides are seen: the rasterizer takes the inner one for the front then.
-    let facing = vec3<f32>(
-        dot(cross(y.xyz, z.xyz), normal), dot(cross(z.xyz, x.xyz), normal), dot(cross(x.xyz, y.xyz), normal));
+    let rows = Rows(x, y, z);
+    let world = placed_position(rows, vertex_position(skinned[at], middle));
+    // Where the placement mirrors, cofactors point inwards. That is right where both sides are seen: the rasterizer takes the
+    // inner one for the front then.
+    let facing = placed_normal(rows, vertex_normal(middle, skinned[at + 2u]));
     let outwards = select(facing, -facing, !DOUBLE_SIDED && determinant < 0.0);
-    return Vertex(view.clip_from_world * world, outwards, texture_coordinates[vertex]);
+    return Vertex(view.clip_from_world * vec4<f32>(world, 1.0), outwards, texture_coordinates[vertex]);
 }
 
 // The rank of a pixel's place among 4 × 4 (Bayer 1973), between 0 and 1.

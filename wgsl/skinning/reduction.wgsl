@@ -1,5 +1,4 @@
 // How an instance is skinned.
-
 struct Reduction {
     // 0 is full quality, 1 rigid.
     fade: f32,

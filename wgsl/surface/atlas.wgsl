@@ -7,6 +7,7 @@ fn surface_levels(cells: vec2<u32>) -> u32 {
     return select(firstLeadingBit(longest - 1u) + 2u, 1u, longest <= 1u);
 }
 
+// The texel of a node: its level, 0 for cells, and its index at that level.
 fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32> {
     if level == 0u {
         return index;

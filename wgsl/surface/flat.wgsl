@@ -2,6 +2,7 @@
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
+// Plain texturing: the polygon itself.
 fn surface_plain(ray: SurfaceRay) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);

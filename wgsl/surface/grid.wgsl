@@ -12,6 +12,7 @@ const SURFACE_LEAST_TRAVEL: f32 = 1e-6;
 // A parameter that no ray reaches.
 const SURFACE_NEVER: f32 = 2.0;
 
+// The cells that a ray crosses.
 struct SurfaceGrid {
     // Texels, and cells, of a tile.
     size: vec2<i32>,
@@ -35,6 +36,7 @@ struct SurfaceNode {
     high: vec2<i32>,
 }
 
+// The grid of a map of `size` texels under a ray.
 fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
     let scale = vec2<f32>(size);
     let texel = ray.origin * scale - 0.5;

@@ -5,6 +5,7 @@ import package::wgsl::surface::ray::SURFACE_WRAP;
 // Texel loads of one bilinear height.
 const SURFACE_BILINEAR: u32 = 4u;
 
+// The height at uv, 0 to 1, at a mip level; `address` is SURFACE_WRAP or SURFACE_CLAMP.
 fn surface_height(heights: texture_2d<f32>, uv: vec2<f32>, mip: u32, address: u32) -> f32 {
     let size = vec2<f32>(textureDimensions(heights, mip));
     let last = vec2<i32>(size) - 1;

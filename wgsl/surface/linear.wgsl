@@ -3,6 +3,7 @@
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
+// Bounds of what a march may ask for.
 const SURFACE_MOST_STEPS: u32 = 1024u;
 const SURFACE_MOST_BINARY: u32 = 24u;
 
@@ -16,13 +17,14 @@ struct SurfaceBracket {
     samples: u32,
 }
 
-// ⌈mix(min, max, 1 − V.z)⌉
+// Linear steps at a cosine: ⌈mix(min, max, 1 − V.z)⌉, 1 to SURFACE_MOST_STEPS.
 fn surface_steps(march: SurfaceMarch, cosine: f32) -> u32 {
     let low = f32(march.min_steps);
     let steps = ceil(low + (f32(march.max_steps) - low) * (1.0 - min(cosine, 1.0)));
     return clamp(u32(steps), 1u, SURFACE_MOST_STEPS);
 }
 
+// Steps of equal length from the top until a point is at or under the surface.
 fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceBracket {
     let steps = surface_steps(march, ray.cosine);
     let width = 1.0 / f32(steps);
@@ -43,6 +45,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return bracket;
 }
 
+// Relief mapping: linear steps, then binary ones.
 fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -71,6 +74,7 @@ fn surface_narrowed(
     return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
 }
 
+// Parallax occlusion mapping: linear steps, then the crossing of the segment between the last two heights.
 fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);

@@ -1,5 +1,5 @@
-// Everything that a material shader may want of surface mapping. `build.rs` writes it flat, for shaders that are not
-// composed with WESL: put it before your own code, which then has `surface_trace` and its kin.
+// Surface mapping: every ray-height method behind `surface_trace`, normals, self-shadow, depth, silhouettes. `build.rs`
+// joins this file and what it imports, for shaders that are not composed with WESL: put it before your own code.
 import package::wgsl::surface::ray::{surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;

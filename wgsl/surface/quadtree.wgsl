@@ -4,6 +4,7 @@ import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit,
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
 
+// `pyramid` is the max-mip pyramid of `heights`: surface/height_pyramid makes it. Of `march`, the address counts.
 fn surface_quadtree(
     heights: texture_2d<f32>, pyramid: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {

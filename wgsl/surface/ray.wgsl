@@ -1,9 +1,11 @@
 // Rays through a relief volume, how to march them, and what they hit: the interface of every method
 // (B section 3.1). The volume's top has height 1, its bottom 0; s is its depth in uv units.
 
+// Addressing: tiles repeat, or the rim goes on.
 const SURFACE_WRAP: u32 = 0u;
 const SURFACE_CLAMP: u32 = 1u;
 
+// Outcomes: the ray comes from behind; it met the surface.
 const SURFACE_MISS: u32 = 0u;
 const SURFACE_HIT: u32 = 1u;
 // The method ran out of steps: the result is where it stood.
@@ -13,6 +15,7 @@ const SURFACE_EXHAUSTED: u32 = 2u;
 // divides by next to nothing.
 const SURFACE_LEAST_COSINE: f32 = 0.0078125;
 
+// A ray through the volume, in tangent space.
 struct SurfaceRay {
     // uv where the ray enters the volume, at height 1.
     origin: vec2<f32>,
@@ -24,6 +27,7 @@ struct SurfaceRay {
     polygon: f32,
 }
 
+// How methods search.
 struct SurfaceMarch {
     // SURFACE_WRAP or SURFACE_CLAMP.
     address: u32,
@@ -36,6 +40,7 @@ struct SurfaceMarch {
     mip: u32,
 }
 
+// What a method found.
 struct SurfaceHit {
     // Displaced texture coordinates; beyond the tile where the ray left it.
     uv: vec2<f32>,
@@ -49,14 +54,15 @@ struct SurfaceHit {
     outcome: u32,
 }
 
-// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space; `plane` the
-// polygon's height in the volume, 1 (top) to 0.
+// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space; `scale` the volume's
+// depth in uv units; `plane` the polygon's height in the volume, 1 (top) to 0.
 fn surface_ray(uv: vec2<f32>, view: vec3<f32>, scale: f32, plane: f32) -> SurfaceRay {
     let slope = view.xy * (-scale / max(view.z, SURFACE_LEAST_COSINE));
     let polygon = 1.0 - plane;
     return SurfaceRay(uv - polygon * slope, slope, view.z, polygon);
 }
 
+// uv at a parameter, 0 (top of the volume) to 1 (bottom).
 fn surface_at(ray: SurfaceRay, parameter: f32) -> vec2<f32> {
     return ray.origin + parameter * ray.slope;
 }

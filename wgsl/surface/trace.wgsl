@@ -5,6 +5,7 @@ import package::wgsl::surface::linear::{surface_occlusion, surface_relief};
 import package::wgsl::surface::cone::surface_cone;
 import package::wgsl::surface::quadtree::surface_quadtree;
 
+// The methods.
 const SURFACE_PLAIN: u32 = 0u;
 const SURFACE_PARALLAX: u32 = 1u;
 const SURFACE_PARALLAX_LIMITED: u32 = 2u;

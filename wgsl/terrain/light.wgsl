@@ -1,5 +1,6 @@
 // A directional light over terrain, in linear light.
 
+// The sun: one direction for all of the terrain.
 struct Light {
     // Unit vector towards the light.
     direction: vec3<f32>,
@@ -7,6 +8,7 @@ struct Light {
     ambient: f32,
 }
 
+// What a surface of a linear albedo and a unit normal sends to the eye, linear: Lambert's cosine, and the ambient part.
 fn lit(light: Light, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<f32> {
     let facing = max(0.0, dot(normal, light.direction));
     return albedo * (light.ambient + (1.0 - light.ambient) * facing);

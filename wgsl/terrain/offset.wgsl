@@ -2,11 +2,15 @@
 import package::wgsl::hash::Words;
 import package::wgsl::terrain::fixed::multiply_high;
 
+// Uniform in ±range.
 const OFFSET_SIGNED = 0u;
+// Uniform in 0 to range.
 const OFFSET_POSITIVE = 1u;
+// Nearly Gaussian in ±range.
 const OFFSET_GAUSSIAN = 2u;
 
-// `range` is at most 2^30, so that its double fits.
+// Four offsets in 1/65536 units. `distribution` is one of the above; `range` is in the same units and at most 2^30, so
+// that its double fits.
 fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
     if distribution == OFFSET_POSITIVE {
         return vec4<i32>(multiply_high(words.first, range));

@@ -4,6 +4,7 @@
 //     for (var z = 0u; z < count; z++) { fold = zone_folded(fold, z, zones[z], height); }
 //     for (var z = 0u; z < count; z++) { color += zone_share(fold, z, zones[z], height, additive) * … }
 
+// A range of heights with a material of its own.
 struct Zone {
     // Height units, max > min.
     min: f32,
@@ -12,21 +13,25 @@ struct Zone {
 
 // What the shares need to know of all zones.
 struct ZoneFold {
+    // The sum of all weights.
     total: f32,
+    // The zone whose range is nearest, and how far it is, in height units; below 0 inside.
     nearest: u32,
     distance: f32,
 }
 
-// B's weight: 1 at max, 0 at max ± (max − min).
+// B's weight, 0 to 1: 1 at max, 0 at max ± (max − min) and beyond. `height` in height units.
 fn zone_weight(zone: Zone, height: f32) -> f32 {
     let range = zone.max - zone.min;
     return max(0.0, (range - abs(height - zone.max)) / range);
 }
 
+// No zone yet.
 fn zone_fold() -> ZoneFold {
     return ZoneFold(0.0, 0u, 3.0e38);
 }
 
+// One zone more; `index` is its number.
 fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold {
     let distance = abs(height - zone.max) - (zone.max - zone.min);
     let nearer = distance < fold.distance;
@@ -36,7 +41,7 @@ fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold 
         select(fold.distance, distance, nearer));
 }
 
-// The zone's part of the colour. Normalized shares sum to 1, and where all weights are 0 the nearest zone
+// The zone's part of the colour, 0 to 1. Normalized shares sum to 1, and where all weights are 0 the nearest zone
 // has 1; additive ones are the weights as they are.
 fn zone_share(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
     let weight = zone_weight(zone, height);

@@ -5,13 +5,15 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
-use relievo::gpu::shaders::{ALL, MODULES, Shader};
+use relievo::gpu::shaders::{ALL, MODULES, Module, Shader};
 use relievo::terrain::export::write_bytes;
 
 use crate::output::{Staged, json, say};
 
-/// Writes the flat WGSL of every pass, `manifest.json` with entry points, bindings and workgroup sizes, and
-/// `module_<name>.wgsl`: functions to put before your own shaders, such as every ray-height method.
+/// Writes the flat WGSL of every pass, `module_<name>.wgsl` (functions to put before your own shaders: every
+/// ray-height method, zone weights, rotations, dual quaternions), and `manifest.json`: of every pass its entry points
+/// with workgroup sizes and vertex inputs, bindings with types, override constants with defaults, structs with offsets,
+/// and the limits that it needs above WebGPU's defaults.
 #[derive(Args)]
 pub struct Shaders {
     /// The folder.
@@ -19,26 +21,36 @@ pub struct Shaders {
     out: PathBuf,
 }
 
+/// `manifest.json`.
 #[derive(serde::Serialize)]
-struct Entry {
+struct Manifest {
+    shaders: Vec<Entry<Shader>>,
+    modules: Vec<Entry<Module>>,
+}
+
+/// A file and what is in it.
+#[derive(serde::Serialize)]
+struct Entry<T: 'static> {
     file: String,
     #[serde(flatten)]
-    shader: &'static Shader,
+    content: &'static T,
 }
 
 impl Shaders {
     pub fn run(&self) -> Result<ExitCode, Error> {
         let mut staged = Staged::new(&self.out)?;
-        let mut entries = Vec::new();
+        let mut manifest = Manifest { shaders: Vec::new(), modules: Vec::new() };
         for shader in ALL {
             let file = format!("{}.wgsl", shader.name.replace('/', "_"));
             write_bytes(&staged.path(file.clone()), shader.source.as_bytes())?;
-            entries.push(Entry { file, shader });
+            manifest.shaders.push(Entry { file, content: shader });
         }
         for module in MODULES {
-            write_bytes(&staged.path(format!("module_{}.wgsl", module.name)), module.source.as_bytes())?;
+            let file = format!("module_{}.wgsl", module.name);
+            write_bytes(&staged.path(file.clone()), module.source.as_bytes())?;
+            manifest.modules.push(Entry { file, content: module });
         }
-        write_bytes(&staged.path("manifest.json"), &json(&entries)?)?;
+        write_bytes(&staged.path("manifest.json"), &json(&manifest)?)?;
         staged.publish()?;
         let (passes, modules) = (ALL.len(), MODULES.len());
         say(format_args!("{passes} shaders, {modules} modules and manifest.json in {}", self.out.display()))?;

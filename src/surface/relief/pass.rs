@@ -100,7 +100,8 @@ mod tests {
         assert_eq!(size("SurfaceHit"), Some(size_of::<Hit>() as u32));
         let at = |name: &str| {
             let layout = shaders::SURFACE_RELIEF.structs.iter().find(|layout| layout.name == name);
-            layout.map(|layout| layout.members.iter().map(|(_, at)| *at as usize).collect::<Vec<_>>())
+            layout
+                .map(|layout| layout.members.iter().map(|member| member.offset as usize).collect::<Vec<_>>())
         };
         let ray = [0, 8, std::mem::offset_of!(Ray, cosine), std::mem::offset_of!(Ray, polygon)];
         assert_eq!(at("SurfaceRay"), Some(ray.to_vec()));

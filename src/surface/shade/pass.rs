@@ -92,7 +92,10 @@ mod tests {
         let layout = |name: &str| {
             let layout = shaders::SURFACE_SHADE.structs.iter().find(|layout| layout.name == name);
             let layout = layout.expect("a struct of the shader");
-            (layout.size as usize, layout.members.iter().map(|(_, at)| *at as usize).collect::<Vec<_>>())
+            (
+                layout.size as usize,
+                layout.members.iter().map(|member| member.offset as usize).collect::<Vec<_>>(),
+            )
         };
         let point = [
             offset_of!(ShadePoint, light),

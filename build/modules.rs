@@ -1,0 +1,51 @@
+//! Modules for others' shaders: the files of a folder of `wgsl/`, with all that they import, as one text that needs no
+//! WESL and keeps its comments.
+
+use std::path::{Path, PathBuf};
+
+/// The text of a module: its root, then what it imports, each file once.
+pub fn joined(root: &Path, file: &Path) -> String {
+    let mut files = vec![file.to_owned()];
+    let mut text = String::new();
+    let mut next = 0;
+    while next < files.len() {
+        let file = files[next].clone();
+        let source = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let relative = file.strip_prefix(root).unwrap_or(&file);
+        text += &format!("// From relievo's {}.\n", relative.display());
+        for line in source.lines() {
+            match line.strip_prefix("import ") {
+                Some(import) => add(&mut files, imported_file(root, &file, import)),
+                None => text += &format!("{line}\n"),
+            }
+        }
+        text += "\n";
+        next += 1;
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+fn add(files: &mut Vec<PathBuf>, file: PathBuf) {
+    if !files.contains(&file) {
+        files.push(file);
+    }
+}
+
+/// The file of `package::wgsl::folder::file::name;`, or with several names in braces.
+fn imported_file(root: &Path, importing: &Path, import: &str) -> PathBuf {
+    let path = (import.trim_end().strip_suffix(';'))
+        .and_then(|import| import.strip_prefix("package::")?.rsplit_once("::"))
+        .map(|(path, _)| path.replace("::", "/"));
+    let path =
+        path.unwrap_or_else(|| panic!("{}: teach build/modules.rs `import {import}`", importing.display()));
+    root.join(path).with_extension("wgsl")
+}
+
+/// What keeps a shader from being a module that can stand before any other.
+pub fn unfit(module: &naga::Module) -> Option<String> {
+    let bound = module.global_variables.iter().find(|(_, variable)| variable.binding.is_some());
+    let entry = module.entry_points.first().map(|entry| entry.name.as_str());
+    let constant = module.overrides.iter().next().and_then(|(_, constant)| constant.name.as_deref());
+    let found = bound.and_then(|(_, variable)| variable.name.as_deref()).or(entry).or(constant)?;
+    Some(format!("`{found}`: a module has no bindings, entry points or override constants"))
+}

@@ -1,0 +1,166 @@
+//! What the page is to create, from the files and the manifest that `relievo shaders` writes.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+/// Values of the override constants that are not `bool`: those that the library sets.
+const VALUES: &[(&str, &str, &[f64])] = &[
+    ("animation/budget", "STAGE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
+    ("animation/compact", "STAGE", &[0.0, 1.0, 2.0, 3.0]),
+    ("animation/decide", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
+    ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
+    ("render/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+    ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
+    ("surface/cone_map", "OPENING", &[2.0]),
+    ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+    ("terrain/despike", "FEATURES", &[0.0, 1.0]),
+    ("terrain/height", "CELL_ROWS", &[2.0, 33.0, 43.0]),
+    ("terrain/height", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
+    ("terrain/height", "FEATURES", &[0.0, 1.0, 2.0]),
+    ("terrain/height", "LEVELS", &[1.0, 2.0]),
+    ("terrain/wrap", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
+    ("terrain/wrap", "FEATURES", &[0.0, 1.0, 2.0]),
+];
+
+/// The folder that `relievo shaders` wrote, read.
+pub struct Written {
+    pub shaders: Vec<Value>,
+    /// Name and source.
+    pub modules: Vec<(String, String)>,
+    sources: Vec<String>,
+}
+
+impl Written {
+    pub fn read(folder: &Path) -> Self {
+        let text = |file: &str| std::fs::read_to_string(folder.join(file)).expect("written");
+        let manifest: Value = serde_json::from_str(&text("manifest.json")).expect("JSON");
+        let list = |name: &str| manifest[name].as_array().expect("a list").clone();
+        let source = |entry: &Value| text(entry["file"].as_str().expect("a file"));
+        let shaders = list("shaders");
+        Self {
+            sources: shaders.iter().map(source).collect(),
+            modules: list("modules").iter().map(|entry| (name_of(entry), source(entry))).collect(),
+            shaders,
+        }
+    }
+
+    /// A job for every shader.
+    pub fn jobs(&self) -> Vec<Value> {
+        self.shaders.iter().zip(&self.sources).map(|(shader, source)| job(shader, source)).collect()
+    }
+}
+
+pub fn name_of(entry: &Value) -> String {
+    entry["name"].as_str().expect("a name").to_owned()
+}
+
+/// The list `field` of a manifest's entry.
+fn all<'a>(entry: &'a Value, field: &str) -> &'a [Value] {
+    entry[field].as_array().unwrap_or_else(|| panic!("{entry} has no list `{field}`"))
+}
+
+fn job(shader: &Value, source: &str) -> Value {
+    let name = name_of(shader);
+    let pipelines: Vec<_> = (constants(&name, all(shader, "overrides")).iter())
+        .flat_map(|constants| pipelines(&name, all(shader, "entry_points"), constants))
+        .collect();
+    json!({ "name": name, "code": source, "groups": groups(all(shader, "bindings")), "pipelines": pipelines })
+}
+
+/// What pipelines set: all defaults, then each value of each constant with the others at their defaults.
+fn constants(shader: &str, overrides: &[Value]) -> Vec<Value> {
+    let mut sets = vec![json!({})];
+    for constant in overrides {
+        let name = name_of(constant);
+        let known = VALUES.iter().find(|(of, constant, _)| *of == shader && *constant == name);
+        let values = match (constant["type"].as_str(), known) {
+            (Some("bool"), None) => &[0.0, 1.0][..],
+            (Some(_), Some((.., values))) => values,
+            other => panic!("{shader}: which values does the library give `{name}`? {other:?}"),
+        };
+        let default = constant["default"].as_f64().expect("a number");
+        sets.extend(values.iter().filter(|value| **value != default).map(|value| json!({ &name: value })));
+    }
+    sets
+}
+
+/// A compute pipeline, or one with the vertex entry for each fragment entry.
+fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
+    let of_stage = |stage: &str| entries.iter().filter(|entry| entry["stage"] == stage).collect::<Vec<_>>();
+    let label = |entry: &Value| format!("{shader} {} {constants}", name_of(entry));
+    let mut all: Vec<_> = (of_stage("compute").into_iter())
+        .map(|entry| json!({ "label": label(entry), "constants": constants, "compute": entry["name"] }))
+        .collect();
+    for vertex in of_stage("vertex") {
+        let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
+        all.extend(of_stage("fragment").into_iter().map(|fragment| {
+            let render = json!({
+                "vertex": vertex["name"],
+                "fragment": fragment["name"],
+                "topology": strip,
+                "buffers": buffers(vertex),
+            });
+            json!({ "label": label(fragment), "constants": constants, "render": render })
+        }));
+    }
+    all
+}
+
+/// One vertex buffer of all inputs, if there are any.
+fn buffers(vertex: &Value) -> Value {
+    let mut offset = 0;
+    let attributes: Vec<_> = (all(vertex, "inputs").iter())
+        .map(|input| {
+            let (format, bytes) = match input["type"].as_str() {
+                Some("vec2<f32>") => ("float32x2", 8),
+                Some("vec3<f32>") => ("float32x3", 12),
+                Some("vec4<f32>") => ("float32x4", 16),
+                other => panic!("teach the test the vertex format of {other:?}"),
+            };
+            let attribute =
+                json!({ "shaderLocation": input["location"], "offset": offset, "format": format });
+            offset += bytes;
+            attribute
+        })
+        .collect();
+    if attributes.is_empty() {
+        json!([])
+    } else {
+        json!([{ "arrayStride": offset, "attributes": attributes }])
+    }
+}
+
+/// The entries of each bind group, from the manifest.
+fn groups(bindings: &[Value]) -> Vec<Vec<Value>> {
+    let group = |binding: &Value| binding["group"].as_u64().expect("a number") as usize;
+    let mut groups = vec![Vec::new(); bindings.iter().map(|binding| group(binding) + 1).max().unwrap_or(0)];
+    for binding in bindings {
+        groups[group(binding)].push(layout_entry(binding));
+    }
+    groups
+}
+
+fn layout_entry(binding: &Value) -> Value {
+    let visibility: u32 = (all(binding, "stages").iter())
+        .map(|stage| match stage.as_str() {
+            Some("vertex") => 1,
+            Some("fragment") => 2,
+            Some("compute") => 4,
+            other => panic!("no stage of WebGPU: {other:?}"),
+        })
+        .sum();
+    let mut entry = json!({ "binding": binding["binding"], "visibility": visibility });
+    let (key, layout) = match binding["kind"].as_str() {
+        Some("uniform") => ("buffer", json!({ "type": "uniform" })),
+        Some("storage-read") => ("buffer", json!({ "type": "read-only-storage" })),
+        Some("storage-read-write") => ("buffer", json!({ "type": "storage" })),
+        Some("texture") => ("texture", json!({ "sampleType": "float" })),
+        Some("texture-array") => ("texture", json!({ "sampleType": "float", "viewDimension": "2d-array" })),
+        Some("loaded-texture") => ("texture", json!({ "sampleType": "unfilterable-float" })),
+        Some("sampler") => ("sampler", json!({ "type": "filtering" })),
+        other => panic!("teach the test the binding {other:?}"),
+    };
+    entry[key] = layout;
+    entry
+}
