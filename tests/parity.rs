@@ -7,7 +7,7 @@ mod harness;
 use relievo::gpu::Buffer;
 use relievo::surface::Hit;
 use relievo::terrain::morph::{Morph, MorphPass};
-use relievo::verify::compare::{absolute, exact, levels, relative, ulps};
+use relievo::verify::compare::{LeftOut, absolute, exact, levels, relative, ulps};
 use relievo::verify::poison::{POISON, Poisoned};
 use relievo::verify::surface::relief::hits;
 use relievo::verify::{self, CaseResult};
@@ -55,6 +55,18 @@ fn relative_sees_errors_beyond_its_share() {
     assert!(relative(&[1.25, 125.0], &[1.0, 100.0], 0.25).holds);
     assert!(!relative(&[1.26], &[1.0], 0.25).holds);
     assert!(!relative(&[f32::NAN], &[1.0], 1e9).holds);
+}
+
+/// What is left out is counted and said, and too much of it is a fault, whatever the rest is.
+#[test]
+fn comparisons_that_leave_out_too_much_fail() {
+    let left_out = |count| LeftOut { count, of: 40, most: 2 };
+    let few = exact(&[1, 2], &[1, 2]).leaving_out(left_out(2));
+    assert!(few.holds && few.left_out == Some(left_out(2)), "{few:?}");
+    assert!(!exact(&[1, 2], &[1, 3]).leaving_out(left_out(2)).holds);
+    let many = exact(&[1, 2], &[1, 2]).leaving_out(left_out(3));
+    assert!(!many.holds && many.left_out == Some(left_out(3)), "{many:?}");
+    assert_eq!(many.fault.as_deref(), Some("3 of 40 are left out, and at most 2 may be"));
 }
 
 #[test]

@@ -83,6 +83,19 @@ pub struct Report {
     pub holds: bool,
     /// The cases.
     pub cases: Vec<CaseResult>,
+    /// Cases that this device cannot run.
+    pub skipped: Vec<Skipped>,
+}
+
+/// A case that a device cannot run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Skipped {
+    /// The kernel.
+    pub stem: &'static str,
+    /// What would have been computed.
+    pub case: String,
+    /// Why it cannot be.
+    pub reason: String,
 }
 
 /// Collects the cases of a run.
@@ -91,6 +104,7 @@ pub struct Cases<'a> {
     pub gpu: &'a Gpu,
     stem: &'static str,
     results: Vec<CaseResult>,
+    skipped: Vec<Skipped>,
     progress: &'a mut dyn FnMut(&CaseResult),
 }
 
@@ -100,6 +114,11 @@ impl Cases<'_> {
         let result = CaseResult { stem: self.stem, case: case.into(), comparison };
         (self.progress)(&result);
         self.results.push(result);
+    }
+
+    /// Says that this device cannot run a case, and why. A kernel of which it can run none does not hold.
+    pub fn skip(&mut self, case: impl Into<String>, reason: impl Into<String>) {
+        self.skipped.push(Skipped { stem: self.stem, case: case.into(), reason: reason.into() });
     }
 }
 
@@ -135,15 +154,22 @@ pub fn run_stems<'a>(
     stems: impl IntoIterator<Item = &'a Stem>,
     progress: &mut dyn FnMut(&CaseResult),
 ) -> Result<Report, Error> {
-    let mut all = Vec::new();
+    let (mut all, mut skipped) = (Vec::new(), Vec::new());
     for stem in stems {
-        let mut cases = Cases { gpu, stem: stem.name, results: Vec::new(), progress };
+        let mut cases = Cases { gpu, stem: stem.name, results: Vec::new(), skipped: Vec::new(), progress };
         (stem.run)(&mut cases)?;
         if cases.results.is_empty() {
             cases.add("no case", Comparison::failed(0, "the kernel has no parity case".to_owned()));
         }
         all.append(&mut cases.results);
+        skipped.append(&mut cases.skipped);
     }
     let holds = !all.is_empty() && all.iter().all(|result| result.comparison.holds);
-    Ok(Report { adapter: gpu.adapter().clone(), version: env!("CARGO_PKG_VERSION"), holds, cases: all })
+    Ok(Report {
+        adapter: gpu.adapter().clone(),
+        version: env!("CARGO_PKG_VERSION"),
+        holds,
+        cases: all,
+        skipped,
+    })
 }

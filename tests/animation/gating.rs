@@ -10,7 +10,7 @@ use relievo::animation::{
 use relievo::reference::animation::budget::rank_of;
 use relievo::reference::animation::compact::Work;
 use relievo::reference::animation::crowd::Crowd;
-use relievo::reference::animation::gate::{gate, is_skipped, share_of};
+use relievo::reference::animation::gate::{gate, is_skipped};
 use relievo::verify::animation::{Draw, random_clips, random_skeleton};
 
 /// What a test plays.
@@ -306,15 +306,6 @@ fn ranks_are_logarithms() {
     }
 }
 
-#[test]
-fn shares_of_words_are_floors() {
-    let mut draw = Draw::new(3);
-    for _ in 0..1000 {
-        let (value, fraction) = (draw.word(), draw.word() % 65537);
-        assert_eq!(share_of(value, fraction), (u128::from(value) * u128::from(fraction) / 65536) as u32);
-    }
-}
-
 /// What holds for one path between keys does not hold for the other: between two keys nlerp turns up to 1.27 times as
 /// fast.
 #[test]
@@ -348,6 +339,14 @@ fn tables_refuse_what_does_not_fit() {
     let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
     assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &clips[..1])), "clips.len");
+    // As many clips, but in another order, or another one among them.
+    let slow: Vec<BoneKeys> = (0..stage.skeleton.len()).map(|_| BoneKeys::default()).collect();
+    let slow = Clip::new("slow", &stage.skeleton, &slow, clips[1].duration()).expect("valid");
+    for (others, wrong) in
+        [([clips[1], clips[0], clips[2]], "clips[0]"), ([clips[0], &slow, clips[2]], "clips[1]")]
+    {
+        assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &others)), wrong);
+    }
     assert_eq!(field(GateTable::of_priorities(&stage.order, &stage.set, &clips, &[])), "priorities.len");
     let bounds = |reaches: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, reaches, path);
     assert_eq!(field(bounds(&[])), "reaches.len");

@@ -91,5 +91,13 @@ pub fn hits(actual: &[Hit], expected: &[Hit], size: [u32; 2]) -> Comparison {
     let error = astray.count() as f64 / expected.len() as f64;
     let holds = error <= ASTRAY;
     let fault = first.filter(|_| !holds);
-    Comparison { holds, values: expected.len(), error, bound: ASTRAY, unit: "of all rays astray", fault }
+    Comparison {
+        holds,
+        values: expected.len(),
+        error,
+        bound: ASTRAY,
+        unit: "of all rays astray",
+        left_out: None,
+        fault,
+    }
 }
