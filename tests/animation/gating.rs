@@ -1,6 +1,7 @@
 //! Gates: what they promise, on random clips and on the creature's.
 
 use relievo::animation::Choice;
+use relievo::animation::clip::BoneKeys;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::sample::{RotationPath, Wrap};
 use relievo::animation::transform::Affine;

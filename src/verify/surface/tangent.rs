@@ -343,35 +343,6 @@ mod tests {
     }
 
     #[test]
-    fn scratch() {
-        let mut meshes = Vec::new();
-        for vertices in [1, 2, 63, 64, 65, 127, 128, 129, 5000] {
-            meshes.push((format!("soup of {vertices} vertices"), soup(vertices)));
-        }
-        meshes.push(("torus".into(), torus(96, 48)));
-        meshes.push(("fan".into(), fan(2000)));
-        meshes.push(("deg".into(), with_degenerate_triangles(torus(21, 13))));
-        meshes.push(("strange".into(), with_strange_normals(torus(21, 13))));
-        for (n, m) in thresholds() {
-            meshes.push((n.to_owned(), m));
-        }
-        for (name, mesh) in meshes {
-            let (_, frames, left) = settled(mesh).unwrap();
-            let mut b: Vec<f64> = frames.iter().map(|f| f.sensitivity * 1e-5).collect();
-            b.sort_by(f64::total_cmp);
-            println!(
-                "{name}: {left:?} median {:.2e} p90 {:.2e} p99 {:.2e} max {:.2e} over .05: {} over .5: {}",
-                b[b.len() / 2],
-                b[b.len() * 9 / 10],
-                b[b.len() * 99 / 100],
-                b[b.len() - 1],
-                b.iter().filter(|x| **x > 0.05).count(),
-                b.iter().filter(|x| **x > 0.5).count()
-            );
-        }
-    }
-
-    #[test]
     fn threshold_cases_lie_on_either_side() {
         let fallback = |mesh: &Owned| {
             let frames = frames(&mesh.mesh()).expect("a valid mesh");
