@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::Error;
 use crate::gpu::{AdapterSummary, Gpu};
 use crate::harness::compare::Comparison;
-use crate::harness::{CaseResult, Cases, selected};
+use crate::harness::{CaseResult, Cases, Skipped, selected};
 use crate::{animation, baseline, skinning, surface, terrain};
 
 /// A kernel's parity cases.
@@ -66,6 +66,8 @@ pub struct Report {
     pub holds: bool,
     /// The cases.
     pub cases: Vec<CaseResult>,
+    /// Cases that this device cannot run.
+    pub skipped: Vec<Skipped>,
 }
 
 /// Runs the cases of every selected kernel; `progress` hears of each.
@@ -95,15 +97,22 @@ pub fn run_stems<'a>(
     stems: impl IntoIterator<Item = &'a Stem>,
     progress: &mut dyn FnMut(&CaseResult),
 ) -> Result<Report, Error> {
-    let mut all = Vec::new();
+    let (mut all, mut skipped) = (Vec::new(), Vec::new());
     for stem in stems {
-        let mut cases = Cases { gpu, stem: stem.name, results: Vec::new(), progress };
+        let mut cases = Cases { gpu, stem: stem.name, results: Vec::new(), skipped: Vec::new(), progress };
         (stem.run)(&mut cases)?;
         if cases.results.is_empty() {
             cases.add("no case", Comparison::failed(0, "the kernel has no parity case".to_owned()));
         }
         all.append(&mut cases.results);
+        skipped.append(&mut cases.skipped);
     }
     let holds = !all.is_empty() && all.iter().all(|result| result.comparison.holds);
-    Ok(Report { adapter: gpu.adapter().clone(), version: env!("CARGO_PKG_VERSION"), holds, cases: all })
+    Ok(Report {
+        adapter: gpu.adapter().clone(),
+        version: env!("CARGO_PKG_VERSION"),
+        holds,
+        cases: all,
+        skipped,
+    })
 }

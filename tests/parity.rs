@@ -7,6 +7,7 @@ mod harness;
 use glam::Vec4;
 use relievo::gpu::Buffer;
 use relievo::harness::CaseResult;
+use relievo::harness::compare::LeftOut;
 use relievo::harness::compare::{absolute, exact, levels, relative, ulps};
 use relievo::harness::poison::{POISON, Poisoned};
 use relievo::surface::relief::ReliefPass;
@@ -156,6 +157,18 @@ fn judged_shades() -> (HeightMap, March, ShadeView, Vec<ShadePoint>, Vec<JudgedS
     let points = random_points(9, 400, &surface, Method::Quadtree, &march);
     let judged = shade::judged(&map, Method::Quadtree, &march, &view, &points).expect("judged");
     (map, march, view, points, judged)
+}
+
+/// What is left out is counted and said, and too much of it is a fault, whatever the rest is.
+#[test]
+fn comparisons_that_leave_out_too_much_fail() {
+    let left_out = |count| LeftOut { count, of: 40, most: 2 };
+    let few = exact(&[1, 2], &[1, 2]).leaving_out(left_out(2));
+    assert!(few.holds && few.left_out == Some(left_out(2)), "{few:?}");
+    assert!(!exact(&[1, 2], &[1, 3]).leaving_out(left_out(2)).holds);
+    let many = exact(&[1, 2], &[1, 2]).leaving_out(left_out(3));
+    assert!(!many.holds && many.left_out == Some(left_out(3)), "{many:?}");
+    assert_eq!(many.fault.as_deref(), Some("3 of 40 are left out, and at most 2 may be"));
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use crate::InputError;
+use crate::asset::Track;
 use crate::asset::clip::Clip;
 pub use crate::shared::animation::clip::ClipEntry;
 
@@ -115,15 +116,8 @@ impl ClipSet {
     /// A clip's first timeline has the times of all its tracks, each once: tables of gates know of no other. In most
     /// clips a track has the same.
     fn add_common_timeline(&mut self, clip: &Clip, first_time: usize) -> Timeline {
-        let moving = || clip.tracks().iter().filter(|track| track.keys > 1);
-        let mut common: Vec<f32> = moving().flat_map(|track| clip.times_of(track)).copied().collect();
-        common.sort_by(f32::total_cmp);
-        common.dedup();
-        // Before the first key is a row of its own: a jump may be at that key.
-        if common.first().is_none_or(|first| *first > 0.0) {
-            common.insert(0, 0.0);
-        }
-        let same = moving().find(|track| clip.times_of(track) == common);
+        let common = all_times(clip);
+        let same = moving(clip).find(|track| clip.times_of(track) == common);
         let timeline = Timeline {
             first_time: match same {
                 Some(track) => first_time as u32 + track.first_time,
@@ -147,6 +141,26 @@ impl ClipSet {
     /// Rows of a clip in tables of gates: one for each of its [`ClipSet::common_times`], and one for the whole clip.
     pub fn rows(&self, clip: &ClipEntry) -> u32 {
         self.timelines[clip.first_timeline as usize].keys + 1
+    }
+
+    /// Refuses other clips than those that the set was made of, in its order: what is found out about them would be told of
+    /// others.
+    pub(crate) fn check_clips(&self, clips: &[&Clip]) -> Result<(), InputError> {
+        if clips.len() != self.clips.len() {
+            let bound = format!("must be {}, those of the set", self.clips.len());
+            return Err(InputError::new("clips.len", clips.len(), bound));
+        }
+        let mut values = self.values.as_slice();
+        for (index, (entry, clip)) in self.clips.iter().zip(clips).enumerate() {
+            let (own, rest) = values.split_at(clip.values().len().min(values.len()));
+            values = rest;
+            let is_same = own == clip.values() && entry.duration == clip.duration();
+            if !is_same || self.common_times(entry) != all_times(clip) {
+                let bound = "must have the keys of the set's clip of this number";
+                return Err(InputError::new(format!("clips[{index}]"), clip.name(), bound));
+            }
+        }
+        Ok(())
     }
 
     /// Whether any track is a cubic spline. Sampling without them is faster.
@@ -188,6 +202,22 @@ impl ClipSet {
     pub fn values(&self) -> &[[f32; 4]] {
         &self.values
     }
+}
+
+fn moving(clip: &Clip) -> impl Iterator<Item = &Track> {
+    clip.tracks().iter().filter(|track| track.keys > 1)
+}
+
+/// The times of all of a clip's tracks, each once, and its start.
+fn all_times(clip: &Clip) -> Vec<f32> {
+    let mut common: Vec<f32> = moving(clip).flat_map(|track| clip.times_of(track)).copied().collect();
+    common.sort_by(f32::total_cmp);
+    common.dedup();
+    // Before the first key is a row of its own: a jump may be at that key.
+    if common.first().is_none_or(|first| *first > 0.0) {
+        common.insert(0, 0.0);
+    }
+    common
 }
 
 #[cfg(all(test, feature = "samples"))]

@@ -87,10 +87,7 @@ impl GateTable {
     /// # Errors
     /// [`InputError`] for other clips than the set's, or a skeleton of other bones.
     pub fn of_movers(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
-        if clips.len() != set.clips().len() {
-            let bound = format!("must be {}, those of the set", set.clips().len());
-            return Err(InputError::new("clips.len", clips.len(), bound));
-        }
+        set.check_clips(clips)?;
         if order.slots.len() != set.bones() {
             let bound = format!("must be {}, as the clips'", set.bones());
             return Err(InputError::new("skeleton.len", order.slots.len(), bound));

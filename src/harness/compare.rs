@@ -21,6 +21,9 @@ pub struct Comparison {
     /// The errors themselves and what was left out, where each value has a bound of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread: Option<Spread>,
+    /// What was left out, where anything may be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<LeftOut>,
     /// The first value out of bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
@@ -41,18 +44,34 @@ pub struct Spread {
     pub may_touch: usize,
 }
 
+/// What a comparison leaves out, since rounding may decide it either way: instances at an edge, bones half a turn apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct LeftOut {
+    /// How many were.
+    pub count: usize,
+    /// Of how many.
+    pub of: usize,
+    /// How many may be.
+    pub most: usize,
+}
+
 impl Comparison {
     /// A comparison that fails whatever the values.
     pub fn failed(values: usize, fault: String) -> Self {
-        Self {
-            holds: false,
-            values,
-            error: f64::INFINITY,
-            bound: 0.0,
-            unit: "none",
-            spread: None,
-            fault: Some(fault),
+        let (error, bound, unit) = (f64::INFINITY, 0.0, "none");
+        Self { holds: false, values, error, bound, unit, spread: None, left_out: None, fault: Some(fault) }
+    }
+
+    /// The same, which says what it left out. It fails where that is more than may be.
+    #[must_use]
+    pub fn leaving_out(self, left_out: LeftOut) -> Self {
+        let LeftOut { count, of, most } = left_out;
+        let left = |this: Self| Self { left_out: Some(left_out), ..this };
+        if count <= most {
+            return left(self);
         }
+        let fault = format!("{count} of {of} are left out, and at most {most} may be");
+        left(Self::failed(self.values, fault))
     }
 }
 
@@ -82,7 +101,7 @@ fn compare<T: Copy + Debug>(
     let fault = first.map(|(index, actual, expected)| {
         format!("{wrong} of {values} values; first at {index}: {actual:?} instead of {expected:?}")
     });
-    Comparison { holds: wrong == 0, values, error: worst, bound, unit, spread: None, fault }
+    Comparison { holds: wrong == 0, values, error: worst, bound, unit, spread: None, left_out: None, fault }
 }
 
 /// Integers: every bit.
@@ -181,5 +200,14 @@ pub fn each(
         None => None,
     };
     let unit = "of each value's own bound";
-    Comparison { holds: fault.is_none(), values, error, bound: 1.0, unit, spread: Some(spread), fault }
+    Comparison {
+        holds: fault.is_none(),
+        values,
+        error,
+        bound: 1.0,
+        unit,
+        spread: Some(spread),
+        left_out: None,
+        fault,
+    }
 }

@@ -8,7 +8,7 @@ pub mod poison;
 mod row;
 mod table;
 
-pub use cases::{CaseResult, Cases, selected};
+pub use cases::{CaseResult, Cases, Skipped, selected};
 pub use measure::{Bench, Contender};
 pub use row::{Backend, Row};
 pub use table::table;

@@ -4,14 +4,14 @@ use relievo::animation::Choice;
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::compact::reference::Work;
 use relievo::animation::frame::reference::Crowd;
-use relievo::animation::gate::reference::{gate, is_skipped, share_of};
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
+use relievo::animation::gate::reference::{gate, is_skipped};
+use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::verify::{Draw, random_clips, random_skeleton};
 use relievo::animation::{ClipSet, Frame, Gate, GateTable, Lod};
+use relievo::asset::clip::BoneKeys;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Skeleton};
@@ -310,15 +310,6 @@ fn ranks_are_logarithms() {
     }
 }
 
-#[test]
-fn shares_of_words_are_floors() {
-    let mut draw = Draw::new(3);
-    for _ in 0..1000 {
-        let (value, fraction) = (draw.word(), draw.word() % 65537);
-        assert_eq!(share_of(value, fraction), (u128::from(value) * u128::from(fraction) / 65536) as u32);
-    }
-}
-
 /// What holds for one path between keys does not hold for the other: between two keys nlerp turns up to 1.27 times as
 /// fast.
 #[test]
@@ -352,6 +343,14 @@ fn tables_refuse_what_does_not_fit() {
     let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
     assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &clips[..1])), "clips.len");
+    // As many clips, but in another order, or another one among them.
+    let slow: Vec<BoneKeys> = (0..stage.skeleton.len()).map(|_| BoneKeys::default()).collect();
+    let slow = Clip::new("slow", &stage.skeleton, &slow, clips[1].duration()).expect("valid");
+    for (others, wrong) in
+        [([clips[1], clips[0], clips[2]], "clips[0]"), ([clips[0], &slow, clips[2]], "clips[1]")]
+    {
+        assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &others)), wrong);
+    }
     assert_eq!(field(GateTable::of_priorities(&stage.order, &stage.set, &clips, &[])), "priorities.len");
     let bounds = |reaches: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, reaches, path);
     assert_eq!(field(bounds(&[])), "reaches.len");

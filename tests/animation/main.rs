@@ -1,6 +1,8 @@
 //! Skeletons, clips, their import and their sampling, against code of its own in double precision.
 
 #[cfg(feature = "gpu")]
+mod arithmetic;
+#[cfg(feature = "gpu")]
 mod bounded;
 mod bounds;
 mod concatenation;
@@ -23,5 +25,8 @@ mod root_motion;
 mod sampling;
 mod scene;
 mod scenes;
+#[cfg(feature = "gpu")]
+#[path = "../harness/shader.rs"]
+mod shader;
 mod tangents;
 mod textures;

@@ -4,6 +4,8 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+#[cfg(feature = "gpu")]
+mod arithmetic;
 mod borders;
 mod ground;
 #[cfg(feature = "gpu")]
@@ -11,5 +13,8 @@ mod jobs;
 mod known_heights;
 mod properties;
 mod refusals;
+#[cfg(feature = "gpu")]
+#[path = "../harness/shader.rs"]
+mod shader;
 #[cfg(feature = "gpu")]
 mod splitting;

@@ -563,7 +563,6 @@ proptest! {
     fn the_mean_is_exact(corners in [heights(), heights(), heights(), heights()]) {
         let [a, b, c, d] = corners;
         prop_assert_eq!(mean_of_four(a, b, c, d), exact_mean(corners));
-        prop_assert_eq!(mean_of_sums(corners), Some(exact_mean(corners)));
     }
 
     #[test]
@@ -605,16 +604,9 @@ proptest! {
 }
 
 /// ⌊(a + b + c + d + 2) / 4⌋, where nothing overflows.
-fn exact_mean(heights: [i32; 4]) -> i32 {
+pub fn exact_mean(heights: [i32; 4]) -> i32 {
     let sum: i64 = heights.into_iter().map(i64::from).sum();
     (sum + 2).div_euclid(4) as i32
-}
-
-/// The mean as `wgsl/terrain/fixed.wgsl` computes it from the sums of two pairs; nothing if it overflows.
-fn mean_of_sums([a, b, c, d]: [i32; 4]) -> Option<i32> {
-    let (first, second) = (a.checked_add(b)?, c.checked_add(d)?);
-    let carry = (first & second & 1) + 1;
-    Some((first >> 1).checked_add(second >> 1)?.checked_add(carry)? >> 1)
 }
 
 #[test]
@@ -625,7 +617,6 @@ fn the_mean_is_exact_at_the_limits() {
         let corners = [0, 1, 2, 3].map(|digit| values[index / values.len().pow(digit) % values.len()]);
         let [a, b, c, d] = corners;
         assert_eq!(mean_of_four(a, b, c, d), exact_mean(corners), "{corners:?}");
-        assert_eq!(mean_of_sums(corners), Some(exact_mean(corners)), "{corners:?}");
     }
 }
 

@@ -41,11 +41,14 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         for mode in modes {
             let table = table(mode, &skeleton, &set, &clips.iter().collect::<Vec<_>>())?;
             for dispatches in [Dispatches::One, Dispatches::Each] {
+                let name = format!("{bones} bones × {count}, {}, {dispatches:?}", mode.name());
                 let pass = match DecidePass::new(cases.gpu, Choice::Gate(mode), dispatches) {
-                    Err(GpuError::Limit { .. }) => continue,
+                    Err(error @ GpuError::Limit { .. }) => {
+                        cases.skip(name, error.to_string());
+                        continue;
+                    }
                     pass => pass?,
                 };
-                let name = format!("{bones} bones × {count}, {}, {dispatches:?}", mode.name());
                 let play =
                     Play { case, name, order: &order, set: &set, table: &table, instances: &instances };
                 play.add(cases, &pass, Choice::Gate(mode))?;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use relievo::Error;
 use relievo::harness::CaseResult;
-use relievo::harness::compare::Spread;
+use relievo::harness::compare::{LeftOut, Spread};
 use relievo::verify::{Report, run};
 
 use crate::Context;
@@ -66,6 +66,7 @@ fn summary(report: &Report) -> String {
         );
         text += &spread(cases);
     }
+    text += &left_out(report);
     for case in report.cases.iter().filter(|case| !case.comparison.holds) {
         text += &format!(
             "FAILS {} {}: {}\n",
@@ -100,6 +101,27 @@ fn spread(cases: &[&CaseResult]) -> String {
         sum(|spread| spread.may_touch),
         unit = first.unit,
     )
+}
+
+/// A line for each kernel of which something is left out, and for each of which cases cannot run.
+fn left_out(report: &Report) -> String {
+    let mut text = String::new();
+    let mut kernels: Vec<&str> = report.cases.iter().map(|case| case.stem).collect();
+    kernels.dedup();
+    for stem in kernels {
+        let own = report.cases.iter().filter(|case| case.stem == stem);
+        let all: Vec<_> = own.filter_map(|case| case.comparison.left_out).collect();
+        let sum = |of: fn(&LeftOut) -> usize| all.iter().map(of).sum::<usize>();
+        let [count, of] = [sum(|left_out| left_out.count), sum(|left_out| left_out.of)];
+        if count > 0 {
+            text += &format!("{stem}: {count} of {of} left out, as rounding may decide them either way\n");
+        }
+        let skipped: Vec<_> = report.skipped.iter().filter(|case| case.stem == stem).collect();
+        if let Some(first) = skipped.first() {
+            text += &format!("{stem}: {} cases cannot run here: {}\n", skipped.len(), first.reason);
+        }
+    }
+    text
 }
 
 fn number(value: f64) -> String {

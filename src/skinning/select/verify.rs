@@ -5,6 +5,7 @@ use crate::asset::Model;
 use crate::asset::MorphTarget;
 use crate::asset::morph::MorphDelta;
 use crate::harness::compare::Comparison;
+use crate::harness::poison::POISON;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
@@ -68,8 +69,8 @@ impl Frame {
 }
 
 /// No bone, some and all; reductions that change and such as do not; instances that leave the view and come back; levels
-/// that get coarser and finer; weights of targets that move some of the clusters. Lists are compared sorted, with their
-/// number, the workgroups behind them, and what is remembered.
+/// that get coarser and finer; weights of targets that move some of the clusters. Lists are compared sorted, with what is
+/// behind them, which stays untouched, their number, the workgroups for them, and what is remembered.
 ///
 /// # Errors
 /// What the device reports.
@@ -118,11 +119,15 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 fn listed(actual: &[u32], dispatched: &[u32], expected: &[u32]) -> Comparison {
     let count = expected.len() as u32;
-    let mut all = actual[..actual.len().min(expected.len())].to_vec();
+    let (listed, behind) = actual.split_at(actual.len().min(expected.len()));
+    let mut all = listed.to_vec();
     all.sort_unstable();
-    all.extend(dispatched);
     let x = count.clamp(1, 65_535);
-    compare::exact(&all, &[expected, &[x, count.div_ceil(x), 1, count, 0]].concat())
+    let dispatches = [x, count.div_ceil(x), 1, count, 0];
+    compare::exact(
+        &[&all, behind, dispatched].concat(),
+        &[expected, &vec![POISON; behind.len()], &dispatches].concat(),
+    )
 }
 
 fn words_of(last: &[Skinned]) -> Vec<u32> {
@@ -150,4 +155,18 @@ fn model(case: u32, shape: Shape) -> Result<Model, InputError> {
         *target = MorphTarget { vertices, deltas };
     }
     Ok(model)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two pairs of four, in any order; one too few, another one, and one that was written behind the list.
+    #[test]
+    fn lists_are_compared_with_what_is_behind_them() {
+        let holds = |actual: &[u32], count| listed(actual, &[count, 1, 1, count, 0], &[3, 9]).holds;
+        assert!(holds(&[9, 3, POISON, POISON], 2));
+        assert!(!holds(&[9, POISON, POISON, POISON], 2) && !holds(&[9, 4, POISON, POISON], 2));
+        assert!(!holds(&[9, 3, POISON, POISON], 3) && !holds(&[9, 3, POISON, 3], 2));
+    }
 }

@@ -1,6 +1,7 @@
 //! Parity of `kernels/surface/cone_map.wgsl`.
 
 use crate::Error;
+use crate::harness::poison::POISON;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::surface::cone_map::reference::cone_map;
@@ -41,13 +42,22 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                     expected.extend(cone_map(map, &height_pyramid(map, address), address));
                 }
                 let [columns, pitch] = [cones.cells[0] as usize, cones.pitch as usize];
+                let name = format!("{shape:?} {}×{} × {count}, {}", size[0], size[1], address.name());
                 let comparison = output.check(gpu, |actual| {
                     let rows = actual.chunks_exact(pitch).flat_map(|row| &row[..columns]).flatten();
                     let actual: Vec<f32> = rows.copied().collect();
                     compare::relative(&actual, expected.as_flattened(), RADIUS_BOUND)
                 })?;
-                let name = format!("{shape:?} {}×{} × {count}, {}", size[0], size[1], address.name());
-                cases.add(name, comparison);
+                cases.add(name.clone(), comparison);
+                if columns == pitch {
+                    continue;
+                }
+                let padding = output.check(gpu, |actual| {
+                    let rows = actual.chunks_exact(pitch).flat_map(|row| &row[columns..]).flatten();
+                    let words: Vec<u32> = rows.map(|word| word.to_bits()).collect();
+                    compare::exact(&words, &vec![POISON; words.len()])
+                })?;
+                cases.add(format!("{name}: the rows' ends"), padding);
             }
         }
     }

@@ -115,9 +115,11 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
 fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
     let one = [1, 2, 3, 4, 8, 16, 64].map(|cell_rows| Blocks { cell_rows, levels: 1 });
     let two = [1, 3, 17].map(|cell_rows| Blocks { cell_rows, levels: 2 });
-    // SwiftShader's compiler takes gigabytes for two levels.
-    let two = if cases.gpu.adapter().name.contains("SwiftShader") { &two[..0] } else { &two };
-    for &blocks in one.iter().chain(two) {
+    for blocks in one.into_iter().chain(two) {
+        if blocks.levels == 2 && cases.gpu.adapter().name.contains("SwiftShader") {
+            cases.skip(format!("{blocks:?}"), "SwiftShader's compiler takes gigabytes for two levels");
+            continue;
+        }
         let pass = HeightPass::with_blocks(cases.gpu, Offset::Signed, None, blocks)?;
         for size in [3, 9, 33, 129] {
             let config =

@@ -3,13 +3,14 @@
 use crate::Error;
 use crate::harness::Cases;
 use crate::harness::compare::exact;
+use crate::harness::poison::POISON;
 use crate::harness::poison::Poisoned;
 use crate::terrain::fields::Fields;
 use crate::terrain::thermal::reference::thermal;
 use crate::terrain::thermal::{Thermal, ThermalPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
-/// Odd and even numbers of iterations, angles from 0 up, heights at the limit.
+/// Odd and even numbers of iterations, angles from 0 up, heights at the limit. Both buffers are compared as a whole.
 ///
 /// # Errors
 /// What the device reports.
@@ -27,20 +28,23 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 windows.heights.write(gpu, &fields)?;
                 let job = pass.prepare(gpu, params, 1.0, &windows, &other)?;
                 gpu.run("verify", |encoder| job.record(encoder))?;
+                // What an iteration leaves at the start of either buffer, over what was there.
+                let mut expected = [fields.clone(), vec![POISON as i32; fields.len()]];
                 let mut edge = width as usize;
-                for _ in 0..iterations {
+                for iteration in 1..=iterations as usize {
                     let windows = fields.chunks_exact(edge * edge);
                     fields = windows
                         .flat_map(|window| thermal(window, edge, params.fixed_threshold(1.0)))
                         .collect();
                     edge -= 2;
+                    expected[iteration % 2][..fields.len()].copy_from_slice(&fields);
                 }
-                let result = &outputs[iterations as usize % 2];
-                let comparison = result.check(gpu, |actual| exact(&actual[..fields.len()], &fields))?;
-                cases.add(
-                    format!("{width}×{width} × {count}, {iterations} iterations, talus {talus}°"),
-                    comparison,
-                );
+                let name = format!("{width}×{width} × {count}, {iterations} iterations, talus {talus}°");
+                let result = iterations as usize % 2;
+                for (what, at) in [("", result), (", before the last", 1 - result)] {
+                    let comparison = outputs[at].check(gpu, |actual| exact(actual, &expected[at]))?;
+                    cases.add(format!("{name}{what}"), comparison);
+                }
             }
         }
     }
