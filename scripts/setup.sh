@@ -23,7 +23,7 @@ have_browser() {
 }
 # A driver's file may be there without its library or its hardware: only opening a device tells.
 have_adapter() {
-    "$cargo" run --quiet --bin relievo -- info >/dev/null 2>&1
+    "$cargo" run --quiet --features cli --bin relievo -- info >/dev/null 2>&1
 }
 provide() {
     if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
@@ -49,10 +49,10 @@ fi
 [ ${#missing[@]} = 0 ] || provide "${missing[@]}"
 
 [ "${1:-}" = adapter ] || exit 0
-"$cargo" build --bin relievo
+"$cargo" build --features cli --bin relievo
 have_adapter && exit 0
 # A driver that was chosen by name is the user's business.
 if [ "$(uname -s)" = Linux ] && [ -z "${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-}${RELIEVO_ADAPTER:-}" ]; then
     provide mesa-vulkan-drivers
 fi
-have_adapter || { "$cargo" run --quiet --bin relievo -- info >/dev/null; exit 1; }
+have_adapter || { "$cargo" run --quiet --features cli --bin relievo -- info >/dev/null; exit 1; }
