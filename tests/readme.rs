@@ -1,0 +1,299 @@
+//! What README.md says, held against the program: commands and their options, kernels, fields, links, and figures
+//! that are the same on every machine.
+#![cfg(feature = "cli")]
+
+#[path = "harness/mod.rs"]
+mod harness;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use harness::relievo;
+use relievo::animation::{bounds, concat, place, sample};
+use relievo::samples::creature;
+use relievo::gpu::{Gpu, shaders};
+use relievo::render::TerrainScene;
+use relievo::skinning::{collapse, morph, morph_weights, palette, skin};
+use relievo::surface::{cone_map, tangent};
+use relievo::terrain::config::{Config, Offset};
+use relievo::terrain::features::Features;
+use relievo::terrain::fields::Fields;
+use relievo::terrain::height::{HeightBatch, HeightPass};
+use relievo::terrain::normals;
+use relievo::{Error, InputError};
+
+const README: &str = include_str!("../README.md");
+
+/// The text in `quote`s of a piece of Markdown.
+fn quoted(text: &str) -> Vec<&str> {
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+/// The cells of a table's rows, from the row whose first cell is `head` to the table's end.
+fn table(head: &str) -> Vec<Vec<&'static str>> {
+    let cells = |line: &'static str| line.trim_matches('|').split(" | ").map(str::trim).collect::<Vec<_>>();
+    let rows: Vec<_> = (README.lines().skip_while(|line| !line.starts_with(head)).skip(2))
+        .take_while(|line| line.starts_with('|'))
+        .map(cells)
+        .collect();
+    assert!(!rows.is_empty(), "README.md has no table {head}");
+    rows
+}
+
+/// The lines of all code blocks in `language`, without comments.
+fn code(language: &str, comment: &str) -> Vec<&'static str> {
+    let fence = format!("```{language}\n");
+    let blocks = README.split(fence.as_str()).skip(1).filter_map(|rest| rest.split("```").next());
+    blocks
+        .flat_map(str::lines)
+        .filter_map(|line| line.split(comment).next())
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect()
+}
+
+#[test]
+fn every_command_has_the_options_that_it_is_shown_with() {
+    let commands: Vec<_> =
+        (code("sh", "#").into_iter()).filter_map(|line| line.strip_prefix("relievo ")).collect();
+    assert!(commands.len() >= 12, "{commands:?}");
+    for command in commands
+        .iter()
+        .copied()
+        .chain(quoted(README).into_iter().filter_map(|text| text.strip_prefix("relievo ")))
+    {
+        let mut words = command.split_whitespace();
+        let name = words.next().unwrap_or_default();
+        let help = relievo(&[name, "--help"]);
+        assert_eq!(help.code, Some(0), "relievo {command}: {}", help.stderr);
+        for option in words.filter(|word| word.starts_with("--")) {
+            assert!(
+                help.stdout.split_whitespace().any(|word| word.trim_end_matches(',') == option),
+                "relievo {command}: no {option}"
+            );
+        }
+    }
+}
+
+/// Options that stand alone, as in "`--scene` times …", are those of `relievo crowd` or of all commands.
+#[test]
+fn options_that_are_named_exist() {
+    let help = relievo(&["crowd", "--help"]).stdout + &relievo(&["terrain", "--help"]).stdout;
+    for option in quoted(README).into_iter().filter(|text| text.starts_with("--")) {
+        for word in option.split_whitespace().filter(|word| word.starts_with("--")) {
+            assert!(help.split_whitespace().any(|other| other == word), "{option}");
+        }
+    }
+}
+
+#[test]
+fn the_table_lists_every_kernel_and_drawing_pass() {
+    let listed: BTreeSet<_> = table("| | kernel").into_iter().flat_map(|row| quoted(row[1])).collect();
+    let all: BTreeSet<_> = shaders::ALL.iter().map(|shader| shader.name).collect();
+    assert_eq!(listed, all);
+}
+
+#[test]
+fn the_configuration_has_the_fields_and_defaults_of_the_table() {
+    let json = |more: &str| format!(r#"{{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"{more}}}"#);
+    assert!(README.contains(&json("")));
+    let plain = Config::from_json(&json("")).expect("the README's configuration");
+    let rows = table("| field | default");
+    let named: BTreeSet<_> = rows.iter().map(|row| quoted(row[0])[0]).collect();
+    let unknown = |text: &str| Config::from_json(&json(text)).expect_err("unknown").to_string();
+    let known = unknown(r#", "nothing": 0"#);
+    let known: BTreeSet<_> = quoted(&known).into_iter().filter(|name| *name != "nothing").collect();
+    let given = BTreeSet::from(["patchSize", "scaleFactor", "seed"]);
+    assert_eq!(named, &known - &given);
+    for row in &rows {
+        let default = match row[1] {
+            "(`patchSize` − 1) / 10" => "25.6".to_owned(),
+            "four" => continue,
+            default => default.replace('`', ""),
+        };
+        let name = quoted(row[0])[0];
+        let config = Config::from_json(&json(&format!(", \"{name}\": {default}"))).expect("the default");
+        // Not the words, but what they mean.
+        let tiles = (config.tiles_per_patch(), Config { texture_tile: None, ..config });
+        assert_eq!(tiles, (plain.tiles_per_patch(), plain.clone()), "{name}");
+    }
+    assert_eq!(plain.zones.len(), 4);
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let links: Vec<_> = README.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(links.len() >= 10, "{links:?}");
+    for link in links.into_iter().filter(|link| !link.starts_with("https://")) {
+        assert!(root.join(link).exists(), "{link}");
+    }
+    for path in quoted(README).into_iter().filter(|text| text.ends_with(".rs") || text.ends_with(".wgsl")) {
+        let is_below = ["", "src/terrain"].iter().any(|folder| root.join(folder).join(path).exists());
+        assert!(is_below, "{path}");
+    }
+}
+
+/// The README's Rust, with what it leaves out.
+#[allow(dead_code, reason = "it is compiled, not run")]
+fn embedding(
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    (patches, origin): (Vec<[i32; 2]>, [i32; 2]),
+    mut encoder: wgpu::CommandEncoder,
+    mut scene: TerrainScene,
+) -> Result<(), Error> {
+    let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
+    let config = Config::new(257, 40.0, "any text")?;
+    let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
+    let batch = HeightBatch::new(&gpu, &pass, &config, [64, 1], 0)?;
+    batch.set(&gpu, &patches, &Features::default())?;
+    batch.record(&mut encoder);
+    scene.add(&gpu, &config, &batch.fields()[0], &patches, origin)?;
+    Ok(())
+}
+
+#[test]
+fn rust_is_compiled_as_it_stands_there() {
+    let squeezed = |text: &str| text.split_whitespace().collect::<String>();
+    let compiled = squeezed(include_str!("readme.rs"));
+    let lines = code("rust", "//");
+    assert!(lines.len() >= 15, "{lines:?}");
+    for line in lines {
+        assert!(compiled.contains(&squeezed(line)), "tests/readme.rs does not hold `{line}`");
+    }
+}
+
+/// As a fragment shader behind the module, on the device.
+#[test]
+fn wgsl_is_compiled_as_it_stands_there() {
+    let gpu = harness::gpu();
+    let module = shaders::MODULES.iter().find(|module| module.name == "surface").expect("a module");
+    let source = format!(
+        "{}
+         @group(0) @binding(0) var heights: texture_2d<f32>;
+         @group(0) @binding(1) var pyramid: texture_2d<f32>;
+         @group(0) @binding(2) var colors: texture_2d<f32>;
+         @group(0) @binding(3) var filtering: sampler;
+         @fragment
+         fn fragment(@location(0) uv: vec2<f32>, @location(1) to_eye: vec3<f32>) -> @location(0) vec4<f32> {{
+             let scale = 0.08;
+             let march = SurfaceMarch(SURFACE_WRAP, 1u, 1u, 8u, 0u);
+             let uv_dx = dpdx(uv);
+             let uv_dy = dpdy(uv);
+             {}
+             return albedo;
+         }}",
+        module.source,
+        code("wgsl", "//").join("\n")
+    );
+    let scope = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
+    let source = wgpu::ShaderSource::Wgsl(source.into());
+    let _ = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("README"), source });
+    let error = pollster::block_on(scope.pop());
+    assert!(error.is_none(), "{error:?}");
+}
+
+#[test]
+fn bounds_of_the_table_are_those_that_parity_holds() {
+    let bounds = [
+        ("terrain/normals", normals::NORMAL_BOUND),
+        ("surface/tangent", tangent::TANGENT_BOUND),
+        ("surface/cone_map", cone_map::RADIUS_BOUND),
+        ("animation/place", place::PLACE_BOUND),
+        ("animation/sample", sample::SAMPLE_BOUND),
+        ("animation/sample", sample::LAYER_GROWTH),
+        ("animation/concat", concat::CONCAT_BOUND),
+        ("animation/bounds", bounds::BOUNDS_BOUND),
+        ("skinning/palette", palette::PALETTE_BOUND),
+        ("skinning/morph_weights", morph_weights::MORPH_WEIGHTS_BOUND),
+        ("skinning/morph", morph::MORPH_BOUND),
+        ("skinning/skin", skin::SKIN_BOUND),
+    ];
+    let rows = table("| | kernel");
+    for (stem, bound) in bounds {
+        let row = rows.iter().find(|row| quoted(row[1]).contains(&stem)).expect(stem);
+        let text = if bound < 1.0 { format!("{bound:e}") } else { bound.to_string() };
+        assert!(row[3].split([' ', ',', ';']).any(|word| word == text), "{stem}: {text}, not {}", row[3]);
+    }
+}
+
+#[test]
+fn the_oldest_rust_is_that_of_the_manifest() {
+    assert!(README.contains(&format!("Rust {} or newer", env!("CARGO_PKG_RUST_VERSION"))));
+}
+
+#[test]
+fn batches_are_split_where_it_says() {
+    let patches = Fields::most(&harness::gpu(), 257);
+    assert!(README.contains(&format!("128 MiB ({patches} patches of 257²)")), "{patches}");
+}
+
+/// 8112 as 8,112.
+fn thousands(number: usize) -> String {
+    if number < 1000 { number.to_string() } else { format!("{},{:03}", number / 1000, number % 1000) }
+}
+
+#[test]
+fn the_creature_has_as_many_bones_vertices_and_triangles() {
+    let model = creature().expect("built in");
+    let vertices: usize = model.meshes.iter().map(|mesh| mesh.vertices()).sum();
+    let figures = format!("{} bones, {} vertices each", model.skeleton.len(), thousands(vertices));
+    assert!(README.contains(&figures), "{figures}");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    for millimetres in [14, 28] {
+        let within = format!("0.0{millimetres}");
+        let common = ["skin", "--model", "builtin", "--clip", "walk", "--time", "0.3", "--out", out];
+        let run = relievo(&[&common[..], &["--within", &within]].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let words: Vec<_> = run.stdout.split_whitespace().collect();
+        let of = words.iter().position(|word| *word == "of").expect("triangles of all");
+        let [left, all] = [words[of - 1], words[of + 1]].map(|word| word.parse::<usize>().expect("a number"));
+        for figures in
+            [format!("all {} triangles", thousands(all)), format!("{} within {millimetres}", thousands(left))]
+        {
+            assert!(README.contains(&figures), "{figures}: {}", run.stdout);
+        }
+    }
+}
+
+/// Bones that a clip does not move are no part of what gates save.
+#[test]
+fn the_creature_moves_as_many_bones_in_its_walk() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let run = relievo(&[
+        "crowd",
+        "--model",
+        "builtin",
+        "--clip",
+        "walk",
+        "--gate",
+        "off",
+        "--instances",
+        "1",
+        "--frames",
+        "1",
+        "--distance",
+        "400",
+        "--backend",
+        "cpu",
+        "--out",
+        out,
+    ]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let report = std::fs::read(folder.path().join("report.json")).expect("a report");
+    let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+    let figures = format!("creature's {} bones {} in its walk", report["bones"], report["moving_bones"]);
+    assert!(README.contains(&figures), "{figures}");
+}
+
+#[test]
+fn the_creature_does_with_80_bones() -> Result<(), InputError> {
+    let model = creature()?;
+    let level = collapse::levels(&model, &[80], &[], 60)?.remove(0);
+    println!("{} to {} bones: {} m off", model.skeleton.len(), level.bones, level.error);
+    assert!(README.contains(&format!("{} to {} for less than 2 cm", model.skeleton.len(), level.bones)));
+    assert!(level.error < 0.02, "{}", level.error);
+    Ok(())
+}
