@@ -1,4 +1,5 @@
-//! A character: one skeleton, the skins that share it, its clips and its meshes.
+//! A character, or anything else that moves in parts or not at all: one skeleton, the skins that share it, its clips and
+//! its meshes.
 
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
@@ -16,7 +17,8 @@ pub struct Model {
     pub clips: Vec<Clip>,
     /// What is seen of it.
     pub meshes: Vec<Mesh>,
-    /// How many of these, from the first on, have a skin of their own; the others hang on a node.
+    /// How many of these, from the first on, have a skin of the file; each of the others follows one bone as a whole, the
+    /// node that it hangs on.
     pub skinned: usize,
     /// What its meshes look like.
     pub materials: Vec<Material>,

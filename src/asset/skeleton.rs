@@ -90,7 +90,7 @@ impl Skeleton {
         self.bones.is_empty()
     }
 
-    /// The bones that skins use, in the order of the file: every skin's joints, each once.
+    /// The bones that skins use, in the order of the file: every skin's joints, each once. Of files without skins all bones.
     pub fn joints(&self) -> &[u32] {
         &self.joints
     }

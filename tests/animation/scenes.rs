@@ -209,6 +209,20 @@ fn what_is_required_and_not_read_is_refused_by_name() {
     read(&used);
 }
 
+/// What Draco compressed has neither vertices nor a buffer view; where its nodes are can be said.
+#[test]
+fn compressed_meshes_are_left_out_and_their_bones_are_not() {
+    let mut scene = with_triangle();
+    scene.push("nodes", json!({"name": "door", "mesh": 0, "translation": [0, 3, 0]}));
+    scene.json["accessors"][0].as_object_mut().expect("an object").remove("bufferView");
+    scene.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    let model = read(&scene);
+    assert_eq!((bones(&model), model.meshes.len()), (vec!["door"], 0));
+    // Without Draco these are zeros.
+    scene.json["extensionsRequired"] = json!([]);
+    assert_eq!(read(&scene).meshes[0].positions, [[0.0; 3]; 3]);
+}
+
 /// Extensions of materials and images do not matter to those who read neither, nor do textures without an image.
 #[test]
 fn who_reads_no_images_needs_none() {
