@@ -3,23 +3,24 @@
 //!
 //! # The map
 //!
-//! - [`terrain`]: seeded heights that are the same bits on every device, features, erosion, colours. Parameters
-//!   and, with the feature `gpu`, the passes of each operation, in one file (and `pass.rs`) a stem.
+//! - [`asset`]: plain data: models with their skeletons, skins, clips, meshes and materials, and their import from glTF.
+//! - [`terrain`]: seeded heights that are the same bits on every device, features, erosion, colours.
 //! - [`surface`]: height maps, the ray-height methods with measured error and cost, acceleration maps, tangent
 //!   frames.
-//! - [`animation`]: skeletons and clips, import of glTF, sampling and concatenation, layers, bounds, root motion,
-//!   priorities of bones and keys.
-//! - [`skinning`]: meshes that follow skeletons.
+//! - [`animation`]: sampling and concatenation, layers, gates, bounds, root motion, priorities of bones and keys.
+//! - [`skinning`]: meshes that follow skeletons, and their levels of detail.
 //! - [`mesh`]: meshes in fewer triangles.
-//! - [`mod@reference`]: the CPU twins, same stems: pure functions over slices. Also the CPU path of machines without
-//!   a GPU.
-//! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors.
-//! - `render`: a camera, an off-screen target, and passes that draw into the caller's render pass.
-//! - `verify`: every kernel against its twin, with the bound it must keep. What `relievo verify` runs.
-//! - `bench`: every kernel beside its twin and a copy of the same bytes. What `relievo bench` runs.
-//! - `baseline`: the kernels that others are measured against.
-//! - [`srgb`]: bytes and linear light.
+//! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors. Feature `gpu`, as is
+//!   `render`: a camera, an off-screen target, and passes that draw into the caller's render pass.
+//! - `samples`: a creature with clips, and height maps with their colours. Feature `samples`.
+//! - `verify` and `bench`: every kernel against its reference, and beside a copy of the same bytes. What `relievo verify` and
+//!   `relievo bench` run. Feature `verify`, with `harness` (comparators, clocks) and `baseline` (kernels to measure
+//!   against).
+//! - [`srgb`]: bytes and linear light. [`mod@hash`]: counter-based random words.
 //! - [`error`]: bad input by field, value and bound.
+//!
+//! An operation is a folder: parameters in its `mod.rs`, the CPU reference in `reference.rs`, which is also the path of
+//! machines without a GPU, the pass in `pass.rs`. `wgpu`, [`glam`] and [`image`] are exported, so that versions fit.
 //!
 //! # Axes and units
 //!
@@ -77,3 +78,6 @@ pub mod terrain;
 pub mod verify;
 
 pub use error::{Error, InputError};
+#[cfg(feature = "gpu")]
+pub use wgpu;
+pub use {glam, image};

@@ -8,11 +8,17 @@ mod harness;
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use glam::{Mat4, Vec3};
 use harness::relievo;
+use relievo::animation::{Lens, ModelMatrices};
 use relievo::animation::{bounds, concat, place, sample};
-use relievo::samples::creature;
-use relievo::gpu::{Gpu, shaders};
+use relievo::asset::{Affine, Model};
+use relievo::gpu::{Buffer, Gpu, shaders};
 use relievo::render::TerrainScene;
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::samples::creature;
+use relievo::skinning::picture::Light;
+use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
 use relievo::skinning::{collapse, morph, morph_weights, palette, skin};
 use relievo::surface::{cone_map, tangent};
 use relievo::terrain::config::{Config, Offset};
@@ -126,10 +132,19 @@ fn links_lead_somewhere() {
     let links: Vec<_> = README.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
     assert!(links.len() >= 10, "{links:?}");
     for link in links.into_iter().filter(|link| !link.starts_with("https://")) {
-        assert!(root.join(link).exists(), "{link}");
+        let Some(anchor) = link.strip_prefix('#') else {
+            assert!(root.join(link).exists(), "{link}");
+            continue;
+        };
+        let headings = README.lines().filter_map(|line| line.strip_prefix('#'));
+        let anchors =
+            headings.map(|line| line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-"));
+        assert!(anchors.into_iter().any(|known| known == anchor), "{link}");
     }
     for path in quoted(README).into_iter().filter(|text| text.ends_with(".rs") || text.ends_with(".wgsl")) {
-        let is_below = ["", "src/terrain"].iter().any(|folder| root.join(folder).join(path).exists());
+        let is_below = ["", "src/terrain", "src/terrain/height"]
+            .iter()
+            .any(|folder| root.join(folder).join(path).exists());
         assert!(is_below, "{path}");
     }
 }
@@ -149,6 +164,31 @@ fn embedding(
     batch.set(&gpu, &patches, &Features::default())?;
     batch.record(&mut encoder);
     scene.add(&gpu, &config, &batch.fields()[0], &patches, origin)?;
+    Ok(())
+}
+
+/// Likewise.
+#[allow(dead_code, reason = "it is compiled, not run")]
+fn characters(
+    (gpu, mut encoder, mut render_pass): (Gpu, wgpu::CommandEncoder, wgpu::RenderPass<'_>),
+    (mut fox, run, plain): (Model, usize, ColorTexture),
+    (matrices, placements, blend): (&ModelMatrices, &Buffer<Affine>, Blend),
+    (lens, clip_from_world, eye): (Lens, Mat4, Vec3),
+) -> Result<(), Error> {
+    let color_format = relievo::render::target::COLOR_FORMAT;
+    let plain: Albedo = plain.into();
+    let mut crowd = CrowdScene::new(&gpu, color_format, Light::default())?;
+    let poses = poses_of(&fox.clips[run])?;
+    add_levels(&mut fox, &[run], poses)?;
+    let albedos = Albedo::of_meshes(&gpu, &fox, &plain, ColorTexture::new)?;
+    let extent = Extent::of_model(&fox, &[run], poses)?;
+    let fade = extent.fade_range(&lens, 0.25);
+    let levels = &extent.level_ranges(&lens, 0.25, level_errors(&fox.meshes));
+    let foxes = Character { model: &fox, matrices, placements, fade, levels, blend, albedos: &albedos };
+    crowd.add(&gpu, &foxes)?;
+    crowd.set_camera(&gpu, clip_from_world, eye)?;
+    crowd.record(&mut encoder);
+    crowd.draw(&mut render_pass);
     Ok(())
 }
 

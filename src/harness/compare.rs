@@ -176,8 +176,7 @@ pub fn each(
     if values == 0 {
         return Comparison::failed(0, "no values".to_owned());
     }
-    // Written so that a NaN is wrong.
-    let is_wrong = |judgement: &Judgement| !(judgement.ratio <= 1.0);
+    let is_wrong = |judgement: &Judgement| judgement.ratio.is_nan() || judgement.ratio > 1.0;
     let wrong = judgements.iter().filter(|judgement| is_wrong(judgement)).count();
     let first = judgements.iter().position(is_wrong);
     let no_nan = |value: f64| if value.is_nan() { f64::INFINITY } else { value };

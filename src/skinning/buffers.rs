@@ -3,8 +3,8 @@
 
 use glam::UVec4;
 
+use super::character_levels::{level_errors, own_levels};
 use super::clusters::{ClusterLevel, Clusters};
-use super::levels::{level_errors, own_levels};
 use crate::asset::Model;
 use crate::asset::mesh::{MOST_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;

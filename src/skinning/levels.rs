@@ -15,9 +15,6 @@ use keys::Keys;
 use near::{Near, Sides};
 use welded::Welded;
 
-pub use character::{level_errors, own_levels};
-
-mod character;
 mod keys;
 mod near;
 mod welded;

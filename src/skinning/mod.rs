@@ -5,6 +5,7 @@ pub mod ball;
 pub mod bench;
 #[cfg(feature = "gpu")]
 pub mod buffers;
+pub mod character_levels;
 pub mod clusters;
 pub mod collapse;
 pub mod export;
@@ -25,8 +26,9 @@ pub mod skin;
 pub mod verify;
 pub mod vertex;
 
+pub use character_levels::{level_errors, own_levels};
 pub use extent::Extent;
-pub use levels::{MeshLevels, add_levels, level_errors, own_levels};
+pub use levels::{MeshLevels, add_levels};
 pub use pose::poses_of;
 pub use reduction::Reduction;
 pub use vertex::{Blend, Vertex};

@@ -14,6 +14,7 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
     ("surface/cone_map", "OPENING", &[2.0]),
     ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+    ("surface/shade", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("terrain/despike", "FEATURES", &[0.0, 1.0]),
     ("terrain/height", "CELL_ROWS", &[2.0, 33.0, 43.0]),
     ("terrain/height", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
