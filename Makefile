@@ -32,6 +32,7 @@ lint: setup
 	$(CARGO) clippy --all-targets -- -D warnings
 	$(CARGO) clippy --all-targets --features samples -- -D warnings
 	$(CARGO) clippy --all-targets --no-default-features -- -D warnings
+	$(CARGO) clippy --all-targets --no-default-features --features samples -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --features cli --no-deps --document-private-items
 
 setup:

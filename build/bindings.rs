@@ -154,7 +154,9 @@ impl Declaration<'_> {
 /// A doc comment; `fallback` where there is none.
 fn doc(indent: &str, comment: &[&str], fallback: &str) -> String {
     let lines = if comment.is_empty() { vec![fallback] } else { comment.to_vec() };
-    lines.iter().map(|line| format!("{indent}/// {line}\n")).collect()
+    // Links would lead nowhere from the generated module.
+    let plain = |line: &&str| line.replace("[`", "`").replace("`]", "`");
+    lines.iter().map(|line| format!("{indent}/// {}\n", plain(line))).collect()
 }
 
 struct KernelBindings<'a> {

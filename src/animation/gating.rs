@@ -37,7 +37,7 @@ impl Gating {
     /// Uploads a table and makes room for a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of another number of bones; [`GpuError`].
+    /// [`InputError`] for a table of another number of bones; [`GpuError`](crate::gpu::GpuError).
     pub fn new(gpu: &Gpu, table: &GateTable, crowd: &Crowd) -> Result<Self, Error> {
         if table.bones() != crowd.bones {
             let bound = format!("must be {}, as the crowd's", crowd.bones);

@@ -224,7 +224,7 @@ pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f3
     sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
 }
 
-/// Tangents for vertices that have none: see [`tangents`](super::tangents).
+/// Tangents for vertices that have none: see [`mod@tangents`].
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and indices of no vertex.

@@ -58,7 +58,7 @@ impl Step {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::mesh::MeshLevel;

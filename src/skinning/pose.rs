@@ -26,7 +26,7 @@ pub const LONGEST_LOOK: f32 = 3600.0;
 /// 60 times a second, its start and its end included; at least 2.
 ///
 /// # Errors
-/// [`InputError`] for a clip that is longer than [`LONGEST_LOOK`].
+/// [`InputError`] for a clip that is longer than an hour.
 pub fn poses_of(clip: &Clip) -> Result<usize, InputError> {
     let seconds = clip.duration();
     if seconds > LONGEST_LOOK {
@@ -127,7 +127,7 @@ pub(super) fn mean(influences: &[Influence], places: &[Vec3]) -> Vec3 {
     influences.iter().zip(places).map(|(influence, place)| influence.weight * *place).sum()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
     use crate::asset::clip::BoneKeys;

@@ -1,18 +1,18 @@
 //! Skeletons, clips, their import and their sampling, against code of its own in double precision.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod arithmetic;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod bounded;
 mod bounds;
 mod concatenation;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod crowds;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod frames;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod gating;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 #[path = "../harness/mod.rs"]
 mod harness;
 mod import;
@@ -25,7 +25,7 @@ mod root_motion;
 mod sampling;
 mod scene;
 mod scenes;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 #[path = "../harness/shader.rs"]
 mod shader;
 mod tangents;

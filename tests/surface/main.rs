@@ -1,6 +1,6 @@
 //! Surface mapping on the CPU.
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod bounds;
 mod crossings;
 mod errors;

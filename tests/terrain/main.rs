@@ -4,7 +4,7 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 mod arithmetic;
 mod borders;
 mod ground;
@@ -13,7 +13,7 @@ mod jobs;
 mod known_heights;
 mod properties;
 mod refusals;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "verify")]
 #[path = "../harness/shader.rs"]
 mod shader;
 #[cfg(feature = "gpu")]

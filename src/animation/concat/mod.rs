@@ -1,6 +1,6 @@
 //! Concatenation of local transforms into the model's space, parents first.
 //!
-//! Bones are walked in an order of their own ([`Order`]): every bone before its children, subtrees without a gap, and
+//! Bones are walked in an order of their own ([`Order`](super::Order)): every bone before its children, subtrees without a gap, and
 //! first of a bone's children the one that continues its chain. A chain is a run of slots from parent to child, as
 //! heavy-path decompositions cut trees, with the parent's matrix in registers: every matrix is read once a chain
 //! instead of once a bone, and a dispatch serves every chain whose parent is done. There are far fewer such dispatches

@@ -30,7 +30,7 @@ impl GatePass {
     /// Prepares the decision, from a crowd's phases.
     ///
     /// # Errors
-    /// [`InputError`] for a table of another kind than the gate needs, or of motion along another path than the crowd's
+    /// [`InputError`](crate::InputError) for a table of another kind than the gate needs, or of motion along another path than the crowd's
     /// rotations take; [`GpuError`].
     pub fn prepare(
         &self,

@@ -98,7 +98,7 @@ fn bind(
     listed: &Listed<'_>,
 ) -> Result<Group, GpuError> {
     let group = bindings::Group {
-        params: &uniform,
+        params: uniform,
         instances: crowd.instances.slice(),
         clips: clips.clips.slice(),
         timelines: clips.timelines.slice().cast(),

@@ -24,7 +24,7 @@ pub(crate) struct SelectParams {
 #[derive(Debug, Clone)]
 pub struct SelectBuffers {
     /// The bones of each instance that were recomputed this frame, a bit a slot of the skeleton's order, in
-    /// [`MeshBuffers::mask_words`] words an instance. [`SkinFrame`](super::frame::SkinFrame) puts
+    /// [`MeshBuffers::mask_words`] words an instance. [`SkinFrame`](crate::skinning::frame::SkinFrame) puts
     /// [`Active::dirty`](crate::animation::active::Active::dirty) here where a gate decides. A bone below one that moved has moved too.
     pub moved: Buffer<u32>,
     /// Of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, most
