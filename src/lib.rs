@@ -16,6 +16,8 @@
 //! - `verify` and `bench`: every kernel against its reference, and beside a copy of the same bytes. What `relievo verify` and
 //!   `relievo bench` run. Feature `verify`, with `harness` (comparators, clocks) and `baseline` (kernels to measure
 //!   against).
+//! - `measure`: what surface mapping costs and shows, for the caller's own maps, and `files`: reports and pictures that are
+//!   written whole or not at all. Feature `verify`. `plot`: charts of such figures. Feature `cli`.
 //! - [`srgb`]: bytes and linear light. [`mod@hash`]: counter-based random words.
 //! - [`error`]: bad input by field, value and bound.
 //!
@@ -59,12 +61,18 @@ pub mod baseline;
 #[cfg(feature = "verify")]
 pub mod bench;
 pub mod error;
+#[cfg(feature = "verify")]
+pub mod files;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 #[cfg(feature = "verify")]
 pub mod harness;
 pub mod hash;
+#[cfg(feature = "verify")]
+pub mod measure;
 pub mod mesh;
+#[cfg(feature = "cli")]
+pub mod plot;
 #[cfg(feature = "gpu")]
 pub mod render;
 #[cfg(feature = "samples")]

@@ -1,6 +1,8 @@
 //! Parity: every kernel against its twin, on the adapter at hand. Part of the product, so that a user with a
 //! strange driver finds out (`relievo verify`).
 
+mod summary;
+
 use serde::Serialize;
 
 use crate::Error;

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 /// The folders and files below `src/`, lowest floor first; those of one floor do not use each other.
 const FLOORS: &[&[&str]] = &[
     &["error", "hash", "shared", "srgb"],
-    &["asset", "gpu"],
+    &["asset", "files", "gpu", "plot"],
     &["harness", "mesh"],
     &["animation", "surface", "terrain"],
     &["baseline", "skinning"],
     &["render"],
     &["samples"],
-    &["bench", "verify"],
+    &["bench", "measure", "verify"],
 ];
 
 /// A source file: its path below `src/`, and its text without comments and tests.

@@ -28,6 +28,7 @@ pub mod motion;
 pub mod order;
 pub mod phase;
 pub mod place;
+pub mod pose;
 pub mod priority;
 pub mod root_motion;
 pub mod sample;
@@ -46,5 +47,6 @@ pub use lod::{Lens, Lod, Range};
 #[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;
 pub use order::Order;
+pub use pose::Pose;
 pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;

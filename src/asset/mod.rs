@@ -10,6 +10,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod morph;
+pub(crate) mod obj;
 pub mod skeleton;
 pub mod tangents;
 pub mod transform;

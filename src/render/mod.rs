@@ -6,6 +6,7 @@ pub mod color;
 pub mod crowd;
 pub mod picture;
 mod pipeline;
+pub mod posed;
 pub mod relief;
 pub mod skinned;
 pub mod square;

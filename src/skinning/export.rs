@@ -1,38 +1,31 @@
 //! Skinned meshes as Wavefront OBJ.
 
-use std::fmt::Write as _;
+use std::io::{self, Write};
 
 use crate::asset::mesh::Mesh;
+use crate::asset::obj::{ObjWriter, Object};
 use crate::skinning::vertex::Vertex;
 
 /// An object a mesh, in order: vertices in the mesh's order with every digit that `f32` needs, texture coordinates
 /// (v up, as OBJ has it), normals, triangles.
 ///
+/// # Errors
+/// Those of `out`.
+///
 /// # Panics
 /// With other than one vertex a vertex of the mesh.
-pub fn obj(meshes: &[(&Mesh, &[Vertex])]) -> String {
-    let mut text = String::new();
-    let mut first = 1;
+pub fn write_obj(out: &mut impl Write, meshes: &[(&Mesh, &[Vertex])]) -> io::Result<()> {
+    let mut writer = ObjWriter::new(out);
     for (mesh, vertices) in meshes {
-        // A space would end the name, a line the object.
-        let name: String = mesh.name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
-        let mut line = |args: std::fmt::Arguments<'_>| text.write_fmt(args).expect("strings take all");
-        line(format_args!("o {name}\n"));
-        for Vertex { position: [x, y, z], .. } in *vertices {
-            line(format_args!("v {x} {y} {z}\n"));
-        }
-        for [u, v] in &mesh.uv {
-            line(format_args!("vt {u} {}\n", 1.0 - v));
-        }
-        for Vertex { normal: [x, y, z], .. } in *vertices {
-            line(format_args!("vn {x} {y} {z}\n"));
-        }
-        for triangle in mesh.indices.chunks_exact(3) {
-            let [a, b, c] = [0, 1, 2].map(|corner| first + triangle[corner]);
-            line(format_args!("f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}\n"));
-        }
         assert_eq!(vertices.len(), mesh.vertices());
-        first += vertices.len() as u32;
+        let normals: Vec<_> = vertices.iter().map(|vertex| vertex.normal).collect();
+        writer.object(Object {
+            name: Some(&mesh.name),
+            positions: vertices.iter().map(|vertex| vertex.position),
+            uv: &mesh.uv,
+            normals: &normals,
+            triangles: mesh.indices.as_chunks().0.iter().copied(),
+        })?;
     }
-    text
+    Ok(())
 }

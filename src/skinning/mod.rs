@@ -19,6 +19,7 @@ pub mod morph_weights;
 pub mod palette;
 pub mod picture;
 mod pose;
+pub mod posed;
 pub mod reduction;
 pub mod select;
 pub mod skin;
@@ -28,7 +29,8 @@ pub mod vertex;
 
 pub use character_levels::{level_errors, own_levels};
 pub use extent::Extent;
-pub use levels::{MeshLevels, add_levels};
+pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};
 pub use pose::poses_of;
+pub use posed::{Portrait, PosedModel};
 pub use reduction::Reduction;
 pub use vertex::{Blend, Vertex};

@@ -1,12 +1,13 @@
-//! Heights in files: raw `i32`, 16-bit PNG (both ways), hashes, and features sampled from a PNG.
+//! Heights in files: raw `i32`, 16-bit PNG (both ways), hashes, features sampled from a PNG, and all files of a batch.
 
 use std::io::{BufReader, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
 use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::features::FeatureFile;
+use crate::terrain::mesh::HeightField;
 use crate::{Error, InputError};
 
 /// The mapping of a height PNG: sample 0 is `low`, sample 65535 is `high`, linear between, in height units.
@@ -81,6 +82,86 @@ pub fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -
     let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
     writer.write_image_data(&samples).map_err(|error| failed(&error))?;
     writer.finish().map_err(|error| failed(&error))
+}
+
+/// The heights of some patches, as files.
+#[derive(Debug, Clone, Copy)]
+pub struct Batch<'a> {
+    /// What they were made with.
+    pub config: &'a Config,
+    /// Their coordinates.
+    pub patches: &'a [[i32; 2]],
+    /// patchSize² heights of each.
+    pub heights: &'a [Vec<i32>],
+    /// What black and white stand for in all of their PNGs.
+    pub range: HeightRange,
+    /// Whether each is written as a mesh too.
+    pub obj: bool,
+}
+
+/// What was written of a patch.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct PatchReport {
+    /// Its column.
+    pub px: i32,
+    /// Its row.
+    pub py: i32,
+    /// Samples along an edge.
+    pub size: u32,
+    /// Of its heights, little-endian.
+    pub sha256: String,
+}
+
+impl Batch<'_> {
+    /// Writes `heights_<px>_<py>.png` ([`write_png`]) and `heights_<px>_<py>.i32` ([`to_bytes`]) of each patch, and of
+    /// those with meshes `patch_<px>_<py>.obj`, at its place in the world. `place` says where the file of a name goes;
+    /// `progress` hears of each patch.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn write(
+        &self,
+        mut place: impl FnMut(String) -> PathBuf,
+        progress: impl Fn(),
+    ) -> Result<Vec<PatchReport>, Error> {
+        let size = self.config.patch_size;
+        let mut reports = Vec::new();
+        for ([px, py], heights) in self.patches.iter().zip(self.heights) {
+            write_png(&place(format!("heights_{px}_{py}.png")), heights, size, self.range)?;
+            write_bytes(&place(format!("heights_{px}_{py}.i32")), &to_bytes(heights))?;
+            if self.obj {
+                self.write_obj(&place(format!("patch_{px}_{py}.obj")), heights, [*px, *py])?;
+            }
+            reports.push(PatchReport { px: *px, py: *py, size, sha256: sha256(heights) });
+            progress();
+        }
+        Ok(reports)
+    }
+
+    fn write_obj(&self, path: &Path, heights: &[i32], patch: [i32; 2]) -> Result<(), Error> {
+        let size = self.config.patch_size;
+        let first = patch.map(|index| i64::from(index) * (i64::from(size) - 1));
+        let field = HeightField::new(heights.to_vec(), size as usize, self.config.terrain_scale);
+        let mut text = Vec::new();
+        if let Some(field) = field {
+            field.write_obj(&mut text, first).map_err(|error| Error::output(path, error))?;
+        }
+        write_bytes(path, &text)
+    }
+
+    /// Whether a file's name is one that [`Batch::write`] gives to some patch.
+    pub fn is_name(name: &str) -> bool {
+        let Some((stem, extension)) = name.rsplit_once('.') else { return false };
+        let coordinates = match extension {
+            "png" | "i32" => stem.strip_prefix("heights_"),
+            "obj" => stem.strip_prefix("patch_"),
+            _ => None,
+        };
+        let canonical = |text: &str| text.parse::<i32>().is_ok_and(|number| number.to_string() == text);
+        coordinates
+            .and_then(|text| text.split_once('_'))
+            .is_some_and(|(px, py)| canonical(px) && canonical(py))
+    }
 }
 
 /// Samples of a 16-bit greyscale PNG, and its mapping where it states one.
@@ -166,11 +247,7 @@ impl HeightImage {
     }
 }
 
-/// Writes bytes to a new file.
-///
-/// # Errors
-/// [`Error::Output`].
-pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let write = || std::fs::File::create(path)?.write_all(bytes);
     write().map_err(|error: std::io::Error| Error::output(path, error))
 }

@@ -59,6 +59,29 @@ impl Fields {
         (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
+    /// Fields of heights that the host has, `width`² each, in parts of at most [`Fields::most`].
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
+    pub fn of_windows(gpu: &Gpu, width: u32, windows: &[Vec<i32>]) -> Result<Vec<Self>, GpuError> {
+        let part = |windows: &[Vec<i32>]| {
+            let fields = Self::new(gpu, "terrain heights", width, windows.len() as u32)?;
+            fields.heights.write(gpu, &windows.concat())?;
+            Ok(fields)
+        };
+        windows.chunks(Self::most(gpu, width)).map(part).collect()
+    }
+
+    /// The heights of each field. Waits for the device.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Vec<i32>>, GpuError> {
+        let points = (self.width as usize).pow(2);
+        let all = self.heights.read_blocking(gpu)?;
+        Ok(all.chunks_exact(points).take(self.count as usize).map(<[i32]>::to_vec).collect())
+    }
+
     /// The same memory seen as fields that are `samples` smaller on every side; without a sample where
     /// nothing is left.
     pub fn cropped(&self, samples: u32) -> Self {

@@ -5,6 +5,7 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
+use crate::asset::obj::{ObjWriter, Object};
 use crate::terrain::config::HEIGHT_ONE;
 
 /// The distance between samples as a fraction of itself: positions are rounded to 2⁻³⁰ of it. A fraction times any
@@ -143,8 +144,7 @@ impl HeightField {
             let (x, y) = (index % self.size, index / self.size);
             [at(x, 0), f64::from(*height) / HEIGHT_ONE, at(y, 1)]
         });
-        let mesh = self.mesh();
-        write_obj(out, positions, &mesh.uvs, &mesh.triangles())
+        write_obj(out, positions, &self.mesh())
     }
 }
 
@@ -209,28 +209,18 @@ impl Mesh {
     /// # Errors
     /// Those of `out`.
     pub fn write_obj(&self, out: &mut impl Write) -> io::Result<()> {
-        write_obj(out, self.positions.iter().copied(), &self.uvs, &self.triangles())
+        write_obj(out, self.positions.iter().copied(), self)
     }
 }
 
 fn write_obj<T: Display>(
     out: &mut impl Write,
     positions: impl Iterator<Item = [T; 3]>,
-    uvs: &[[f32; 2]],
-    triangles: &[[u32; 3]],
+    mesh: &Mesh,
 ) -> io::Result<()> {
-    writeln!(out, "# relievo terrain: {} points", uvs.len())?;
-    for [x, y, z] in positions {
-        writeln!(out, "v {x} {y} {z}")?;
-    }
-    for [u, v] in uvs {
-        // OBJ's texture origin is the bottom.
-        writeln!(out, "vt {u} {}", 1.0 - v)?;
-    }
-    for [a, b, c] in triangles {
-        writeln!(out, "f {0}/{0} {1}/{1} {2}/{2}", a + 1, b + 1, c + 1)?;
-    }
-    Ok(())
+    let mut writer = ObjWriter::new(out);
+    writer.comment(format_args!("relievo terrain: {} points", mesh.uvs.len()))?;
+    writer.object(Object { name: None, positions, uv: &mesh.uvs, normals: &[], triangles: mesh.triangles() })
 }
 
 #[cfg(test)]

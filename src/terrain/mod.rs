@@ -4,6 +4,7 @@
 pub mod bench;
 pub mod blend;
 pub mod border;
+pub mod color_maps;
 pub mod config;
 pub mod despike;
 pub mod export;
@@ -14,6 +15,7 @@ pub mod fields;
 pub mod fixed;
 #[cfg(feature = "gpu")]
 pub mod generator;
+pub mod grid;
 pub mod ground;
 pub mod height;
 pub mod mesh;

@@ -6,10 +6,11 @@ use std::process::ExitCode;
 use clap::Args;
 use relievo::Error;
 use relievo::bench::run;
+use relievo::files::{json, write_file};
 use relievo::harness::{Row, table};
 
 use crate::Context;
-use crate::output::{json, say, write_file};
+use crate::output::say;
 
 /// Measures every kernel beside its CPU twin and a copy of the same bytes, in one run.
 #[derive(Args)]

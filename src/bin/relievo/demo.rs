@@ -5,18 +5,19 @@ mod relief;
 mod skin;
 mod terrain;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, FromArgMatches};
+use image::RgbaImage;
 use indicatif::ProgressBar;
 use relievo::Error;
-use relievo::terrain::export::write_bytes;
+use relievo::files::Staged;
 
 use crate::Context;
-use crate::output::{Staged, say};
+use crate::output::say;
 use crate::progress::bar;
-use crate::terrain::save;
 
 /// Makes every picture that relievo can make so far, and an `index.html` that shows them with the commands that
 /// made them and their timings.
@@ -59,7 +60,7 @@ impl Demo {
         crowd::draw(&mut page)?;
         page.progress.finish_and_clear();
         let adapter = context.gpu()?.adapter().to_string();
-        write_bytes(&page.staged.path("index.html"), html(&adapter, &page.figures).as_bytes())?;
+        page.staged.write("index.html", html(&adapter, &page.figures).as_bytes())?;
         page.staged.publish()?;
         say(format_args!("{} pictures, and {}", page.count, self.out.join("index.html").display()))?;
         Ok(ExitCode::SUCCESS)
@@ -70,38 +71,47 @@ impl Demo {
 struct Entry {
     name: &'static str,
     title: &'static str,
-    arguments: &'static [&'static str],
+    /// Words with a space between them.
+    arguments: &'static str,
+}
+
+const fn entry(name: &'static str, title: &'static str, arguments: &'static str) -> Entry {
+    Entry { name, title, arguments }
 }
 
 impl Entry {
     /// The command that draws it; `more` is not shown.
-    fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&str]) -> Result<T, Error> {
-        let words = [&[name, "--out", "."], more, self.arguments].concat();
+    fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&OsStr]) -> Result<T, Error> {
+        let words = ["--out", "."].iter().copied().chain(self.arguments.split_whitespace()).map(OsStr::new);
         let refused = |error: clap::Error| Error::file(self.name, error);
-        let matches = T::augment_args(clap::Command::new(name)).try_get_matches_from(words);
+        let command = T::augment_args(clap::Command::new(name).no_binary_name(true));
+        let matches = command.try_get_matches_from(words.chain(more.iter().copied()));
         T::from_arg_matches(&matches.map_err(refused)?).map_err(refused)
     }
 }
 
 impl Page<'_> {
-    /// Shows the picture of a command, with a note.
-    fn show(
+    /// Draws the pictures of a command; `draw` gives each with a note.
+    fn draw<T: Args + FromArgMatches>(
         &mut self,
-        command: &str,
-        entry: &Entry,
-        picture: &image::RgbaImage,
-        note: &str,
+        command: &'static str,
+        entries: &[Entry],
+        more: &[&OsStr],
+        draw: impl Fn(&T, &Context) -> Result<(RgbaImage, String), Error>,
     ) -> Result<(), Error> {
-        let Entry { name, title, arguments } = entry;
-        save(&self.staged.path(format!("{name}.png")), picture)?;
-        let arguments = arguments.join(" ");
-        self.figures += &format!(
-            "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-             <figcaption>{title}.<br><code>relievo {command} {arguments} --out {name}</code><br>{note}</figcaption>\n\
-             </figure>\n"
-        );
-        self.count += 1;
-        self.progress.inc(1);
+        for entry in entries {
+            let Entry { name, title, arguments } = entry;
+            self.progress.set_message(*name);
+            let (picture, note) = draw(&entry.command(command, more)?, self.context)?;
+            self.staged.write_png(format!("{name}.png"), &picture)?;
+            self.figures += &format!(
+                "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
+                 <figcaption>{title}.<br><code>relievo {command} {arguments} --out {name}</code><br>{note}</figcaption>\n\
+                 </figure>\n"
+            );
+            self.count += 1;
+            self.progress.inc(1);
+        }
         Ok(())
     }
 }

@@ -1,24 +1,19 @@
 //! The command line: a thin shell over the library.
 
-#[cfg(feature = "gpu")]
+mod arguments;
 mod bench;
 mod crowd;
-#[cfg(feature = "gpu")]
 mod demo;
-#[cfg(feature = "gpu")]
 mod info;
 mod memory;
 mod output;
-mod plot;
 mod pose;
 mod priorities;
 mod progress;
 mod relief;
-#[cfg(feature = "gpu")]
 mod shaders;
 mod skin;
 mod terrain;
-#[cfg(feature = "gpu")]
 mod verify;
 
 use std::io::Write as _;
@@ -26,6 +21,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
+use relievo::plot;
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
 ///
@@ -36,7 +32,6 @@ use clap::{Parser, Subcommand};
 struct Arguments {
     /// The adapter: a kind (discrete, integrated, virtual, cpu) or a part of its name or driver. Default: the
     /// fastest kind there is.
-    #[cfg(feature = "gpu")]
     #[arg(long, global = true, env = "RELIEVO_ADAPTER", value_name = "NAME")]
     adapter: Option<String>,
     #[command(subcommand)]
@@ -46,7 +41,6 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Lists adapters, the chosen one's driver and limits, and every pass.
-    #[cfg(feature = "gpu")]
     Info,
     Terrain(Box<terrain::Terrain>),
     Relief(Box<relief::Relief>),
@@ -54,25 +48,18 @@ enum Command {
     Priorities(priorities::Priorities),
     Skin(skin::Skin),
     Crowd(Box<crowd::Crowd>),
-    #[cfg(feature = "gpu")]
     Verify(verify::Verify),
-    #[cfg(feature = "gpu")]
     Bench(bench::Bench),
-    #[cfg(feature = "gpu")]
     Shaders(shaders::Shaders),
-    #[cfg(feature = "gpu")]
     Demo(demo::Demo),
 }
 
 /// What a command is run with.
 pub struct Context {
-    #[cfg(feature = "gpu")]
     options: relievo::gpu::Options,
-    #[cfg(feature = "gpu")]
     opened: std::cell::OnceCell<relievo::gpu::Gpu>,
 }
 
-#[cfg(feature = "gpu")]
 impl Context {
     /// The chosen adapter's device, opened at the first call.
     fn gpu(&self) -> Result<relievo::gpu::Gpu, relievo::Error> {
@@ -89,14 +76,9 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return refused(&error),
     };
-    let context = Context {
-        #[cfg(feature = "gpu")]
-        options: relievo::gpu::Options { adapter: arguments.adapter },
-        #[cfg(feature = "gpu")]
-        opened: Default::default(),
-    };
+    let context =
+        Context { options: relievo::gpu::Options { adapter: arguments.adapter }, opened: Default::default() };
     let outcome = match arguments.command {
-        #[cfg(feature = "gpu")]
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Relief(command) => command.run(&context),
@@ -104,13 +86,9 @@ fn main() -> ExitCode {
         Command::Priorities(command) => command.run(),
         Command::Skin(command) => command.run(&context),
         Command::Crowd(command) => command.run(&context),
-        #[cfg(feature = "gpu")]
         Command::Verify(command) => command.run(&context),
-        #[cfg(feature = "gpu")]
         Command::Bench(command) => command.run(&context),
-        #[cfg(feature = "gpu")]
         Command::Shaders(command) => command.run(),
-        #[cfg(feature = "gpu")]
         Command::Demo(command) => command.run(&context),
     };
     match outcome {

@@ -3,28 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
-#[cfg(feature = "gpu")]
-use relievo::animation::ClipSet;
-use relievo::animation::concat::reference::concat;
-use relievo::animation::concat::{ConcatPass, Walk};
-use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::place::PlacePass;
-use relievo::animation::sample::SamplePass;
-use relievo::animation::sample::reference::sample;
-use relievo::asset::keyframe::RotationPath;
+use clap::Args;
+use relievo::animation::{self, Wrap};
 use relievo::asset::transform::column_major;
-use relievo::asset::{Affine, Clip, Model, Transform};
-#[cfg(feature = "gpu")]
-use relievo::gpu::Gpu;
+use relievo::asset::{Clip, Model, Transform};
+use relievo::files::{json, write_file};
 use relievo::samples::creature;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
-use crate::output::{json, write_file};
+use crate::arguments::{Backend, one_of};
+
+/// What becomes of times outside a clip.
+pub const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clamp)];
 
 /// Writes where every bone of a model is at a moment of a clip, or at rest, as JSON.
 ///
@@ -59,8 +51,8 @@ pub struct MomentArgs {
     #[arg(long, value_name = "SECONDS", requires = "clip", allow_hyphen_values = true)]
     time: Option<f64>,
     /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
-    #[arg(long, value_name = "MODE", default_value = "loop")]
-    wrap: WrapName,
+    #[arg(long, value_name = "MODE", default_value = "loop", value_parser = one_of(WRAPS))]
+    wrap: Wrap,
 }
 
 impl MomentArgs {
@@ -71,37 +63,13 @@ impl MomentArgs {
             return Ok((model.clips.len() - 1, 0.0));
         };
         let clip = find(model, path, name)?;
-        let time = self.wrap.wrap().inside(clip.duration(), self.time.unwrap_or(0.0))?;
+        let time = self.wrap.inside(clip.duration(), self.time.unwrap_or(0.0))?;
         Ok((place(model, clip), time))
     }
 
     /// Whether no clip is asked for.
     pub fn is_rest(&self) -> bool {
         self.clip.is_none()
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Backend {
-    #[cfg(feature = "gpu")]
-    #[default]
-    Gpu,
-    #[cfg_attr(not(feature = "gpu"), default)]
-    Cpu,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum WrapName {
-    Loop,
-    Clamp,
-}
-
-impl WrapName {
-    pub fn wrap(self) -> Wrap {
-        match self {
-            Self::Loop => Wrap::Loop,
-            Self::Clamp => Wrap::Clamp,
-        }
     }
 }
 
@@ -121,74 +89,30 @@ struct BoneReport<'a> {
 }
 
 impl Pose {
-    #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let mut model = open_bare(&self.model)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
-        let clip = &model.clips[clip];
-        let (locals, models) = match self.backend {
-            #[cfg(feature = "gpu")]
-            Backend::Gpu => on_gpu(&context.gpu()?, &model, clip, time)?,
-            Backend::Cpu => on_cpu(&model, clip, time),
+        let (skeleton, clip) = (&model.skeleton, &model.clips[clip]);
+        let pose = match self.backend.gpu(context)? {
+            Some(gpu) => animation::Pose::on_device(&gpu, skeleton, clip, time)?,
+            None => animation::Pose::on_host(skeleton, clip, time),
         };
-        check_range(&models)?;
+        pose.check_range()?;
         let moment = (!self.moment.is_rest()).then_some((clip.name(), time));
-        write_file(&self.out, &json(&report(&model, moment, &locals, &models))?)?;
+        write_file(&self.out, &json(&report(&model, moment, &pose))?)?;
         Ok(ExitCode::SUCCESS)
     }
 }
 
-pub fn on_cpu(model: &Model, clip: &Clip, time: f32) -> (Vec<Transform>, Vec<Affine>) {
-    let locals = sample(clip, time, RotationPath::Slerp);
-    let models = concat(&model.skeleton, &locals);
-    (locals, models)
-}
-
-/// A crowd of one.
-#[cfg(feature = "gpu")]
-fn on_gpu(gpu: &Gpu, model: &Model, clip: &Clip, time: f32) -> Result<(Vec<Transform>, Vec<Affine>), Error> {
-    let set = ClipSet::new(&[clip])?;
-    let clips = ClipBuffers::new(gpu, &set)?;
-    // The time is inside the clip already, and its end is not its start here.
-    let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
-    let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
-    let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &model.skeleton, &crowd)?;
-    gpu.run("pose", |encoder| {
-        place.record(encoder);
-        sample.record(encoder);
-        concat.record(encoder);
-    })?;
-    let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
-    Ok((locals, crowd.models.read_blocking(gpu)?))
-}
-
-/// Refuses transforms that chains of large scales have driven out of range: JSON has no infinity.
-fn check_range(models: &[Affine]) -> Result<(), InputError> {
-    let is_finite = |model: &Affine| model.iter().flatten().all(|value| value.is_finite());
-    match models.iter().position(|model| !is_finite(model)) {
-        None => Ok(()),
-        Some(bone) => {
-            let bound = "must fit f32: translations or scales are too large";
-            Err(InputError::new(format!("bones[{bone}].model"), format!("{:?}", models[bone]), bound))
-        }
-    }
-}
-
-fn report<'a>(
-    model: &'a Model,
-    moment: Option<(&'a str, f32)>,
-    locals: &[Transform],
-    models: &[Affine],
-) -> Report<'a> {
+fn report<'a>(model: &'a Model, moment: Option<(&'a str, f32)>, pose: &animation::Pose) -> Report<'a> {
     let skeleton = &model.skeleton;
     let bone = |(joint, parent): (&u32, Option<u32>)| {
         let at = *joint as usize;
         BoneReport {
             name: &skeleton.bones()[at].name,
             parent: parent.map_or(-1, i64::from),
-            local: locals[at],
-            model: column_major(&models[at]),
+            local: pose.locals[at],
+            model: column_major(&pose.model_matrices[at]),
         }
     };
     let bones = skeleton.joints().iter().zip(skeleton.joint_parents()).map(bone).collect();

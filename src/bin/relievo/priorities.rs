@@ -4,14 +4,16 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use relievo::animation::priority;
 use relievo::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
+use relievo::animation::{Wrap, priority};
 use relievo::asset::{Clip, Model, Skeleton};
+use relievo::files::{json, write_file};
 use relievo::{Error, InputError};
 use serde::Serialize;
 
-use crate::output::{json, say, write_file};
-use crate::pose::{WrapName, find, open_bare};
+use crate::arguments::one_of;
+use crate::output::say;
+use crate::pose::{WRAPS, find, open_bare};
 
 /// Prints how much each key of each bone contributes to a clip, most important first: what animation LOD skips last.
 ///
@@ -31,8 +33,8 @@ pub struct Priorities {
     #[arg(long, value_name = "W,W,W,W,W,W|analyze", allow_hyphen_values = true)]
     weights: Option<String>,
     /// After a bone's last key comes its first, or nothing.
-    #[arg(long, value_name = "MODE", default_value = "loop")]
-    wrap: WrapName,
+    #[arg(long, value_name = "MODE", default_value = "loop", value_parser = one_of(WRAPS))]
+    wrap: Wrap,
     /// Also writes the table there.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -76,7 +78,7 @@ impl Priorities {
     pub fn run(&self) -> Result<ExitCode, Error> {
         let model = open_bare(&self.model)?;
         let clip = find(&model, &self.model, &self.clip)?;
-        let loops = matches!(self.wrap, WrapName::Loop);
+        let loops = self.wrap == Wrap::Loop;
         let weights = weights(self.weights.as_deref(), &model.skeleton, clip, loops)?;
         let user = vec![USER_DEFAULT; model.skeleton.len()];
         let found = priority::Priorities::new(&model.skeleton, clip, loops, &weights, &user)?;

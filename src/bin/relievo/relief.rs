@@ -1,34 +1,37 @@
 //! `relievo relief`
 
-mod compare;
-mod tracer;
-
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use image::RgbaImage;
+use relievo::files::Staged;
+use relievo::gpu::Gpu;
+use relievo::measure::relief::{Comparison, Drawn, ReliefSquare, Seconds};
+use relievo::plot::{Chart, Series, grid};
 use relievo::samples::BuiltInMap;
 use relievo::surface::view::towards_light;
 use relievo::surface::{
-    Address, Green, HeightMap, Hit, March, Material, Measured, Method, Mips, Outcome, Ray, Shadow, SquareView,
+    Address, Green, HeightMap, March, Material, Measured, Method, Mips, Outcome, Shadow, SquareView,
 };
-use relievo::terrain::export::write_bytes;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
-use crate::output::{Staged, json};
+use crate::arguments::{Backend, one_of, pair};
+use crate::output::say;
 use crate::progress::bar;
-use crate::terrain::{Backend, pair, save};
-use tracer::Tracer;
 
 /// Linear light behind the square.
 const BACKGROUND: [f32; 3] = [0.045, 0.055, 0.07];
 
 /// Samples a pixel along each axis of a picture: one crawls with jagged edges.
 const FINER: u32 = 2;
+
+const GREENS: [(&str, Green); 2] = [("up", Green::Up), ("down", Green::Down)];
+const SHADOWS: [(&str, Shadow); 3] = [("none", Shadow::None), ("hard", Shadow::Hard), ("soft", Shadow::Soft)];
+const ADDRESSES: [(&str, Address); 2] = [("wrap", Address::Wrap), ("clamp", Address::Clamp)];
 
 /// Draws a square of relief with any ray-height method, and measures the method against the exact intersection.
 ///
@@ -58,8 +61,8 @@ pub struct Relief {
     #[arg(long, value_name = "PNG")]
     normal: Option<PathBuf>,
     /// Where green of --normal points: up the image (glTF, OpenGL) or down it (Direct3D).
-    #[arg(long, value_name = "DIRECTION", default_value = "up")]
-    normal_green: GreenKind,
+    #[arg(long, value_name = "DIRECTION", default_value = "up", value_parser = one_of(GREENS))]
+    normal_green: Green,
     /// How the surface is found: plain, parallax, parallax-limited, relief, occlusion, cone, quadtree.
     #[arg(long, value_name = "METHOD", default_value = "quadtree")]
     method: String,
@@ -85,14 +88,14 @@ pub struct Relief {
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_hyphen_values = true)]
     tile: f64,
     /// Self-shadow.
-    #[arg(long, default_value = "none")]
-    shadow: ShadowKind,
+    #[arg(long, default_value = "none", value_parser = one_of(SHADOWS))]
+    shadow: Shadow,
     /// Where light comes from: degrees around the normal as --azimuth, and above the square.
     #[arg(long, value_name = "AZ,EL", default_value = "225,45", allow_hyphen_values = true)]
     light: String,
     /// What lies beyond the map's edge: the map again, or its last texels.
-    #[arg(long, default_value = "wrap")]
-    address: AddressKind,
+    #[arg(long, default_value = "wrap", value_parser = one_of(ADDRESSES))]
+    address: Address,
     /// Cuts away what leaves the square, so that its far edges follow the relief.
     #[arg(long)]
     silhouette: bool,
@@ -108,59 +111,6 @@ pub struct Relief {
     /// The folder.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ShadowKind {
-    None,
-    Hard,
-    Soft,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum GreenKind {
-    Up,
-    Down,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum AddressKind {
-    Wrap,
-    Clamp,
-}
-
-/// What is drawn or compared, checked and read.
-struct Plan {
-    map: HeightMap,
-    albedo: Mips,
-    normals: Option<Mips>,
-    green: Green,
-    shadow: Shadow,
-    silhouette: bool,
-    method: Method,
-    march: March,
-    material: Material,
-    view: SquareView,
-    backend: Backend,
-}
-
-/// A picture with what was measured on the way.
-pub struct Drawn {
-    pub picture: RgbaImage,
-    rays: Vec<Option<Ray>>,
-    hits: Vec<Hit>,
-    measured: Measured,
-    adapter: Option<[String; 2]>,
-    seconds: Seconds,
-}
-
-/// Wall time.
-#[derive(Serialize, Clone, Copy)]
-struct Seconds {
-    maps: f64,
-    rays: f64,
-    picture: f64,
-    exact: f64,
 }
 
 #[derive(Serialize)]
@@ -187,47 +137,52 @@ struct Report<'a> {
 
 impl Relief {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let plan = self.plan()?;
+        let (method, square) = self.square()?;
         // What cannot be written shows before the work; the stage itself comes after it, so that an interrupted run
         // leaves nothing behind.
         drop(Staged::new(&self.out)?);
+        let gpu = self.backend.gpu(context)?;
         if self.compare {
-            compare::run(&plan, context, &self.out)?;
-        } else {
-            let drawn = plan.draw(context)?;
-            plan.write(&drawn, Staged::new(&self.out)?)?;
-            let Measured { mean_error_texels, p99_error_texels, mean_samples, .. } = drawn.measured;
-            crate::output::say(format_args!(
-                "{}: mean error {mean_error_texels:.4} texels, 99 of 100 below {p99_error_texels:.4}, \
-                 {mean_samples:.1} texel loads a pixel; {}",
-                plan.method.name(),
-                self.out.join("relief.png").display()
-            ))?;
+            let comparison = compared(&square, gpu.as_ref())?;
+            let table = comparison.table();
+            let mut staged = Staged::new(&self.out)?;
+            staged.write_json("compare.json", &comparison)?;
+            staged.write("compare.md", table.as_bytes())?;
+            staged.write_png("compare.png", &plot(&comparison)?)?;
+            staged.publish()?;
+            say(table.trim_end())?;
+            return Ok(ExitCode::SUCCESS);
         }
+        let drawn = drawn(&square, method, gpu.as_ref())?;
+        self.write(&square, method, gpu.as_ref(), &drawn)?;
+        let Measured { mean_error_texels, p99_error_texels, mean_samples, .. } = drawn.measured;
+        say(format_args!(
+            "{}: mean error {mean_error_texels:.4} texels, 99 of 100 below {p99_error_texels:.4}, \
+             {mean_samples:.1} texel loads a pixel; {}",
+            method.name(),
+            self.out.join("relief.png").display()
+        ))?;
         Ok(ExitCode::SUCCESS)
     }
 
     /// The picture alone, for the demonstration.
-    #[cfg(feature = "gpu")]
     pub fn picture(&self, context: &Context) -> Result<(RgbaImage, Measured, f64), Error> {
         let start = Instant::now();
-        let drawn = self.plan()?.draw(context)?;
+        let (method, square) = self.square()?;
+        let drawn = drawn(&square, method, self.backend.gpu(context)?.as_ref())?;
         Ok((drawn.picture, drawn.measured, start.elapsed().as_secs_f64()))
     }
 
     /// The plot of `--compare` alone, for the demonstration.
-    #[cfg(feature = "gpu")]
     pub fn comparison(&self, context: &Context) -> Result<RgbaImage, Error> {
-        compare::picture(&self.plan()?, context)
+        Ok(plot(&compared(&self.square()?.1, self.backend.gpu(context)?.as_ref())?)?)
     }
 
-    fn plan(&self) -> Result<Plan, Error> {
+    /// What is drawn or compared, checked and read.
+    fn square(&self) -> Result<(Method, ReliefSquare), Error> {
         let method = self.method.parse()?;
-        let address = match self.address {
-            AddressKind::Wrap => Address::Wrap,
-            AddressKind::Clamp => Address::Clamp,
-        };
-        let march = March { address, steps: steps(&self.steps)?, binary_steps: self.binary_steps };
+        let (address, binary_steps) = (self.address, self.binary_steps);
+        let march = March { address, steps: steps(&self.steps)?, binary_steps };
         march.validate()?;
         let size = pair("size", &self.size, 'x', "must be columns x rows, such as 960x600")?;
         let view = SquareView { angle: self.angle, azimuth: self.azimuth, tiles: self.tile, size };
@@ -235,18 +190,18 @@ impl Relief {
         let material = self.material()?;
         let (map, albedo) = self.maps()?;
         let normals = self.normal.as_deref().map(open).transpose()?.map(Mips::of_data);
-        let albedo = Mips::of_color(albedo);
-        let shadow = match self.shadow {
-            ShadowKind::None => Shadow::None,
-            ShadowKind::Hard => Shadow::Hard,
-            ShadowKind::Soft => Shadow::Soft,
+        let square = ReliefSquare {
+            map,
+            albedo: Mips::of_color(albedo),
+            normals,
+            green: self.normal_green,
+            shadow: self.shadow,
+            silhouette: self.silhouette,
+            march,
+            material,
+            view,
         };
-        let green = match self.normal_green {
-            GreenKind::Up => Green::Up,
-            GreenKind::Down => Green::Down,
-        };
-        let (silhouette, backend) = (self.silhouette, self.backend);
-        Ok(Plan { map, albedo, normals, green, shadow, silhouette, method, march, material, view, backend })
+        Ok((method, square))
     }
 
     fn material(&self) -> Result<Material, InputError> {
@@ -312,78 +267,99 @@ fn steps(text: &str) -> Result<[u32; 2], InputError> {
     pair("steps", &both, ',', "must be one number of steps, or MIN,MAX")
 }
 
-impl Plan {
-    fn draw(&self, context: &Context) -> Result<Drawn, Error> {
-        let rays = self.view.rays(self.material.scale, self.material.plane);
-        let seen: Vec<Ray> = rays.iter().flatten().copied().collect();
-        if seen.is_empty() {
-            let bound = "must be smaller, or --size larger: no pixel sees the square";
-            return Err(InputError::new("angle", self.view.angle, bound).into());
-        }
-        let progress = bar(4, "building maps");
-        let step = |what: &str, start: Instant| {
-            progress.inc(1);
-            progress.set_message(what.to_owned());
-            start.elapsed().as_secs_f64()
-        };
-        let start = Instant::now();
-        let tracer = Tracer::new(&self.map, self.method, self.march.address, self.backend, context)?;
-        let maps = step("tracing rays", start);
-        let start = Instant::now();
-        let found = tracer.trace(&seen, &self.march)?;
-        let traced = step("drawing", start);
-        let start = Instant::now();
-        let picture = tracer.picture(self, BACKGROUND, FINER)?;
-        let pictured = step("measuring", start);
-        let start = Instant::now();
-        let measured = Measured::of(&self.map, self.march.address, &seen, &found);
-        let exact = step("done", start);
-        progress.finish_and_clear();
-        let mut found = found.into_iter();
-        let hits = rays.iter().map(|ray| ray.and_then(|_| found.next()).unwrap_or_default()).collect();
-        let seconds = Seconds { maps, rays: traced, picture: pictured, exact };
-        Ok(Drawn { picture, rays, hits, measured, adapter: tracer.adapter(), seconds })
-    }
-
-    fn write(&self, drawn: &Drawn, mut staged: Staged) -> Result<(), Error> {
-        save(&staged.path("relief.png"), &drawn.picture)?;
+impl Relief {
+    /// Writes what `--compare` does not.
+    fn write(
+        &self,
+        square: &ReliefSquare,
+        method: Method,
+        gpu: Option<&Gpu>,
+        drawn: &Drawn,
+    ) -> Result<(), Error> {
+        let mut staged = Staged::new(&self.out)?;
+        staged.write_png("relief.png", &drawn.picture)?;
         let rays = drawn.rays.iter().flat_map(|ray| match ray {
             Some(ray) => [ray.origin[0], ray.origin[1], 1.0, ray.slope[0], ray.slope[1], -1.0],
             None => [0.0; 6],
         });
-        write_bytes(&staged.path("rays.f32"), &bytes(rays))?;
+        staged.write("rays.f32", &bytes(rays))?;
         let hits = drawn.hits.iter().flat_map(|hit| {
             let met = if hit.outcome() == Outcome::Hit { 1.0 } else { 0.0 };
             [hit.uv[0], hit.uv[1], hit.height, met]
         });
-        write_bytes(&staged.path("hits.f32"), &bytes(hits))?;
-        write_bytes(&staged.path("report.json"), &json(&self.report(drawn))?)?;
-        staged.publish()
-    }
-
-    fn report<'a>(&self, drawn: &'a Drawn) -> Report<'a> {
-        let [adapter, driver] = [0, 1].map(|i| drawn.adapter.as_ref().map(|names| names[i].as_str()));
-        Report {
-            method: self.method,
+        staged.write("hits.f32", &bytes(hits))?;
+        let ReliefSquare { map, march, material, view, .. } = square;
+        let report = Report {
+            method,
             measured: drawn.measured,
             samples_per_pixel: drawn.measured.mean_samples,
-            adapter,
-            driver,
+            adapter: gpu.map(|gpu| gpu.adapter().name.as_str()),
+            driver: gpu.map(|gpu| gpu.adapter().driver.as_str()),
             backend: self.backend,
-            scale: self.material.scale,
-            bias: -self.material.plane * self.material.scale,
-            march: self.march,
-            angle: self.view.angle,
-            azimuth: self.view.azimuth,
-            tile: self.view.tiles,
-            shadow: self.shadow,
-            map: [self.map.width(), self.map.height()],
-            size: self.view.size,
+            scale: material.scale,
+            bias: -material.plane * material.scale,
+            march: *march,
+            angle: view.angle,
+            azimuth: view.azimuth,
+            tile: view.tiles,
+            shadow: square.shadow,
+            map: [map.width(), map.height()],
+            size: view.size,
             seconds: drawn.seconds,
-        }
+        };
+        staged.write_json("report.json", &report)?;
+        staged.publish()
     }
+}
+
+fn drawn(square: &ReliefSquare, method: Method, gpu: Option<&Gpu>) -> Result<Drawn, Error> {
+    let progress = bar(4, "building maps");
+    let drawn = square.draw(method, gpu, (BACKGROUND, FINER), &|next| {
+        progress.inc(1);
+        progress.set_message(next);
+    })?;
+    progress.finish_and_clear();
+    Ok(drawn)
+}
+
+fn compared(square: &ReliefSquare, gpu: Option<&Gpu>) -> Result<Comparison, Error> {
+    let progress = bar(1, "comparing");
+    let comparison = square.compare(gpu, &|method, all| {
+        progress.set_length(all as u64);
+        progress.set_message(method.name());
+        progress.inc(1);
+    })?;
+    progress.finish_and_clear();
+    Ok(comparison)
 }
 
 fn bytes(values: impl Iterator<Item = f32>) -> Vec<u8> {
     values.flat_map(f32::to_le_bytes).collect()
+}
+
+/// One panel an angle.
+fn plot(comparison: &Comparison) -> Result<RgbaImage, InputError> {
+    let chart = |angle: f64| {
+        let series = Method::ALL.into_iter().map(|method| {
+            let all = comparison.entries.iter();
+            let here = all.filter(move |entry| entry.angle == angle && entry.method == method);
+            let point = |measured: Measured| (measured.mean_samples, measured.mean_error_texels);
+            Series {
+                name: method.name().to_owned(),
+                points: here.clone().map(|entry| point(entry.measured)).collect(),
+                labels: here.filter_map(|entry| entry.steps.map(|steps| steps.to_string())).collect(),
+            }
+        });
+        Chart {
+            title: format!("{angle}°"),
+            x_label: "texel loads a pixel".to_owned(),
+            y_label: "mean error in texels".to_owned(),
+            log_x: true,
+            log_y: true,
+            series: series.collect(),
+        }
+    };
+    let title = "Error against cost, by angle from the normal (labels: linear steps)";
+    let charts = Comparison::ANGLES.map(chart);
+    Ok(image::DynamicImage::ImageRgb8(grid(title, &charts, 2, (1200, 900))?).into_rgba8())
 }

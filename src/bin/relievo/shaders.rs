@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
+use relievo::files::Staged;
 use relievo::gpu::shaders::{ALL, MODULES, Module, Shader};
-use relievo::terrain::export::write_bytes;
 
-use crate::output::{Staged, json, say};
+use crate::output::say;
 
 /// Writes the flat WGSL of every pass, `module_<name>.wgsl` (functions to put before your own shaders: every
 /// ray-height method, zone weights, rotations, dual quaternions), and `manifest.json`: of every pass its entry points
@@ -42,15 +42,15 @@ impl Shaders {
         let mut manifest = Manifest { shaders: Vec::new(), modules: Vec::new() };
         for shader in ALL {
             let file = format!("{}.wgsl", shader.name.replace('/', "_"));
-            write_bytes(&staged.path(file.clone()), shader.source.as_bytes())?;
+            staged.write(file.clone(), shader.source.as_bytes())?;
             manifest.shaders.push(Entry { file, content: shader });
         }
         for module in MODULES {
             let file = format!("module_{}.wgsl", module.name);
-            write_bytes(&staged.path(file.clone()), module.source.as_bytes())?;
+            staged.write(file.clone(), module.source.as_bytes())?;
             manifest.modules.push(Entry { file, content: module });
         }
-        write_bytes(&staged.path("manifest.json"), &json(&manifest)?)?;
+        staged.write_json("manifest.json", &manifest)?;
         staged.publish()?;
         let (passes, modules) = (ALL.len(), MODULES.len());
         say(format_args!("{passes} shaders, {modules} modules and manifest.json in {}", self.out.display()))?;

@@ -4,26 +4,40 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
-use rayon::prelude::*;
-use relievo::terrain::blend::reference::blend;
+use clap::Args;
+use image::RgbaImage;
+use relievo::files::Staged;
+use relievo::gpu::Gpu;
+use relievo::render::picture::framing;
+use relievo::render::{Picture, Style};
 use relievo::terrain::blend::{Shading, WeightMode};
+use relievo::terrain::color_maps::ColorMaps;
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
-use relievo::terrain::export::{HeightImage, HeightRange, cropped, sha256, to_bytes, write_bytes, write_png};
+use relievo::terrain::export::{Batch, HeightImage, HeightRange, PatchReport, cropped};
 use relievo::terrain::features::{FeatureFile, Features};
 use relievo::terrain::field::field_with;
+use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
+use relievo::terrain::generator::Generator;
+use relievo::terrain::grid::Grid;
 use relievo::terrain::recipe::Recipe;
-use relievo::terrain::texture::{Texture, map_zones};
+use relievo::terrain::texture::Texture;
 use relievo::terrain::thermal::Thermal;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
-use crate::memory::Load;
-use crate::output::{Staged, json, say};
+pub use crate::arguments::Backend;
+use crate::arguments::{one_of, pair};
+use crate::memory;
+use crate::output::say;
 use crate::progress::bar;
+
+const FEATURE_MODES: [(&str, FeatureMode); 2] =
+    [("keep", FeatureMode::Keep), ("additive", FeatureMode::Additive)];
+const WEIGHT_MODES: [(&str, WeightMode); 2] =
+    [("normalized", WeightMode::Normalized), ("additive", WeightMode::Additive)];
 
 /// Generates terrain from B's JSON: heights, a colour map and a perspective view.
 ///
@@ -43,8 +57,8 @@ pub struct Terrain {
     #[arg(long, value_name = "FILE")]
     features: Vec<PathBuf>,
     /// keep: injected points stay as they are. additive: the computed value is added to them.
-    #[arg(long, value_name = "MODE", default_value = "keep")]
-    feature_mode: Mode,
+    #[arg(long, value_name = "MODE", default_value = "keep", value_parser = one_of(FEATURE_MODES))]
+    feature_mode: FeatureMode,
     /// Injects samples of a 16-bit greyscale PNG, its first sample at the first of the grid.
     #[arg(long, value_name = "PNG", requires = "every")]
     heights_from: Option<PathBuf>,
@@ -76,8 +90,8 @@ pub struct Terrain {
     #[arg(long, value_name = "TAU", allow_hyphen_values = true)]
     despike: Option<f64>,
     /// How zone weights make a colour; additive is B's.
-    #[arg(long, value_name = "MODE", default_value = "normalized")]
-    weights: Weights,
+    #[arg(long, value_name = "MODE", default_value = "normalized", value_parser = one_of(WEIGHT_MODES))]
+    weights: WeightMode,
     /// What computes: the heights are the same bits.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
@@ -95,29 +109,8 @@ pub struct Terrain {
     pub out: PathBuf,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Mode {
-    Keep,
-    Additive,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Weights {
-    Normalized,
-    Additive,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Backend {
-    #[cfg_attr(feature = "gpu", default)]
-    Gpu,
-    #[cfg_attr(not(feature = "gpu"), default)]
-    Cpu,
-}
-
 #[derive(Serialize)]
-struct Report {
+struct Report<'a> {
     adapter: Option<String>,
     driver: Option<String>,
     backend: Backend,
@@ -125,18 +118,10 @@ struct Report {
     seconds: Seconds,
     height_png: HeightRange,
     features: usize,
-    notes: Vec<String>,
+    notes: &'a [String],
 }
 
-#[derive(Serialize)]
-struct PatchReport {
-    px: i32,
-    py: i32,
-    size: u32,
-    sha256: String,
-}
-
-#[derive(Serialize, Default)]
+#[derive(Clone, Copy, Serialize, Default)]
 struct Seconds {
     generate: f64,
     render: f64,
@@ -145,31 +130,31 @@ struct Seconds {
 /// What the arguments mean, checked.
 struct Plan {
     recipe: Recipe,
-    grid: [u32; 2],
+    grid: Grid,
     patches: Vec<[i32; 2]>,
-    #[cfg_attr(not(feature = "gpu"), allow(dead_code))]
     size: [u32; 2],
     shading: Shading,
     textures: Vec<Texture>,
 }
 
 /// What either backend computes.
+#[derive(Default)]
 struct Made {
     // With one sample of margin.
     windows: Vec<Vec<i32>>,
     // One pixel a sample of each patch.
     maps: Vec<Vec<u32>>,
-    view: Option<image::RgbaImage>,
+    view: Option<RgbaImage>,
     seconds: Seconds,
-    adapter: Option<(String, String)>,
+    // Where something was drawn or computed by one.
+    gpu: Option<Gpu>,
     notes: Vec<String>,
 }
 
 /// What the demo shows of a terrain.
-#[cfg(feature = "gpu")]
 pub struct Pictures {
-    pub view: Option<image::RgbaImage>,
-    pub map: image::RgbaImage,
+    pub view: Option<RgbaImage>,
+    pub map: RgbaImage,
     pub seconds: [f64; 2],
 }
 
@@ -182,20 +167,13 @@ impl Terrain {
         Ok(ExitCode::SUCCESS)
     }
 
-    fn make(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
-        match self.backend {
-            Backend::Cpu => self.on_cpu(plan, context),
-            Backend::Gpu => self.on_gpu(plan, context),
-        }
-    }
-
     /// The view, the map, and the seconds that heights and pictures took.
-    #[cfg(feature = "gpu")]
     pub fn pictures(&self, context: &Context) -> Result<Pictures, Error> {
         let plan = self.plan()?;
         let made = self.make(&plan, context)?;
+        let map = plan.grid.mosaic(plan.recipe.config.patch_size, &made.maps);
         let Seconds { generate, render } = made.seconds;
-        Ok(Pictures { map: mosaic(&plan, &made.maps), view: made.view, seconds: [generate, render] })
+        Ok(Pictures { map, view: made.view, seconds: [generate, render] })
     }
 
     fn plan(&self) -> Result<Plan, Error> {
@@ -205,46 +183,30 @@ impl Terrain {
         let size =
             pair::<u32>("size", &self.size, 'x', "must be width x height in pixels, such as 1280x720")?;
         if size.iter().any(|edge| !(1..=4096).contains(edge)) {
-            return Err(
-                InputError::new("size", &self.size, "must be 1 to 4096 pixels along each edge").into()
-            );
+            let bound = "must be 1 to 4096 pixels along each edge";
+            return Err(InputError::new("size", &self.size, bound).into());
         }
         let thermal = self.thermal.map(|iterations| Thermal { iterations, talus: self.talus });
         thermal.map_or(Ok(()), |thermal| thermal.validate())?;
         if grid.contains(&0) {
             return Err(InputError::new("patches", &self.patches, "must be at least 1x1").into());
         }
-        let width = u64::from(config.patch_size) + 2 * self.reach();
-        let load = Load { grid, width, features: 0 };
-        load.check(&self.patches)?;
-        let patches = grid_patches(grid, origin)?;
-        let features = self.read_features(&config, load, origin)?;
-        Load { features: features.len() as u64, ..load }.check(&self.patches)?;
-        let recipe = Recipe {
-            despike: self.despike.map(|threshold| Despike { threshold }),
-            thermal,
-            features,
-            config,
-        };
+        let grid = Grid { first: origin, size: grid };
+        let despike = self.despike.map(|threshold| Despike { threshold });
+        let mut recipe = Recipe { despike, thermal, ..Recipe::new(config) };
+        let width = recipe.config.patch_size.saturating_add(recipe.reach(1).saturating_mul(2));
+        memory::check(&self.patches, grid.bytes(width, 0))?;
+        let patches = grid.patches()?;
+        recipe.features = self.read_features(&recipe.config, grid, width)?;
+        memory::check(&self.patches, grid.bytes(width, recipe.features.len() as u64))?;
         recipe.validate(&patches, 1)?;
-        let weights = match self.weights {
-            Weights::Normalized => WeightMode::Normalized,
-            Weights::Additive => WeightMode::Additive,
-        };
         let textures = Texture::of_zones(&recipe.config.zones)?;
-        Ok(Plan { recipe, grid, patches, size, shading: Shading { weights, ..Shading::default() }, textures })
+        let shading = Shading { weights: self.weights, ..Shading::default() };
+        Ok(Plan { recipe, grid, patches, size, shading, textures })
     }
 
-    fn reach(&self) -> u64 {
-        1 + u64::from(self.thermal.unwrap_or(0)) + u64::from(self.despike.is_some())
-    }
-
-    fn read_features(&self, config: &Config, load: Load, origin: [i32; 2]) -> Result<Features, Error> {
-        let mode = match self.feature_mode {
-            Mode::Keep => FeatureMode::Keep,
-            Mode::Additive => FeatureMode::Additive,
-        };
-        let mut features = Features::new(config, &[], mode)?;
+    fn read_features(&self, config: &Config, grid: Grid, width: u32) -> Result<Features, Error> {
+        let mut features = Features::new(config, &[], self.feature_mode)?;
         let mut add = |path: &PathBuf, file: &FeatureFile| {
             let added = features.add(config, file).and_then(|()| features.check(config));
             added.map_err(|source| Error::InputFile { path: path.clone(), source })
@@ -254,105 +216,116 @@ impl Terrain {
         }
         if let (Some(path), Some(every)) = (&self.heights_from, self.every) {
             let image = HeightImage::from_file(path)?;
-            let range = match &self.heights_range {
-                Some(text) => height_range(text)?,
-                None => image
-                    .range
-                    .unwrap_or(HeightRange { low: -config.scale_factor, high: config.scale_factor }),
-            };
-            load.with_samples(image.samples.len(), every).check(&self.patches)?;
-            for file in image.features(config, origin, load.grid, every, range)? {
+            let range = self.heights_range.as_deref().map(height_range).transpose()?.or(image.range);
+            let symmetric = HeightRange { low: -config.scale_factor, high: config.scale_factor };
+            // As many as there are, as far as the grid goes.
+            let samples = grid.samples(width).min(image.samples.len() as u128);
+            let injected = samples / u128::from(every.max(1)).pow(2);
+            memory::check(&self.patches, grid.bytes(width, injected as u64))?;
+            for file in image.features(config, grid.first, grid.size, every, range.unwrap_or(symmetric))? {
                 add(path, &file)?;
             }
         }
         Ok(features)
     }
 
-    fn on_cpu(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
+    fn make(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
+        let (config, count) = (&plan.recipe.config, plan.patches.len() as u64);
+        let maps = ColorMaps { config, textures: &plan.textures, shading: &plan.shading };
+        let gpu = self.backend.gpu(context)?;
+        let mut made = Made { gpu, ..Made::default() };
         let start = Instant::now();
-        let progress = bar(plan.patches.len() as u64, "generating");
-        let windows = field_with(&plan.recipe, &plan.patches, 1, &|| progress.inc(1))?;
+        let progress = bar(count, "generating");
+        let Some(gpu) = made.gpu.clone() else {
+            made.windows = field_with(&plan.recipe, &plan.patches, 1, &|| progress.inc(1))?;
+            progress.finish_and_clear();
+            made.seconds.generate = start.elapsed().as_secs_f64();
+            let (start, progress) = (Instant::now(), bar(count, "colouring"));
+            made.maps = maps.on_host(&made.windows, &|| progress.inc(1));
+            progress.finish_and_clear();
+            self.draw_on_host(plan, context, &mut made)?;
+            made.seconds.render = start.elapsed().as_secs_f64();
+            return Ok(made);
+        };
+        let generator = Generator::new(&gpu, plan.recipe.clone())?;
+        let parts = generator.generate(&gpu, &plan.patches, 1, &mut |done| progress.inc(done as u64))?;
         progress.finish_and_clear();
-        let generate = start.elapsed().as_secs_f64();
+        for part in &parts {
+            made.windows.extend(part.read_blocking(&gpu)?);
+        }
+        made.seconds.generate = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let config = &plan.recipe.config;
-        let zones = map_zones(&config.zones, &plan.textures);
-        let width = config.patch_size as usize + 2;
-        let progress = bar(plan.patches.len() as u64, "colouring");
-        let map = |window: &Vec<i32>| {
-            let pixels = blend(window, width, config.terrain_scale, &zones, &plan.shading);
-            progress.inc(1);
-            pixels
-        };
-        let maps = windows.par_iter().map(map).collect();
-        progress.finish_and_clear();
-        let mut made = Made {
-            windows,
-            maps,
-            view: None,
-            seconds: Seconds { generate, render: 0.0 },
-            adapter: None,
-            notes: Vec::new(),
-        };
-        self.view_of_cpu_heights(plan, context, &mut made)?;
+        made.maps = maps.on_device(&gpu, &parts)?;
+        made.view = Some(self.view(&gpu, plan, &parts, &made.windows)?);
         made.seconds.render = start.elapsed().as_secs_f64();
         Ok(made)
     }
 
-    #[cfg(not(feature = "gpu"))]
-    fn on_gpu(&self, _: &Plan, _: &Context) -> Result<Made, Error> {
-        Err(InputError::new(
-            "backend",
-            "gpu",
-            "must be cpu: this program was built without the feature `gpu`",
-        )
-        .into())
+    /// Draws heights that the CPU made, where there is an adapter: the heights need none.
+    fn draw_on_host(&self, plan: &Plan, context: &Context, made: &mut Made) -> Result<(), Error> {
+        let drawn = context.gpu().and_then(|gpu| {
+            let parts = Fields::of_windows(&gpu, plan.recipe.config.patch_size + 2, &made.windows)?;
+            Ok((self.view(&gpu, plan, &parts, &made.windows)?, gpu))
+        });
+        match drawn {
+            Err(Error::Gpu(error)) => made.notes.push(format!("terrain.png was not made: {error}")),
+            drawn => {
+                let (view, gpu) = drawn?;
+                (made.view, made.gpu) = (Some(view), Some(gpu));
+            }
+        }
+        Ok(())
     }
 
-    #[cfg(not(feature = "gpu"))]
-    fn view_of_cpu_heights(&self, _: &Plan, _: &Context, made: &mut Made) -> Result<(), Error> {
-        made.notes
-            .push("terrain.png was not made: this program was built without the feature `gpu`".to_owned());
-        Ok(())
+    fn view(
+        &self,
+        gpu: &Gpu,
+        plan: &Plan,
+        parts: &[Fields],
+        windows: &[Vec<i32>],
+    ) -> Result<RgbaImage, Error> {
+        let config = &plan.recipe.config;
+        let picture = Picture {
+            config,
+            textures: &plan.textures,
+            shading: plan.shading,
+            style: if self.wireframe { Style::Wireframe } else { Style::Textured },
+            camera: framing(config, plan.grid.size, windows.iter().flatten()),
+            size: plan.size,
+        };
+        picture.draw(gpu, parts, &plan.patches)
     }
 
     fn write(&self, plan: &Plan, made: &Made, mut staged: Staged) -> Result<(), Error> {
         let config = &plan.recipe.config;
-        let (size, width) = (config.patch_size, config.patch_size as usize + 2);
+        let size = config.patch_size;
         let progress = bar(plan.patches.len() as u64, "writing");
-        let fields: Vec<_> = made.windows.iter().map(|window| cropped(window, width, 1)).collect();
-        let ranges = fields.iter().map(|heights| HeightRange::of(heights));
+        let heights: Vec<_> =
+            made.windows.iter().map(|window| cropped(window, size as usize + 2, 1)).collect();
+        let ranges = heights.iter().map(|heights| HeightRange::of(heights));
         let range = ranges.reduce(HeightRange::union).unwrap_or(HeightRange { low: 0.0, high: 0.0 });
-        let mut reports = Vec::new();
-        for ([px, py], heights) in plan.patches.iter().zip(&fields) {
-            write_png(&staged.path(format!("heights_{px}_{py}.png")), heights, size, range)?;
-            write_bytes(&staged.path(format!("heights_{px}_{py}.i32")), &to_bytes(heights))?;
-            if self.obj {
-                write_obj(&staged.path(format!("patch_{px}_{py}.obj")), heights, config, [*px, *py])?;
-            }
-            reports.push(PatchReport { px: *px, py: *py, size, sha256: sha256(heights) });
-            progress.inc(1);
-        }
+        let batch = Batch { config, patches: &plan.patches, heights: &heights, range, obj: self.obj };
+        let patches = batch.write(|name| staged.path(name), || progress.inc(1))?;
         progress.finish_and_clear();
-        save(&staged.path("map.png"), &mosaic(plan, &made.maps))?;
+        staged.write_png("map.png", &plan.grid.mosaic(size, &made.maps))?;
         match &made.view {
-            Some(view) => save(&staged.path("terrain.png"), view)?,
+            Some(view) => staged.write_png("terrain.png", view)?,
             // One of an earlier run would show other heights.
             None => staged.remove("terrain.png"),
         }
-        let (adapter, driver) = made.adapter.clone().unzip();
+        let adapter = made.gpu.as_ref().map(|gpu| gpu.adapter());
         let report = Report {
-            adapter,
-            driver,
+            adapter: adapter.map(|adapter| adapter.name.clone()),
+            driver: adapter.map(|adapter| adapter.driver.clone()),
             backend: self.backend,
-            patches: reports,
-            seconds: Seconds { ..made.seconds },
+            patches,
+            seconds: made.seconds,
             height_png: range,
             features: plan.recipe.features.len(),
-            notes: made.notes.clone(),
+            notes: &made.notes,
         };
-        write_bytes(&staged.path("report.json"), &json(&report)?)?;
-        staged.remove_stale(is_of_a_patch);
+        staged.write_json("report.json", &report)?;
+        staged.remove_stale(Batch::is_name);
         staged.publish()?;
         say(format_args!(
             "{} patches of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",
@@ -362,193 +335,6 @@ impl Terrain {
             self.out.display()
         ))?;
         made.notes.iter().try_for_each(say)
-    }
-}
-
-#[cfg(feature = "gpu")]
-mod on_device {
-    use relievo::gpu::{Buffer, Gpu};
-    use relievo::render::{Picture, Style, picture::framing};
-    use relievo::terrain::blend::BlendPass;
-    use relievo::terrain::fields::Fields;
-    use relievo::terrain::generator::Generator;
-
-    use super::*;
-
-    impl Terrain {
-        pub(super) fn on_gpu(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
-            let gpu = context.gpu()?;
-            let start = Instant::now();
-            let progress = bar(plan.patches.len() as u64, "generating");
-            let generator = Generator::new(&gpu, plan.recipe.clone())?;
-            let parts = generator.generate(&gpu, &plan.patches, 1, &mut |done| progress.inc(done as u64))?;
-            progress.finish_and_clear();
-            let mut windows = Vec::new();
-            for part in &parts {
-                windows.extend(read_windows(&gpu, part)?);
-            }
-            let generate = start.elapsed().as_secs_f64();
-            let start = Instant::now();
-            let pass = BlendPass::new(&gpu)?;
-            let mut maps = Vec::new();
-            for part in &parts {
-                maps.extend(self.maps(&gpu, plan, &pass, part)?);
-            }
-            let view = self.view(&gpu, plan, &parts, &windows)?;
-            let adapter = gpu.adapter();
-            Ok(Made {
-                windows,
-                maps,
-                view: Some(view),
-                seconds: Seconds { generate, render: start.elapsed().as_secs_f64() },
-                adapter: Some((adapter.name.clone(), adapter.driver.clone())),
-                notes: Vec::new(),
-            })
-        }
-
-        fn maps(
-            &self,
-            gpu: &Gpu,
-            plan: &Plan,
-            pass: &BlendPass,
-            part: &Fields,
-        ) -> Result<Vec<Vec<u32>>, Error> {
-            let config = &plan.recipe.config;
-            let points = (config.patch_size as usize).pow(2);
-            let pixels = Buffer::new(gpu, "colour map", points * part.count as usize)?;
-            let zones = map_zones(&config.zones, &plan.textures);
-            let job = pass.prepare(gpu, config.terrain_scale, &zones, &plan.shading, part, &pixels)?;
-            gpu.run("colour map", |encoder| job.record(encoder))?;
-            Ok(pixels.read_blocking(gpu)?.chunks_exact(points).map(<[u32]>::to_vec).collect())
-        }
-
-        fn view(
-            &self,
-            gpu: &Gpu,
-            plan: &Plan,
-            parts: &[Fields],
-            windows: &[Vec<i32>],
-        ) -> Result<image::RgbaImage, Error> {
-            let picture = Picture {
-                config: &plan.recipe.config,
-                textures: &plan.textures,
-                shading: plan.shading,
-                style: if self.wireframe { Style::Wireframe } else { Style::Textured },
-                camera: framing(&plan.recipe.config, plan.grid, windows.iter().flatten()),
-                size: plan.size,
-            };
-            picture.draw(gpu, parts, &plan.patches)
-        }
-
-        /// Draws heights that the CPU made, where there is an adapter.
-        pub(super) fn view_of_cpu_heights(
-            &self,
-            plan: &Plan,
-            context: &Context,
-            made: &mut Made,
-        ) -> Result<(), Error> {
-            match context.gpu().and_then(|gpu| self.draw_cpu_heights(plan, &gpu, made)) {
-                // The heights need no device.
-                Err(Error::Gpu(error)) => made.notes.push(format!("terrain.png was not made: {error}")),
-                drawn => drawn?,
-            }
-            Ok(())
-        }
-
-        fn draw_cpu_heights(&self, plan: &Plan, gpu: &Gpu, made: &mut Made) -> Result<(), Error> {
-            let width = plan.recipe.config.patch_size + 2;
-            let per_part = Fields::most(gpu, width);
-            let mut parts = Vec::new();
-            for windows in made.windows.chunks(per_part) {
-                let fields = Fields::new(gpu, "terrain heights", width, windows.len() as u32)?;
-                fields.heights.write(gpu, &windows.concat())?;
-                parts.push(fields);
-            }
-            made.view = Some(self.view(gpu, plan, &parts, &made.windows)?);
-            made.adapter = Some((gpu.adapter().name.clone(), gpu.adapter().driver.clone()));
-            Ok(())
-        }
-    }
-
-    fn read_windows(gpu: &Gpu, part: &Fields) -> Result<Vec<Vec<i32>>, Error> {
-        let points = (part.width as usize).pow(2);
-        let all = part.heights.read_blocking(gpu)?;
-        Ok(all.chunks_exact(points).take(part.count as usize).map(<[i32]>::to_vec).collect())
-    }
-}
-
-/// The patches of a grid, row by row.
-fn grid_patches(grid: [u32; 2], origin: [i32; 2]) -> Result<Vec<[i32; 2]>, Error> {
-    let coordinate = |origin: i32, index: u32, axis: usize| {
-        i32::try_from(i64::from(origin) + i64::from(index))
-            .map_err(|_| InputError::new(format!("origin[{axis}]"), origin, "patch coordinates must fit i32"))
-    };
-    let mut patches = Vec::new();
-    for (y, x) in (0..grid[1]).flat_map(|y| (0..grid[0]).map(move |x| (y, x))) {
-        patches.push([coordinate(origin[0], x, 0)?, coordinate(origin[1], y, 1)?]);
-    }
-    Ok(patches)
-}
-
-/// Whether a file's name is one that a patch's files have.
-fn is_of_a_patch(name: &str) -> bool {
-    let Some((stem, extension)) = name.rsplit_once('.') else { return false };
-    let coordinates = match extension {
-        "png" | "i32" => stem.strip_prefix("heights_"),
-        "obj" => stem.strip_prefix("patch_"),
-        _ => None,
-    };
-    let canonical = |text: &str| text.parse::<i32>().is_ok_and(|number| number.to_string() == text);
-    coordinates.and_then(|text| text.split_once('_')).is_some_and(|(px, py)| canonical(px) && canonical(py))
-}
-
-/// The patches' maps in one image; neighbours share a row or column of pixels.
-fn mosaic(plan: &Plan, maps: &[Vec<u32>]) -> image::RgbaImage {
-    let size = plan.recipe.config.patch_size;
-    let edge = size - 1;
-    let mut image = image::RgbaImage::new(plan.grid[0] * edge + 1, plan.grid[1] * edge + 1);
-    for (index, map) in maps.iter().enumerate() {
-        let (left, top) = (index as u32 % plan.grid[0] * edge, index as u32 / plan.grid[0] * edge);
-        for (at, pixel) in map.iter().enumerate() {
-            let (x, y) = (at as u32 % size, at as u32 / size);
-            image.put_pixel(left + x, top + y, image::Rgba(pixel.to_le_bytes()));
-        }
-    }
-    image
-}
-
-/// Writes a PNG.
-pub fn save(path: &std::path::Path, image: &image::RgbaImage) -> Result<(), Error> {
-    // In memory first: the image crate forgets what the disk says about the last bytes.
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut bytes, image::ImageFormat::Png).map_err(|error| Error::output(path, error))?;
-    write_bytes(path, bytes.get_ref())
-}
-
-fn write_obj(path: &std::path::Path, heights: &[i32], config: &Config, patch: [i32; 2]) -> Result<(), Error> {
-    let first = patch.map(|index| i64::from(index) * (i64::from(config.patch_size) - 1));
-    let field = relievo::terrain::mesh::HeightField::new(
-        heights.to_vec(),
-        config.patch_size as usize,
-        config.terrain_scale,
-    );
-    let mut text = Vec::new();
-    if let Some(field) = field {
-        field.write_obj(&mut text, first).map_err(|error| Error::output(path, error))?;
-    }
-    write_bytes(path, &text)
-}
-
-pub fn pair<T: std::str::FromStr>(
-    field: &str,
-    text: &str,
-    separator: char,
-    bound: &str,
-) -> Result<[T; 2], InputError> {
-    let (first, second) = text.split_once(separator).unwrap_or((text, ""));
-    match (first.trim().parse(), second.trim().parse()) {
-        (Ok(first), Ok(second)) => Ok([first, second]),
-        _ => Err(InputError::new(field, text, bound)),
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use relievo::Error;
 use relievo::animation::{GateTable, lod::OMEGA_ONE};
-use relievo::terrain::export::write_bytes;
+use relievo::files::Staged;
 use serde::Serialize;
 
 use super::errors::{Errors, Jump};
@@ -17,10 +17,9 @@ use super::report::{self, picture};
 use super::stage::{Scene, Stage, moving_bones};
 use super::twin::Twins;
 use super::verdict::{Verdicts, table as verdict_table};
-use crate::output::{Staged, json, say};
+use crate::output::say;
 use crate::plot::{Chart, Series};
 use crate::progress::bar;
-use crate::terrain::save;
 
 /// Gates in the order of reports.
 pub const MODES: [Mode; 5] = [Mode::Bounded, Mode::Budget, Mode::Uniform, Mode::Random, Mode::SkipPeriod];
@@ -82,9 +81,9 @@ pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
         verdicts: &verdicts,
     };
     let [pareto, largest, rms] = FILES;
-    write_bytes(&staged.path(pareto), &json(&report)?)?;
-    save(&staged.path(largest), &picture(chart(plan, &points, "Largest", |error| error.max_pixels))?)?;
-    save(&staged.path(rms), &picture(chart(plan, &points, "Rms", |error| error.rms_pixels))?)?;
+    staged.write_json(pareto, &report)?;
+    staged.write_png(largest, &picture(chart(plan, &points, "Largest", |error| error.max_pixels))?)?;
+    staged.write_png(rms, &picture(chart(plan, &points, "Rms", |error| error.rms_pixels))?)?;
     staged.remove_stale(report::is_ours);
     staged.publish()?;
     say(format_args!("{}\n{}", table(&points), verdict_table(&verdicts).trim_end()))

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use relievo::terrain::export::write_bytes;
+use relievo::files::Staged;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -15,10 +15,10 @@ use super::stage::{Stage, mean_omega, moving_bones};
 use super::twin::Twins;
 use super::{Layout, pareto};
 use crate::Context;
-use crate::output::{Staged, json, say};
+use crate::output::say;
 use crate::plot::{Chart, Series, grid};
 use crate::progress::bar;
-use crate::terrain::{Backend, save};
+use crate::terrain::Backend;
 
 /// Pixels of a plot.
 const SIZE: (u32, u32) = (800, 500);
@@ -171,13 +171,13 @@ impl On {
 pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     let mut staged = Staged::new(out)?;
     let report = measured(plan, context)?;
-    write_bytes(&staged.path("report.json"), &json(&report)?)?;
+    staged.write_json("report.json", &report)?;
     for (name, chart) in charts(&report) {
-        save(&staged.path(name), &picture(chart)?)?;
+        staged.write_png(name, &picture(chart)?)?;
     }
     #[cfg(feature = "gpu")]
     for (name, picture) in &report.pictures {
-        save(&staged.path(name), picture)?;
+        staged.write_png(name, picture)?;
     }
     staged.remove_stale(is_ours);
     staged.publish()?;

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use relievo::Error;
+use relievo::files::Staged;
 use relievo::gpu::Gpu;
-use relievo::terrain::export::write_bytes;
 use serde::Serialize;
 
 use super::drawn::{By, Drawing, Way, fade, level_begins};
@@ -18,10 +18,9 @@ use super::triangles::{LevelReport, Triangles};
 use super::vertices::Figures;
 use super::{Layout, SCENE_FILES, plan::Plan};
 use crate::Context;
-use crate::output::{Staged, json, say};
+use crate::output::say;
 use crate::plot::{Chart, Series};
 use crate::progress::bar;
-use crate::terrain::save;
 
 /// What is compared, as reports and plots call it; the last where meshes have levels.
 const NAMES: [&str; 5] = ["off", "animation", "skinning", "both", "all"];
@@ -112,14 +111,14 @@ pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
         let chosen = (&table, mode.choice(plan.period, budget), &lods[..]);
         let mut drawing = Drawing::new(&gpu, &stage, &scene, chosen, &ways)?;
         let figures = drawing.run(|| progress.inc(1))?;
-        save(&staged.path(file_name(*distance)), &drawing.picture(ways.len() - 1)?)?;
+        staged.write_png(file_name(*distance), &drawing.picture(ways.len() - 1)?)?;
         rows.push(row(&stage, *distance, mean_omega(&lods), &figures));
     }
     progress.finish_and_clear();
     let report = report(&stage, &gpu, rows)?;
     let [figures, chart] = SCENE_FILES;
-    write_bytes(&staged.path(figures), &json(&report)?)?;
-    save(&staged.path(chart), &picture(curves(&report))?)?;
+    staged.write_json(figures, &report)?;
+    staged.write_png(chart, &picture(curves(&report))?)?;
     staged.remove_stale(super::report::is_ours);
     staged.publish()?;
     say(lines(&report).trim_end())

@@ -4,30 +4,30 @@ use std::time::Instant;
 
 use relievo::Error;
 
-use super::{Entry, Page};
+use super::{Entry, Page, entry};
 use crate::skin::Skin;
 
 const ENTRIES: &[Entry] = &[
-    Entry {
-        name: "skin_walk",
-        title: "The built-in creature, 153 bones and 5,284 vertices, as it walks",
-        arguments: &["--model", "builtin", "--clip", "walk", "--time", "0.3"],
-    },
-    Entry {
-        name: "skin_rigid",
-        title: "The same where all influences but the strongest have faded, as far away",
-        arguments: &["--model", "builtin", "--clip", "walk", "--time", "0.3", "--influences", "fade:1"],
-    },
-    Entry {
-        name: "skin_within",
-        title: "The same with a tenth of its triangles: within 14 millimetres of it in every pose of the walk",
-        arguments: &["--model", "builtin", "--clip", "walk", "--time", "0.3", "--within", "0.014"],
-    },
-    Entry {
-        name: "skin_dual",
-        title: "It waves, blended by dual quaternions",
-        arguments: &["--model", "builtin", "--clip", "wave", "--time", "0.8", "--dual-quaternion"],
-    },
+    entry(
+        "skin_walk",
+        "The built-in creature, 153 bones and 5,284 vertices, as it walks",
+        "--model builtin --clip walk --time 0.3",
+    ),
+    entry(
+        "skin_rigid",
+        "The same where all influences but the strongest have faded, as far away",
+        "--model builtin --clip walk --time 0.3 --influences fade:1",
+    ),
+    entry(
+        "skin_within",
+        "The same with a tenth of its triangles: within 14 millimetres of it in every pose of the walk",
+        "--model builtin --clip walk --time 0.3 --within 0.014",
+    ),
+    entry(
+        "skin_dual",
+        "It waves, blended by dual quaternions",
+        "--model builtin --clip wave --time 0.8 --dual-quaternion",
+    ),
 ];
 
 /// How many pictures there are.
@@ -35,12 +35,10 @@ pub const COUNT: usize = ENTRIES.len();
 
 /// Draws every entry onto the page.
 pub fn draw(page: &mut Page<'_>) -> Result<(), Error> {
-    for entry in ENTRIES {
-        page.progress.set_message(entry.name);
+    page.draw("skin", ENTRIES, &[], |command: &Skin, context| {
         let start = Instant::now();
-        let picture = entry.command::<Skin>("skin", &[])?.picture(page.context)?;
+        let picture = command.picture(context)?;
         let seconds = start.elapsed().as_secs_f64();
-        page.show("skin", entry, &picture, &format!("{seconds:.3} s (first use compiles the kernels)"))?;
-    }
-    Ok(())
+        Ok((picture, format!("{seconds:.3} s (first use compiles the kernels)")))
+    })
 }

@@ -8,9 +8,9 @@ use image::RgbImage;
 use image::imageops::FilterType;
 use plotters::backend::BitMapBackend;
 
+use crate::InputError;
 use axis::Axis;
 use picture::Picture;
-use relievo::InputError;
 
 /// Pixels drawn for each that is shown, in each direction: plotters does not smooth polygons.
 const FINER: u32 = 2;

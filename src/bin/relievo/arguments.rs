@@ -1,0 +1,50 @@
+//! What the arguments of several commands have in common.
+
+use std::str::FromStr;
+
+use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use relievo::gpu::Gpu;
+use relievo::{Error, InputError};
+use serde::Serialize;
+
+use crate::Context;
+
+/// What computes.
+#[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Backend {
+    #[default]
+    Gpu,
+    Cpu,
+}
+
+impl Backend {
+    /// The device, where it is the device that computes.
+    pub fn gpu(self, context: &Context) -> Result<Option<Gpu>, Error> {
+        match self {
+            Self::Gpu => context.gpu().map(Some),
+            Self::Cpu => Ok(None),
+        }
+    }
+}
+
+/// A parser of names that stand for values.
+pub fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    values: [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    let find = move |name: String| {
+        let found = values.into_iter().find(|(other, _)| *other == name);
+        found.map(|(_, value)| value).ok_or("is none of these")
+    };
+    PossibleValuesParser::new(values.map(|(name, _)| name)).try_map(find)
+}
+
+/// Two values with a separator between them.
+pub fn pair<T: FromStr>(field: &str, text: &str, separator: char, bound: &str) -> Result<[T; 2], InputError> {
+    let (first, second) = text.split_once(separator).unwrap_or((text, ""));
+    match (first.trim().parse(), second.trim().parse()) {
+        (Ok(first), Ok(second)) => Ok([first, second]),
+        _ => Err(InputError::new(field, text, bound)),
+    }
+}

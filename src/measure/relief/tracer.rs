@@ -1,0 +1,109 @@
+//! What traces rays and draws pictures: the adapter or the CPU.
+
+use image::RgbaImage;
+
+use super::ReliefSquare;
+use crate::Error;
+use crate::gpu::{Buffer, Gpu};
+use crate::render::SquarePicture;
+use crate::surface::picture::Scene;
+use crate::surface::relief::ReliefPass;
+use crate::surface::relief::reference::Surface;
+use crate::surface::{Address, HeightMap, Hit, March, Method, Ray, SurfaceTextures};
+
+/// Rays of one list: their hits fit a binding of any device.
+const LIST: usize = 1 << 22;
+
+/// A method with its maps, ready to trace.
+pub(super) enum Tracer<'a> {
+    Cpu(Method, Surface<'a>),
+    Gpu(Box<Device>),
+}
+
+pub(super) struct Device {
+    gpu: Gpu,
+    textures: SurfaceTextures,
+    pass: ReliefPass,
+}
+
+impl<'a> Tracer<'a> {
+    pub fn new(
+        map: &'a HeightMap,
+        method: Method,
+        address: Address,
+        gpu: Option<&Gpu>,
+    ) -> Result<Self, Error> {
+        let Some(gpu) = gpu else { return Ok(Self::Cpu(method, Surface::new(map, method, address))) };
+        let textures = SurfaceTextures::new(gpu, map, method, address)?;
+        let pass = ReliefPass::new(gpu, method)?;
+        Ok(Self::Gpu(Box::new(Device { gpu: gpu.clone(), textures, pass })))
+    }
+
+    pub fn trace(&self, rays: &[Ray], march: &March) -> Result<Vec<Hit>, Error> {
+        match self {
+            Self::Cpu(method, surface) => Ok(surface.trace_all(*method, rays, march)),
+            Self::Gpu(device) => device.trace(rays, march),
+        }
+    }
+
+    /// The picture, drawn with `finer` × `finer` samples a pixel.
+    pub fn picture(
+        &self,
+        square: &ReliefSquare,
+        background: [f32; 3],
+        finer: u32,
+    ) -> Result<RgbaImage, Error> {
+        match self {
+            Self::Cpu(method, surface) => {
+                let scene = Scene {
+                    surface,
+                    method: *method,
+                    march: &square.march,
+                    albedo: &square.albedo,
+                    normals: square.normals.as_ref(),
+                    green: square.green,
+                    shadow: square.shadow,
+                    silhouette: square.silhouette,
+                    material: &square.material,
+                    view: square.view.scaled(finer),
+                };
+                Ok(scene.draw(background).reduced(finer).encoded())
+            }
+            Self::Gpu(device) => device.picture(square, background, finer),
+        }
+    }
+}
+
+impl Device {
+    fn trace(&self, rays: &[Ray], march: &March) -> Result<Vec<Hit>, Error> {
+        let mut all = Vec::with_capacity(rays.len());
+        for list in rays.chunks(LIST) {
+            let input = Buffer::from_slice(&self.gpu, "rays", list)?;
+            let output = Buffer::new(&self.gpu, "hits", list.len())?;
+            let job = self.pass.prepare(&self.gpu, &self.textures, march, &input, &output)?;
+            self.gpu.run("relief", |encoder| job.record(encoder))?;
+            all.extend(output.read_blocking(&self.gpu)?);
+        }
+        Ok(all)
+    }
+
+    fn picture(&self, square: &ReliefSquare, background: [f32; 3], finer: u32) -> Result<RgbaImage, Error> {
+        let available = self.gpu.device().limits().max_texture_dimension_2d;
+        let size = square.view.size;
+        let bytes = 4 * u64::from(finer * finer) * size.iter().map(|edge| u64::from(*edge)).product::<u64>();
+        let fits = size.iter().all(|edge| finer * edge <= available) && bytes <= self.gpu.max_binding();
+        let finer = if fits { finer } else { 1 };
+        let picture = SquarePicture {
+            textures: &self.textures,
+            albedo: &square.albedo,
+            normals: square.normals.as_ref(),
+            green: square.green,
+            shadow: square.shadow,
+            silhouette: square.silhouette,
+            material: square.material,
+            march: square.march,
+            view: square.view.scaled(finer),
+        };
+        Ok(picture.draw(&self.gpu, background)?.reduced(finer).encoded())
+    }
+}

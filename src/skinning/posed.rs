@@ -1,0 +1,101 @@
+//! A whole model at a moment of a clip: where its vertices are, and a picture of them. What the command line draws without
+//! a GPU; `render::posed` has the same on the device.
+
+use image::RgbaImage;
+
+use super::Reduction;
+use super::morph::reference::morph;
+use super::palette::reference::palette_for;
+use super::picture::reference::{Part, Scene};
+use super::picture::texture::Surface;
+use super::picture::{Light, framing};
+use super::skin::reference::skin;
+use super::vertex::{Blend, Vertex};
+use crate::InputError;
+use crate::animation::Pose;
+use crate::asset::mesh::COORDINATE_LIMIT;
+use crate::asset::{Mesh, Model};
+
+/// A model at a moment.
+#[derive(Debug, Clone, Copy)]
+pub struct PosedModel<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Which of its clips plays.
+    pub clip: usize,
+    /// Seconds, inside the clip.
+    pub time: f32,
+    /// Which influences count.
+    pub reduction: Reduction,
+    /// How they are blended.
+    pub blend: Blend,
+}
+
+/// How a square picture of a model is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Portrait {
+    /// Pixels along an edge.
+    pub edge: u32,
+    /// Samples along a pixel's edge.
+    pub finer: u32,
+    /// Linear colour behind the model.
+    pub background: [f32; 3],
+    /// Linear colour of meshes without a material.
+    pub clay: [f32; 3],
+}
+
+impl PosedModel<'_> {
+    /// The vertices of each mesh in its order, in the model's space, and a picture of them all in the middle.
+    ///
+    /// # Errors
+    /// [`InputError`] for vertices that large scales have driven out of range, and a material or an image that the model
+    /// lacks.
+    pub fn on_host(&self, portrait: &Portrait) -> Result<(Vec<Vec<Vertex>>, RgbaImage), InputError> {
+        let vertices = self.vertices()?;
+        let scene = Scene {
+            clip_from_model: framing(vertices.iter().flatten()),
+            light: Light::default(),
+            size: [portrait.finer * portrait.edge; 2],
+        };
+        let surface = |mesh: &Mesh| {
+            let material = self.model.material(mesh)?;
+            Ok(material.map_or(Surface::plain(portrait.clay), |material| Surface::of(self.model, material)))
+        };
+        let surfaces = self.model.meshes.iter().map(surface).collect::<Result<Vec<_>, InputError>>()?;
+        let parts: Vec<_> = (self.model.meshes.iter().zip(&vertices).zip(&surfaces))
+            .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
+            .collect();
+        let picture = scene.draw(&parts, portrait.background).reduced(portrait.finer).encoded();
+        Ok((vertices, picture))
+    }
+
+    fn vertices(&self) -> Result<Vec<Vec<Vertex>>, InputError> {
+        let model = self.model;
+        let pose = Pose::on_host(&model.skeleton, &model.clips[self.clip], self.time);
+        let skinned = model.meshes.iter().map(|mesh| {
+            let palette = palette_for(&model.skins[mesh.skin], &pose.model_matrices, self.blend);
+            skin(&morph(mesh, &self.weights(mesh)), &mesh.influences, &palette, self.reduction)
+        });
+        let skinned: Vec<Vec<Vertex>> = skinned.collect();
+        skinned.iter().enumerate().try_for_each(|(mesh, vertices)| check_range(mesh, vertices))?;
+        Ok(skinned)
+    }
+
+    /// The weights of a mesh's morph targets.
+    pub(crate) fn weights(&self, mesh: &Mesh) -> Vec<f32> {
+        mesh.weights_at(self.clip, self.time)
+    }
+}
+
+/// Refuses vertices that large scales have driven out of range.
+pub(crate) fn check_range(mesh: usize, vertices: &[Vertex]) -> Result<(), InputError> {
+    let is_good = |value: &f32| value.abs() <= COORDINATE_LIMIT;
+    match vertices.iter().position(|vertex| !vertex.position.iter().all(is_good)) {
+        None => Ok(()),
+        Some(at) => {
+            let bound = format!("must be within ±{COORDINATE_LIMIT:e}: scales or weights are too large");
+            let value = format!("{:?}", vertices[at].position);
+            Err(InputError::new(format!("meshes[{mesh}].positions[{at}]"), value, bound))
+        }
+    }
+}
