@@ -41,7 +41,7 @@ impl Pose {
     pub fn on_device(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Self, Error> {
         let crowd = posed(gpu, skeleton, clip, time)?;
         let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
-        Ok(Self { locals, model_matrices: crowd.models.read_blocking(gpu)? })
+        Ok(Self { locals, model_matrices: crowd.model_matrices().read_blocking(gpu)? })
     }
 
     /// Refuses model matrices that chains of large scales have driven out of the range of `f32`.

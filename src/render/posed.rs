@@ -6,7 +6,6 @@ use image::{Rgba, RgbaImage};
 use super::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use super::target::{LINEAR_FORMAT, Target};
 use super::{Albedo, ColorTexture};
-use crate::animation::ModelMatrices;
 use crate::animation::crowd::Crowd;
 use crate::animation::pose::posed;
 use crate::asset::transform::AFFINE_IDENTITY;
@@ -59,8 +58,7 @@ fn skinned_mesh(
     posed: &Crowd,
     albedo: &Albedo,
 ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
-    let matrices = ModelMatrices::new(&posed.models);
-    let frame = SkinFrame::new(gpu, moment.model, mesh, &matrices, 1, moment.blend)?;
+    let frame = SkinFrame::new(gpu, moment.model, mesh, posed.model_matrices(), 1, moment.blend)?;
     frame.crowd.reductions.write(gpu, &[moment.reduction])?;
     frame.crowd.weights.write(gpu, &moment.weights(&moment.model.meshes[mesh]))?;
     gpu.run("skin", |encoder| frame.record_all(encoder))?;
