@@ -1,6 +1,6 @@
 //! Where every bone is at a moment of a clip, on the host or, as a crowd of one, on the device.
 
-use super::concat::reference::concat;
+use super::local_to_model::reference::local_to_model;
 use super::sample::reference::sample;
 use crate::InputError;
 use crate::asset::keyframe::RotationPath;
@@ -8,10 +8,10 @@ use crate::asset::{Affine, Clip, Skeleton, Transform};
 #[cfg(feature = "gpu")]
 use {
     super::clip_set::ClipSet,
-    super::concat::{ConcatPass, Walk},
     super::crowd::{ClipBuffers, Crowd, unpacked},
     super::instance::{Instance, Wrap},
-    super::place::PlacePass,
+    super::keyframe_cursor::KeyframeCursorPass,
+    super::local_to_model::{LocalToModelPass, Walk},
     super::sample::SamplePass,
     crate::Error,
     crate::gpu::Gpu,
@@ -30,7 +30,7 @@ impl Pose {
     /// The pose at a time inside a clip ([`Wrap::inside`](super::Wrap::inside)).
     pub fn on_host(skeleton: &Skeleton, clip: &Clip, time: f32) -> Self {
         let locals = sample(clip, time, RotationPath::Slerp);
-        Self { model_matrices: concat(skeleton, &locals), locals }
+        Self { model_matrices: local_to_model(skeleton, &locals), locals }
     }
 
     /// The same, equal within rounding. Waits for the device.
@@ -68,13 +68,13 @@ pub(crate) fn posed(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> R
     let clips = ClipBuffers::new(gpu, &set)?;
     // The time is inside the clip already, and its end is not its start here.
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
-    let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
+    let place = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, skeleton, &crowd)?;
+    let local_to_model = LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(gpu, skeleton, &crowd)?;
     gpu.run("pose", |encoder| {
         place.record(encoder);
         sample.record(encoder);
-        concat.record(encoder);
+        local_to_model.record(encoder);
     })?;
     Ok(crowd)
 }

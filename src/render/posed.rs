@@ -59,7 +59,7 @@ fn skinned_mesh(
     albedo: &Albedo,
 ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
     let frame = SkinFrame::new(gpu, moment.model, mesh, posed.model_matrices(), 1, moment.blend)?;
-    frame.crowd.reductions.write(gpu, &[moment.reduction])?;
+    frame.crowd.instance_lods.write(gpu, &[moment.instance_lod])?;
     frame.crowd.weights.write(gpu, &moment.weights(&moment.model.meshes[mesh]))?;
     gpu.run("skin", |encoder| frame.record_all(encoder))?;
     let instances = SkinnedInstances {

@@ -3,7 +3,7 @@
 
 use image::RgbaImage;
 
-use super::Reduction;
+use super::InstanceLod;
 use super::morph::reference::morph;
 use super::palette::reference::palette_for;
 use super::picture::reference::{Part, Scene};
@@ -26,7 +26,7 @@ pub struct PosedModel<'a> {
     /// Seconds, inside the clip.
     pub time: f32,
     /// Which influences count.
-    pub reduction: Reduction,
+    pub instance_lod: InstanceLod,
     /// How they are blended.
     pub blend: Blend,
 }
@@ -74,7 +74,7 @@ impl PosedModel<'_> {
         let pose = Pose::on_host(&model.skeleton, &model.clips[self.clip], self.time);
         let skinned = model.meshes.iter().map(|mesh| {
             let palette = palette_for(&model.skins[mesh.skin], &pose.model_matrices, self.blend);
-            skin(&morph(mesh, &self.weights(mesh)), &mesh.influences, &palette, self.reduction)
+            skin(&morph(mesh, &self.weights(mesh)), &mesh.influences, &palette, self.instance_lod)
         });
         let skinned: Vec<Vec<Vertex>> = skinned.collect();
         skinned.iter().enumerate().try_for_each(|(mesh, vertices)| check_range(mesh, vertices))?;

@@ -9,7 +9,7 @@ use relievo::asset::Model;
 use relievo::files::Staged;
 use relievo::render::posed;
 use relievo::skinning::export::write_obj;
-use relievo::skinning::reduction::Reduction;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::skinning::{Portrait, PosedModel, coarsen};
 use relievo::{Error, InputError};
@@ -91,7 +91,7 @@ impl Skin {
     }
 
     fn made(&self, context: &Context) -> Result<Made, Error> {
-        let reduction = reduction(&self.influences)?;
+        let instance_lod = instance_lod(&self.influences)?;
         let mut model = open(&self.model)?;
         if model.meshes.is_empty() {
             let bound = "must be at least one that is not compressed with Draco";
@@ -109,7 +109,7 @@ impl Skin {
             }
         }
         let blend = if self.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
-        let moment = PosedModel { model: &model, clip, time, reduction, blend };
+        let moment = PosedModel { model: &model, clip, time, instance_lod, blend };
         let (vertices, picture) = match self.backend.gpu(context)? {
             Some(gpu) => posed::on_device(&gpu, &moment, &PORTRAIT)?,
             None => moment.on_host(&PORTRAIT)?,
@@ -119,14 +119,16 @@ impl Skin {
 }
 
 /// `full`, `truncate:K` or `fade:LAMBDA`.
-fn reduction(text: &str) -> Result<Reduction, InputError> {
+fn instance_lod(text: &str) -> Result<InstanceLod, InputError> {
     let refused = || InputError::new("influences", text, "must be full, truncate:K or fade:LAMBDA");
     let named =
         |error: InputError| InputError::new("influences", text, format!("{} {}", error.field, error.bound));
     match text.split_once(':') {
-        None if text == "full" => Ok(Reduction::FULL),
-        Some(("truncate", most)) => Reduction::truncate(most.parse().map_err(|_| refused())?).map_err(named),
-        Some(("fade", fade)) => Reduction::fade(fade.parse().map_err(|_| refused())?).map_err(named),
+        None if text == "full" => Ok(InstanceLod::FULL),
+        Some(("truncate", most)) => {
+            InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(named)
+        }
+        Some(("fade", fade)) => InstanceLod::fade(fade.parse().map_err(|_| refused())?).map_err(named),
         _ => Err(refused()),
     }
 }

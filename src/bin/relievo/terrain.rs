@@ -194,7 +194,7 @@ impl Terrain {
         let grid = Grid { first: origin, size: grid };
         let despike = self.despike.map(|threshold| Despike { threshold });
         let mut recipe = Recipe { despike, thermal, ..Recipe::new(config) };
-        let width = recipe.config.patch_size.saturating_add(recipe.reach(1).saturating_mul(2));
+        let width = recipe.config.patch_size.saturating_add(recipe.apron(1).saturating_mul(2));
         memory::check(&self.patches, grid.bytes(width, 0))?;
         let patches = grid.patches()?;
         recipe.features = self.read_features(&recipe.config, grid, width)?;
