@@ -156,11 +156,15 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     staged.publish()
 }
 
-/// A value as indented JSON.
+/// [`write_file`] of a value as indented JSON.
 ///
 /// # Errors
-/// [`Error::Output`] for what JSON cannot say.
-pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Error> {
+/// As [`write_file`], and [`Error::Output`] for what JSON cannot say.
+pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Error> {
+    write_file(path, &json(value)?)
+}
+
+fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Error> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| Error::output("JSON", error))?;
     bytes.push(b'\n');
     Ok(bytes)

@@ -4,6 +4,9 @@ use ab_glyph::{Font as _, FontRef, Glyph, PxScale, ScaleFont as _, point};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+/// What drawing gives.
+pub type Drawn<'a> = Result<(), DrawingAreaErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+
 /// Where a text lies from its place: to the right, around it, or to the left. Vertically around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
@@ -39,7 +42,7 @@ impl Letters {
         (x, y): (i32, i32),
         (size, align, upwards): (f64, Align, bool),
         color: RGBColor,
-    ) -> super::picture::Drawn<'b> {
+    ) -> Drawn<'b> {
         let scale = self.scale(size);
         let font = self.0.as_scaled(scale);
         let width = self.width(text, size) as f32;

@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::axis::Axis;
-use super::letters::{Align, Letters};
+use super::letters::{Align, Drawn, Letters};
 use super::{Chart, FINER};
 
 const INK: RGBColor = RGBColor(40, 40, 40);
@@ -29,9 +29,6 @@ const SHAPES: [(u32, f64); 8] =
 
 type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 type Plane<'a> = DrawingArea<BitMapBackend<'a>, Cartesian2d<Axis, Axis>>;
-
-/// What drawing gives.
-pub type Drawn<'a> = Result<(), DrawingAreaErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
 
 /// What all panels share.
 pub struct Picture<'a> {

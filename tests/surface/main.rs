@@ -2,6 +2,8 @@
 
 #[cfg(feature = "verify")]
 mod bounds;
+#[cfg(feature = "verify")]
+mod compared;
 mod crossings;
 mod errors;
 mod tangents;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use relievo::Error;
 use relievo::bench::run;
-use relievo::files::{json, write_file};
+use relievo::files::write_json;
 use relievo::harness::{Row, table};
 
 use crate::Context;
@@ -42,7 +42,7 @@ impl Bench {
              take turns. `clock`: wall includes submission and waiting.",
         )?;
         if let Some(path) = &self.json {
-            write_file(path, &json(&summary)?)?;
+            write_json(path, &summary)?;
             say(format_args!("written to {}", path.display()))?;
         }
         Ok(ExitCode::SUCCESS)

@@ -7,7 +7,7 @@ use clap::Args;
 use relievo::animation::{self, Wrap};
 use relievo::asset::transform::column_major;
 use relievo::asset::{Clip, Model, Transform};
-use relievo::files::{json, write_file};
+use relievo::files::write_json;
 use relievo::samples::creature;
 use relievo::{Error, InputError};
 use serde::Serialize;
@@ -99,7 +99,7 @@ impl Pose {
         };
         pose.check_range()?;
         let moment = (!self.moment.is_rest()).then_some((clip.name(), time));
-        write_file(&self.out, &json(&report(&model, moment, &pose))?)?;
+        write_json(&self.out, &report(&model, moment, &pose))?;
         Ok(ExitCode::SUCCESS)
     }
 }

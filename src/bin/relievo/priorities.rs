@@ -7,7 +7,7 @@ use clap::Args;
 use relievo::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
 use relievo::animation::{Wrap, priority};
 use relievo::asset::{Clip, Model, Skeleton};
-use relievo::files::{json, write_file};
+use relievo::files::write_json;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -88,7 +88,7 @@ impl Priorities {
         if let Some(path) = &self.json {
             let rows = keys.iter().map(|key| row(&model, key)).collect();
             let report = Report { clip: clip.name(), loops, weights: weights.0.into(), keys: rows };
-            write_file(path, &json(&report)?)?;
+            write_json(path, &report)?;
         }
         let shown: Vec<_> = TERMS.iter().zip(weights.0).map(|(term, w)| format!("{term} {w:.4}")).collect();
         say(format_args!("weights: {}", shown.join(", ")))?;

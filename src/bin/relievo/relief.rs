@@ -1,5 +1,7 @@
 //! `relievo relief`
 
+mod plot;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -9,7 +11,6 @@ use image::RgbaImage;
 use relievo::files::Staged;
 use relievo::gpu::Gpu;
 use relievo::measure::relief::{Comparison, Drawn, ReliefSquare, Seconds};
-use relievo::plot::{Chart, Series, grid};
 use relievo::samples::BuiltInMap;
 use relievo::surface::view::towards_light;
 use relievo::surface::{
@@ -22,6 +23,7 @@ use crate::Context;
 use crate::arguments::{Backend, one_of, pair};
 use crate::output::say;
 use crate::progress::bar;
+use plot::plot;
 
 /// Linear light behind the square.
 const BACKGROUND: [f32; 3] = [0.045, 0.055, 0.07];
@@ -335,31 +337,4 @@ fn compared(square: &ReliefSquare, gpu: Option<&Gpu>) -> Result<Comparison, Erro
 
 fn bytes(values: impl Iterator<Item = f32>) -> Vec<u8> {
     values.flat_map(f32::to_le_bytes).collect()
-}
-
-/// One panel an angle.
-fn plot(comparison: &Comparison) -> Result<RgbaImage, InputError> {
-    let chart = |angle: f64| {
-        let series = Method::ALL.into_iter().map(|method| {
-            let all = comparison.entries.iter();
-            let here = all.filter(move |entry| entry.angle == angle && entry.method == method);
-            let point = |measured: Measured| (measured.mean_samples, measured.mean_error_texels);
-            Series {
-                name: method.name().to_owned(),
-                points: here.clone().map(|entry| point(entry.measured)).collect(),
-                labels: here.filter_map(|entry| entry.steps.map(|steps| steps.to_string())).collect(),
-            }
-        });
-        Chart {
-            title: format!("{angle}°"),
-            x_label: "texel loads a pixel".to_owned(),
-            y_label: "mean error in texels".to_owned(),
-            log_x: true,
-            log_y: true,
-            series: series.collect(),
-        }
-    };
-    let title = "Error against cost, by angle from the normal (labels: linear steps)";
-    let charts = Comparison::ANGLES.map(chart);
-    Ok(image::DynamicImage::ImageRgb8(grid(title, &charts, 2, (1200, 900))?).into_rgba8())
 }

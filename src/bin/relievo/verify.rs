@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
-use relievo::files::{json, write_file};
+use relievo::files::write_json;
 use relievo::harness::CaseResult;
 use relievo::verify::run;
 
@@ -35,7 +35,7 @@ impl Verify {
         spinner.finish_and_clear();
         say(report.summary().trim_end())?;
         if let Some(path) = &self.json {
-            write_file(path, &json(&report)?)?;
+            write_json(path, &report)?;
         }
         Ok(if report.holds { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
