@@ -1,4 +1,4 @@
-//! How near the copy kernel comes to the device's own copy; `limit` is `copy_buffer_to_buffer`.
+//! Benchmark cases of `baseline/copy`: how near the copy kernel comes to the device's own copy; `limit` is `copy_buffer_to_buffer`.
 
 use crate::Error;
 use crate::baseline::copy::CopyPass;
@@ -6,7 +6,7 @@ use crate::baseline::copy::reference::copy;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 
-/// From within the caches to beyond them.
+/// Measures from within the caches to beyond them.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! How fast the bytes of sampling can be moved; `copy` moves as many, each its own.
+//! Benchmark cases of `baseline/gather`: how fast the bytes of sampling can be moved; `copy` moves as many, each its own.
 
 use std::hint::black_box;
 
@@ -9,7 +9,7 @@ use crate::baseline::gather::reference::{gather, gather_keys};
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// 1000 instances of 153 bones, 60 keys: all that sampling reads, and the keys alone.
+/// Measures 1000 instances of 153 bones, 60 keys: all that sampling reads, and the keys alone.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Moves the bytes of sampling: twin of `kernels/baseline/gather.wgsl`.
+//! Moves the bytes that sampling moves: the CPU reference of `kernels/baseline/gather.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;

@@ -1,4 +1,4 @@
-//! Parity of `kernels/baseline/gather.wgsl`.
+//! Parity cases of `kernels/baseline/gather.wgsl`.
 
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
@@ -14,7 +14,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 
-/// Bones and instances around workgroup boundaries, few keys and many; two clips, and the keys of the first alone.
+/// The cases cover bones and instances around workgroup boundaries, few keys and many; two clips, and the keys of the first alone.
 ///
 /// # Errors
 /// What the device reports.

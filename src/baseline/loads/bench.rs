@@ -1,4 +1,4 @@
-//! How fast texels are loaded.
+//! Benchmark cases of `baseline/loads`: how fast texels are loaded.
 
 use crate::Error;
 use crate::baseline::copy::CopyPass;
@@ -11,7 +11,7 @@ use crate::surface::relief::Method;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map};
 
-/// 16 loads a thread of a megatexel.
+/// Measures 16 loads a thread of a megatexel.
 ///
 /// # Errors
 /// What the device reports.

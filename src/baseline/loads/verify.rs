@@ -1,4 +1,4 @@
-//! Parity of `kernels/baseline/loads.wgsl`.
+//! Parity cases of `kernels/baseline/loads.wgsl`.
 
 use crate::Error;
 use crate::baseline::loads::LoadsPass;
@@ -11,7 +11,7 @@ use crate::surface::relief::Method;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map};
 
-/// Sizes around the workgroup's, more threads than texels, and no loads at all.
+/// The cases cover sizes around the workgroup's, more threads than texels, and no loads at all.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Palettes: twin of `kernels/skinning/palette.wgsl`.
+//! Palettes: the CPU reference of `kernels/skinning/palette.wgsl`.
 
 use crate::animation::concat::reference::product;
 use crate::asset::skeleton::Skin;

@@ -1,4 +1,4 @@
-//! Max-mip pyramids.
+//! Benchmark cases of `surface/height_pyramid`: max-mip pyramids.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -9,7 +9,7 @@ use crate::surface::map::Address;
 use crate::surface::verify::{Shape, random_map};
 use crate::terrain::bench::copy_of;
 
-/// A batch of 64: 4 bytes in, 5⅓ out a texel.
+/// Measures a batch of 64: 4 bytes in, 5⅓ out a texel.
 ///
 /// # Errors
 /// What the device reports.

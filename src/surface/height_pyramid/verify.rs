@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/height_pyramid.wgsl`.
+//! Parity cases of `kernels/surface/height_pyramid.wgsl`.
 
 use crate::Error;
 use crate::harness::poison::{POISON, Poisoned};
@@ -9,7 +9,7 @@ use crate::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids}
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::verify::{Shape, random_map};
 
-/// Sizes around every block boundary, batches, both address modes. The padding between levels stays untouched.
+/// The cases cover sizes around every block boundary, batches, both address modes. The padding between levels stays untouched.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! The fragment pass, each method beside `plain` and beside as many bare texel loads.
+//! Benchmark cases of `surface/relief`: the fragment pass, each method beside `plain` and beside as many bare texel loads.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -26,7 +26,7 @@ const EDGE: u32 = 1024;
 /// Degrees from the normal.
 const ANGLE: f32 = 60.0;
 
-/// Cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
+/// Measures cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
 /// (the case names them), and nothing else. Then 1024² pixels by the fragment pass: `limit` is `plain` drawn the
 /// same, the twin marches and does not shade.
 ///

@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/relief.wgsl`: the functions of `wgsl/surface/` that material shaders import.
+//! Parity cases of `kernels/surface/relief.wgsl`: the functions of `wgsl/surface/` that material shaders import.
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
@@ -16,7 +16,7 @@ use crate::surface::verify::{Shape, random_map, random_rays};
 /// from the rays alone. No ray may exceed its bound.
 pub const TOUCHING: f64 = 0.2;
 
-/// Every method on every shape: odd sizes, both address modes, numbers of rays around the workgroup's.
+/// The cases cover every method on every shape: odd sizes, both address modes, numbers of rays around the workgroup's.
 ///
 /// # Errors
 /// What the device reports.

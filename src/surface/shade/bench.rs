@@ -1,4 +1,4 @@
-//! Self-shadow and depth of lists of points, beside as many bare texel loads.
+//! Benchmark cases of `surface/shade`: self-shadow and depth of lists of points, beside as many bare texel loads.
 
 use crate::Error;
 use crate::baseline::loads::LoadsPass;
@@ -20,7 +20,7 @@ const EDGE: u32 = 512;
 /// Texel loads of one bilinear height.
 const BILINEAR: u32 = 4;
 
-/// 512² points on cobbles of 512² texels, seen straight from above and lit by the default light; hard shadows by
+/// Measures 512² points on cobbles of 512² texels, seen straight from above and lit by the default light; hard shadows by
 /// `quadtree` and by `relief`. `copy` is as many texel loads a point as both shadows make, and nothing else.
 ///
 /// # Errors

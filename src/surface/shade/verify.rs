@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/shade.wgsl`: hard and soft shadow, and the depth of the relief.
+//! Parity cases of `kernels/surface/shade.wgsl`: hard and soft shadow, and the depth of the relief.
 
 use glam::{Mat4, Vec3, Vec4, camera};
 
@@ -29,7 +29,7 @@ pub const BLURRED: f64 = 0.1;
 /// The share of points whose depth is known to no better: those in the plane of the eye.
 pub const AT_EYE: f64 = 0.01;
 
-/// Every method on every shape, in both address modes, in parallel and in perspective; numbers of points around the
+/// The cases cover every method on every shape, in both address modes, in parallel and in perspective; numbers of points around the
 /// workgroup's.
 ///
 /// # Errors

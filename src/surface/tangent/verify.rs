@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/tangent.wgsl`.
+//! Parity cases of `kernels/surface/tangent.wgsl`.
 
 use crate::Error;
 use crate::harness::Cases;
@@ -29,7 +29,7 @@ impl Owned {
     }
 }
 
-/// Literal frames; thresholds from both sides; soups of triangles around workgroup boundaries; many triangles at
+/// The cases cover literal frames; thresholds from both sides; soups of triangles around workgroup boundaries; many triangles at
 /// a vertex; large and small units; mirrored, seamed and degenerate meshes.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Skinning: twin of `kernels/skinning/skin.wgsl`.
+//! Skinning: the CPU reference of `kernels/skinning/skin.wgsl`.
 
 pub mod weights;
 
