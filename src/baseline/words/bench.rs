@@ -7,7 +7,7 @@ use crate::baseline::words::reference::words;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 
-/// Measures one size.
+/// Measures one size of output.
 ///
 /// # Errors
 /// What the device reports.
