@@ -11,7 +11,7 @@ use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
 use crate::terrain::bench::copy_of;
 
-/// Measures one map of cobbles at two sizes, pyramid included: a set-up cost.
+/// Measures maps of cobbles at two sizes, pyramid included; making a cone map is a set-up cost.
 ///
 /// # Errors
 /// What the device reports.
