@@ -1,7 +1,7 @@
 //! Materials: the base colours of glTF, their textures, and the use of alpha.
 
 /// The longest edge of an image in texels: WebGPU's default limit.
-pub const MOST_TEXELS: u32 = 8192;
+pub const MAX_TEXELS: u32 = 8192;
 
 /// The base colour of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,12 +76,12 @@ pub enum Alpha {
     /// A screen-door pattern: of each 4 × 4 pixels, alpha decides how many are drawn. Triangles need no
     /// sorting, and depth is written. Where two such surfaces overlap, the nearer hides all of the other unless
     /// that one is denser.
-    Screen,
+    Dithered,
 }
 
-/// The threshold for a pixel of [`Alpha::Screen`], between 0 and 1: pixels with an alpha below it are not
+/// The threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with an alpha below it are not
 /// drawn. It is the rank of the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
-pub fn screen([x, y]: [u32; 2]) -> f32 {
+pub fn dithered([x, y]: [u32; 2]) -> f32 {
     let rank = |x: u32, y: u32| 2 * (x ^ y) + y;
     ((4 * rank(x & 1, y & 1) + rank(x >> 1 & 1, y >> 1 & 1)) as f32 + 0.5) / 16.0
 }
@@ -92,12 +92,12 @@ mod tests {
 
     #[test]
     fn every_place_of_the_screen_has_a_rank_of_its_own() {
-        let all = |size: u32| (0..size * size).map(move |at| screen([at % size, at / size]));
+        let all = |size: u32| (0..size * size).map(move |at| dithered([at % size, at / size]));
         let mut ranks: Vec<f32> = all(4).collect();
         ranks.sort_by(f32::total_cmp);
         assert_eq!(ranks, (0..16).map(|rank| (rank as f32 + 0.5) / 16.0).collect::<Vec<_>>());
-        assert_eq!(screen([5, 6]), screen([1, 2]));
+        assert_eq!(dithered([5, 6]), dithered([1, 2]));
         // At an alpha of ½ the drawn pixels form a chequerboard.
-        assert!((0..16).all(|at| (screen([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
+        assert!((0..16).all(|at| (dithered([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
     }
 }

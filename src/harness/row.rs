@@ -11,9 +11,9 @@ pub enum Backend {
     /// The kernel.
     Gpu,
     /// Its CPU reference on one thread.
-    Twin,
+    Reference,
     /// Its CPU reference on all threads.
-    TwinParallel,
+    ReferenceParallel,
     /// Plain structure-of-arrays code for the CPU, on one thread.
     PlainSoa,
     /// A kernel that moves the same bytes.
@@ -27,8 +27,8 @@ impl Backend {
     pub fn name(self) -> &'static str {
         match self {
             Self::Gpu => "gpu",
-            Self::Twin => "twin",
-            Self::TwinParallel => "twin-parallel",
+            Self::Reference => "reference",
+            Self::ReferenceParallel => "reference-parallel",
             Self::PlainSoa => "plain-soa",
             Self::Copy => "copy",
             Self::Limit => "limit",

@@ -30,7 +30,6 @@
 //! a fixed order, and ties go to the lower index. Time grows as n log n with triangles, and linearly with
 //! poses. Quadrics take 88 bytes per point and pose.
 
-mod attached;
 mod attributes;
 mod melax;
 mod neighbors;
@@ -40,6 +39,7 @@ mod quadrics;
 mod queue;
 mod reducer;
 mod topology;
+mod tracked_samples;
 mod turned;
 
 use crate::InputError;
@@ -204,14 +204,14 @@ impl Simplified {
     ///
     /// # Panics
     /// If there are fewer collapses.
-    pub fn heirs(&self, collapses: usize) -> Vec<u32> {
-        let mut heirs: Vec<u32> = (0..self.points.len() as u32).collect();
+    pub fn remap(&self, collapses: usize) -> Vec<u32> {
+        let mut remap: Vec<u32> = (0..self.points.len() as u32).collect();
         let end = collapses.checked_sub(1).map_or(0, |last| self.collapses[last].end);
         // The last collapse comes first, so that the final replacement of `to` is already known.
         for &[from, to] in self.moved[..end as usize].iter().rev() {
-            heirs[from as usize] = heirs[to as usize];
+            remap[from as usize] = remap[to as usize];
         }
-        heirs
+        remap
     }
 
     /// The triangles that are left after the first `collapses` collapses, in the mesh's order: those that still
@@ -220,12 +220,12 @@ impl Simplified {
     /// # Panics
     /// If there are fewer collapses, or if the indices belong to another mesh.
     pub fn triangles(&self, indices: &[u32], collapses: usize) -> Vec<u32> {
-        let heirs = self.heirs(collapses);
+        let remap = self.remap(collapses);
         let mut left = Vec::new();
         for triangle in indices.chunks_exact(3) {
-            let heirs = [0, 1, 2].map(|corner| heirs[triangle[corner] as usize]);
-            if self.are_apart(heirs) {
-                left.extend(heirs);
+            let remap = [0, 1, 2].map(|corner| remap[triangle[corner] as usize]);
+            if self.are_apart(remap) {
+                left.extend(remap);
             }
         }
         left

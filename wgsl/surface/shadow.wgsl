@@ -4,7 +4,7 @@
 // penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;
-import package::wgsl::surface::linear::SURFACE_MOST_STEPS;
+import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
 
 // The height difference below which a point does not shade itself, as a fraction of the relief's depth.
 const SURFACE_SHADOW_BIAS: f32 = 0.005;
@@ -37,12 +37,12 @@ fn surface_soft_shadow(
     start.height = max(hit.height, own);
     let ray = surface_light_ray(start, light, scale);
     let rise = 1.0 - start.height;
-    let count = clamp(steps, 1u, SURFACE_MOST_STEPS);
+    let count = clamp(steps, 1u, SURFACE_MAX_STEPS);
     var shade = 0.0;
     for (var step = 1u; step <= count; step++) {
         // Samples are denser close to the point, where an occluder casts the sharpest shadow.
-        let share = f32(step) / f32(count + 1u);
-        let travelled = share * share;
+        let fraction = f32(step) / f32(count + 1u);
+        let travelled = fraction * fraction;
         let parameter = rise * (1.0 - travelled);
         let height = surface_height(heights, ray.origin + parameter * ray.slope, march.mip, march.address);
         let excess = height - (1.0 - parameter) - SURFACE_SHADOW_BIAS;

@@ -44,7 +44,7 @@ fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold 
 
 // The zone's fraction of the colour, 0 to 1. Normalized fractions sum to 1; where all weights are 0, the
 // nearest zone has fraction 1. Additive fractions are the weights as they are.
-fn zone_share(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
+fn zone_fraction(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
     let weight = zone_weight(zone, height);
     if additive {
         return weight;

@@ -11,11 +11,11 @@ use crate::InputError;
 const ELEMENTS: u64 = 1 << 16;
 
 /// Elements allowed per byte, for documents that refer to the same bytes repeatedly; the total is limited by
-/// [`MOST_REPEATED`].
+/// [`MAX_REPEATED`].
 const REPEATED: u64 = 128;
 
 /// The most elements of a document that refers to the same bytes repeatedly, about 300 MiB.
-const MOST_REPEATED: u64 = 1 << 24;
+const MAX_REPEATED: u64 = 1 << 24;
 
 /// Elements allowed per byte in any case: more than a document has that refers to its bytes once.
 const ELEMENTS_A_BYTE: u64 = 4;
@@ -50,7 +50,7 @@ impl Budget {
     /// [`InputError`] if there are too many.
     pub fn spend(&self, path: &str, count: usize) -> Result<(), InputError> {
         let bytes = self.bytes.get();
-        let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MOST_REPEATED);
+        let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MAX_REPEATED);
         let most = bytes.saturating_mul(ELEMENTS_A_BYTE).max(repeated);
         let all = self.elements.get().saturating_add(count as u64);
         if all > most {

@@ -31,7 +31,7 @@
 //! - Of materials, the import reads base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or
 //!   in files beside the document; any set of texture coordinates, with `KHR_texture_transform` applied to
 //!   them), samplers, alpha, and `doubleSided`. The opacity of `BLEND` becomes a [screen-door
-//!   pattern](crate::asset::material::Alpha::Screen). Vertex colours, everything else in materials, and
+//!   pattern](crate::asset::material::Alpha::Dithered). Vertex colours, everything else in materials, and
 //!   materials that no mesh uses are left out.
 //!
 //! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and

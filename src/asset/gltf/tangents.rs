@@ -12,7 +12,7 @@ use crate::asset::mesh::{Mesh, solved_tangents};
 /// The largest number of triangles around a vertex for which MikkTSpace is used: its time grows with the square
 /// of that number, and it visits the triangles by recursion. Surfaces with more get the tangents that
 /// [`crate::surface::tangent`] solves.
-const MOST_AROUND: u32 = 1024;
+const MAX_AROUND: u32 = 1024;
 
 /// The input of tangents: positions, normals and texture coordinates per vertex, and three indices per
 /// triangle.
@@ -130,7 +130,7 @@ impl<'a> Faces<'a> {
             let place = (bits(positions[vertex]), bits(normals[vertex]), bits(uv[vertex]));
             let count = around.entry(place).or_default();
             *count += 1;
-            *count > MOST_AROUND
+            *count > MAX_AROUND
         })
     }
 }

@@ -57,7 +57,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| draw(&scene, encoder)),
             Contender::recorded(Backend::Limit, |encoder| draw(&plain, encoder)),
-            Contender::host(Backend::TwinParallel, || {
+            Contender::host(Backend::ReferenceParallel, || {
                 drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
             }),
         ];
@@ -91,7 +91,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), 
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &bare),
-        Contender::host(Backend::TwinParallel, || {
+        Contender::host(Backend::ReferenceParallel, || {
             drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
         }),
     ];

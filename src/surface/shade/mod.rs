@@ -18,7 +18,7 @@ pub use pass::ShadePass;
 use glam::{Mat4, Vec4};
 
 use crate::InputError;
-use crate::surface::relief::{Hit, MOST_STEPS, Ray};
+use crate::surface::relief::{Hit, MAX_STEPS, Ray};
 
 /// The view and shadow parameters that all points of a list share.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ pub struct ShadeView {
     /// The position of the eye with w = 1, or for a parallel projection the direction towards it with w = 0;
     /// world space.
     pub eye: Vec4,
-    /// Number of heights that a soft shadow samples on the way to the light, 1 to [`MOST_STEPS`].
+    /// Number of heights that a soft shadow samples on the way to the light, 1 to [`MAX_STEPS`].
     pub shadow_steps: u32,
     /// The ratio of the surface's height above the way to the light to its distance at which a soft shadow is
     /// full; 0.001 to 1000.
@@ -63,8 +63,8 @@ impl ShadeView {
         if !self.eye.is_finite() {
             return Err(InputError::new("eye", self.eye, "must be finite"));
         }
-        if !(1..=MOST_STEPS).contains(&self.shadow_steps) {
-            let bound = format!("must be in 1..={MOST_STEPS}");
+        if !(1..=MAX_STEPS).contains(&self.shadow_steps) {
+            let bound = format!("must be in 1..={MAX_STEPS}");
             return Err(InputError::new("shadow_steps", self.shadow_steps, bound));
         }
         if !(1e-3..=1e3).contains(&self.softness) {
@@ -116,7 +116,7 @@ mod tests {
         let field = |view: ShadeView| view.validate().expect_err("refused").field;
         assert_eq!(field(ShadeView { clip_from_world: Mat4::NAN, ..good }), "clip_from_world");
         assert_eq!(field(ShadeView { eye: Vec4::INFINITY, ..good }), "eye");
-        for shadow_steps in [0, MOST_STEPS + 1] {
+        for shadow_steps in [0, MAX_STEPS + 1] {
             assert_eq!(field(ShadeView { shadow_steps, ..good }), "shadow_steps");
         }
         for softness in [0.0, 2e3, f32::NAN] {

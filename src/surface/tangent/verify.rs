@@ -174,31 +174,31 @@ fn literals() -> Vec<(&'static str, Owned, [[f32; 4]; 3])> {
 /// Meshes a tenth below and a tenth above each threshold; below it, the fallback gives a different frame.
 fn thresholds() -> Vec<(&'static str, Owned)> {
     // In uv the triangle is a line except for a small extent in v.
-    let sliver = |share: f32| {
-        let mut mesh = triangle([[0.0, 0.0], [1.0, 1.0], [1.0, 1.0 - share * DEGENERATE]]);
+    let sliver = |fraction: f32| {
+        let mut mesh = triangle([[0.0, 0.0], [1.0, 1.0], [1.0, 1.0 - fraction * DEGENERATE]]);
         mesh.normals = vec![[0.3, 0.2, 1.0]; 3];
         mesh
     };
     // In space the triangle is a line except for a small extent in y; u or v runs along it.
-    let flat = |share: f32, uv: [[f32; 2]; 3]| {
+    let flat = |fraction: f32, uv: [[f32; 2]; 3]| {
         let mut mesh = triangle(uv);
-        mesh.positions[2] = [1.0, -share * DEGENERATE, 0.0];
+        mesh.positions[2] = [1.0, -fraction * DEGENERATE, 0.0];
         mesh.normals = vec![[0.3, 0.2, 1.0]; 3];
         mesh
     };
     let along = [[1.0, 0.0], [0.0, 0.0], [1.0, 1.0]];
     let across = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     // The tangent is +Y, of which a small fraction is left after the normal's part is subtracted.
-    let leaning = |share: f32| {
+    let leaning = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [0.0, -1.0], [1.0, 0.0]]);
-        mesh.normals[0] = [0.0, (1.0 - share * share).sqrt(), share];
+        mesh.normals[0] = [0.0, (1.0 - fraction * fraction).sqrt(), fraction];
         mesh
     };
     // The normal of the face is +Z; the normals of the vertices differ from it by slightly more than a right
     // angle.
-    let turned = |share: f32| {
+    let turned = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-        mesh.normals = vec![[0.0, (1.0 - share * share).sqrt(), -share]; 3];
+        mesh.normals = vec![[0.0, (1.0 - fraction * fraction).sqrt(), -fraction]; 3];
         mesh
     };
     vec![
