@@ -53,7 +53,7 @@ struct Arguments {
 // One entry per level.
 @group(0) @binding(4) var<storage, read_write> arguments: array<Arguments>;
 
-// An upper bound on how much a matrix with these columns stretches: the square root of the largest row sum of
+// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of
 // the products of columns (Gershgorin), or of the sum of their squares, whichever is less.
 fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
     let squares = x * x + y * y + z * z;
@@ -66,7 +66,7 @@ fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
 // The smallest normal f32, 2^-126, exactly; devices may flush smaller values to zero.
 const LEAST_NORMAL = 1.1754943508222875e-38;
 
-// Whether an instance with these columns may appear mirrored in a view of side 1 or −1. A nearly singular
+// Whether an instance with these rows may appear mirrored in a view of side 1 or −1. A nearly singular
 // matrix may count as either, and the draw call decides.
 fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
     return side * dot(x, cross(y, z)) < 1e-5 * (length(x) * length(y) * length(z));

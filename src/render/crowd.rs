@@ -32,7 +32,7 @@ pub struct Character<'a> {
     pub matrices: &'a ModelMatrices,
     /// The transforms from the model's space into the world, one per instance. They may mirror.
     pub placements: &'a Buffer<Affine>,
-    /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::away`]
+    /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::projected_distance`]
     /// counts them.
     pub fade: [f32; 2],
     /// Distances, counted likewise and not descending, from which on levels 1, 2 … of the character are used:
@@ -171,7 +171,7 @@ impl CrowdScene {
 }
 
 impl DrawnCharacter {
-    /// The largest number of levels of detail of any mesh, the meshes themselves included.
+    /// Number of levels of detail of the character, the meshes themselves included.
     fn levels(&self) -> usize {
         1 + self.view.levels.distances().len()
     }

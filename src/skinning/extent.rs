@@ -75,33 +75,25 @@ impl Extent {
         Self { center: scale * self.center, radius: scale * self.radius, stray: scale * self.stray }
     }
 
-    /// Where a crowd may begin to fade, and where it may be rigid
-    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no vertex is
-    /// more than `pixels` off on screen, wherever it is. Placements neither stretch nor shrink. 0 pixels allow no fade.
+    /// The projected distances at which a crowd may begin to fade and may be rigid
+    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no
+    /// vertex is drawn more than `pixels` from its place, wherever it is in the picture. Placements must not
+    /// scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
-    /// A point at depth z and distance d that is off by e shows focal·e·(d/z)/(z − e) pixels at most. Let q be what the
-    /// middle of an instance counts as ([`LodView::projected_distance`](super::lod::LodView::projected_distance)), its depth squared over its
-    /// distance. No point of its ball, of radius r, lies at less than Z = middle's depth − r or further than D = middle's
-    /// distance + r, and a = Z²/D ≥ (q − r)²/(q + r) ≥ q − 3r, since neither depth nor distance is below q. So it shows
-    /// focal·e·(Z/a)/(Z − e) at most, and since Z ≥ a no more than focal·e/(a − e): at most ε pixels where
-    /// a ≥ e·(focal + ε)/ε. This is so from q = 3r + e·(focal + ε)/ε on; and as λ grows evenly from q = 3r on, so may e,
-    /// up to [`Extent::stray`].
-    ///
-    /// What else is off adds to it: bones that a gate holds back by ε′ pixels, and a fade by ε, together show ε + ε′.
+    /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
     pub fn fade_range(&self, projection: &Projection, pixels: f32) -> [f32; 2] {
         let near = self.beyond(projection, pixels, 0.0);
         [near, self.beyond(projection, pixels, self.stray).max(near.next_up())]
     }
 
-    /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be
-    /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs is seen more than `pixels` from the
-    /// mesh's surface, and no point of that from theirs, as far as the errors hold at that point. Placements neither
-    /// stretch nor shrink. Where nothing may be off, levels with an error begin at the end of all numbers.
+    /// The projected distances from which on levels with these `errors`
+    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used
+    /// ([`LevelRanges`](super::lod::LevelRanges)), so that no point of a level is drawn more than `pixels` from
+    /// the mesh's surface, and no point of that surface from the level, as far as the errors hold at the point.
+    /// Placements must not scale. If 0 pixels are permitted, levels with an error begin at the largest number.
+    /// `docs/pixel-bounds.md` has the derivation.
     ///
-    /// By the formula of [`Extent::fade_range`], with an error as e: of two points of the two surfaces that lie so near
-    /// each other the one is off, the other its right place. Both are in the ball, as the vertices of triangles are.
-    ///
-    /// What else is off adds to it, a fade too: within ε pixels a crowd may fade by a share and have levels by the rest.
+    /// Other errors add up: split the permitted pixels between a fade and levels.
     pub fn level_ranges(
         &self,
         projection: &Projection,

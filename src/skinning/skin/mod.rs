@@ -19,11 +19,8 @@ pub use pass::{SkinPass, keep_last};
 /// The largest difference allowed between a component of a position and the reference, on any device, relative
 /// to the palette's largest component L (at least 1) times 1 + |x| + |y| + |z| of the vertex.
 ///
-/// With ε = 2⁻²⁴ (`+ − ×` to either neighbour 2ε, division 5ε): a weight carries 13ε of itself (λ times the second 2ε,
-/// the difference 2ε, the scale 7ε, the product 2ε), the strongest 13ε of the others and 16ε of their sum: together
-/// 42ε. A mean of eight bones adds 32ε: 74ε of L. A product with the vertex adds 10ε: 84ε = 5e-6. Cofactors carry
-/// 2·74ε·2 + 8ε = 304ε of L², their product with a unit normal no more a unit of |x| + |y| + |z|, and a unit vector
-/// twice that over the length: less than 4·SKIN_BOUND·2 of L² over the length before; tangents 2·SKIN_BOUND·L.
+/// For normals the bound is 4·SKIN_BOUND·2 of L² divided by their length before normalization, for tangents
+/// 2·SKIN_BOUND·L. `docs/rounding-bounds.md` has the derivation.
 pub const SKIN_BOUND: f32 = 5e-6;
 
 /// The factor by which [`SKIN_BOUND`] is larger where influences are truncated: the sum of the removed weights
