@@ -1,4 +1,4 @@
-//! Skinned meshes as Wavefront OBJ.
+//! Export of skinned meshes as Wavefront OBJ.
 
 use std::io::{self, Write};
 
@@ -6,14 +6,14 @@ use crate::asset::mesh::Mesh;
 use crate::asset::obj::{ObjWriter, Object};
 use crate::skinning::vertex::Vertex;
 
-/// An object a mesh, in order: vertices in the mesh's order with every digit that `f32` needs, texture coordinates
-/// (v up, as OBJ has it), normals, triangles.
+/// Writes one object per mesh, in order: vertices in the mesh's order with all digits that `f32` needs, texture
+/// coordinates (v up, as in OBJ), normals, triangles.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 ///
 /// # Panics
-/// With other than one vertex a vertex of the mesh.
+/// If the number of vertices differs from the mesh's.
 pub fn write_obj(out: &mut impl Write, meshes: &[(&Mesh, &[Vertex])]) -> io::Result<()> {
     let mut writer = ObjWriter::new(out);
     for (mesh, vertices) in meshes {
