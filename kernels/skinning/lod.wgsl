@@ -12,12 +12,12 @@ struct LodParams {
     // A ball around the model in all of its clips: middle and radius.
     bounding_sphere: vec4<f32>,
     // From where on vertices are rigid.
-    far: f32,
+    fade_end: f32,
     // Steps of the fade.
     steps: f32,
     instances: u32,
     // The most influences.
-    most: u32,
+    max_influences: u32,
     // From where on levels 1, 2 … are used, not descending; how many.
     distances: array<vec4<f32>, 4>,
     coarser: u32,
@@ -103,12 +103,12 @@ fn main(
     var instance_lod = InstanceLod(0.0, 0u, 0u);
     if is_seen {
         let projected_distance = projected_distance_of(center - params.eye.xyz);
-        let fade_fraction = clamp((projected_distance - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
+        let fade_fraction = clamp((projected_distance - params.eye.w) / (params.fade_end - params.eye.w), 0.0, 1.0);
         var level = 0u;
         while level < params.coarser && projected_distance >= params.distances[level >> 2u][level & 3u] {
             level++;
         }
-        instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.most, level);
+        instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.max_influences, level);
         let place = atomicAdd(&arguments[level].listed.instances, 1u);
         drawn[level * params.stride + place] = instance;
         if may_mirror(x.xyz, y.xyz, z.xyz, params.side) {

@@ -33,16 +33,17 @@ pub struct LodView {
     /// The eye, world units.
     pub eye: Vec3,
     /// Every influence counts up to here, world units as [`LodView::projected_distance`] counts them.
-    pub near: f32,
+    pub fade_start: f32,
     /// From here on vertices follow one bone, likewise.
-    pub far: f32,
+    pub fade_end: f32,
     /// Steps of the fade; 64 is a good number.
     pub steps: u32,
     /// The most influences of those that are seen, 1 to 8.
-    pub most: u32,
-    /// The middle of a ball around the model in all of its clips.
+    pub max_influences: u32,
+    /// The center of a sphere around the model in all of its clips, in the model's space: see
+    /// [`BoundingSphere`](super::bounding_sphere::BoundingSphere).
     pub center: Vec3,
-    /// Its radius.
+    /// The sphere's radius.
     pub radius: f32,
     /// Where instances are drawn with levels of detail of their mesh.
     pub levels: LevelRanges,
@@ -104,7 +105,7 @@ pub fn list_words(instances: usize, levels: usize) -> usize {
     if levels == 1 { instances } else { levels * list_stride(instances) }
 }
 
-/// [`LodView::near`] and [`LodView::far`] of crowds that do not fade.
+/// [LodView::fade_start] of crowds that do not fade.
 pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
 
 impl LodView {
@@ -123,12 +124,16 @@ impl LodView {
         if self.steps == 0 || self.steps > 1 << 16 {
             return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
         }
-        if !(1..=MAX_INFLUENCES as u32).contains(&self.most) {
-            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MAX_INFLUENCES}")));
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
+            return Err(InputError::new(
+                "view.max_influences",
+                self.max_influences,
+                format!("must be in 1..={MAX_INFLUENCES}"),
+            ));
         }
-        InstanceLod::at_distance(0.0, [self.near, self.far])
+        InstanceLod::at_distance(0.0, [self.fade_start, self.fade_end])
             .map(|_| ())
-            .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
+            .map_err(|error| InputError::new(format!("view.{}", error.path), error.value, error.bound))
     }
 
     /// How far away a place counts: its distance from the eye where that is straight ahead, less to the side, where a
@@ -164,22 +169,6 @@ impl LodView {
     }
 }
 
-/// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
-/// its clips: [`Extent`](super::extent::Extent).
-pub fn bounding_sphere(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
-    let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    let center = middle_of(low, high);
-    (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
-}
-
-/// Of a ball.
-pub(crate) const MARGIN: f32 = 1.05;
-
-/// The middle of a box, if it has any.
-pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
-    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
-}
-
 /// Where an instance of uniform scale stands: turned about +Y, then moved.
 pub fn placed(at: Vec3, turn: f32, scale: f32) -> Affine {
     let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
@@ -195,10 +184,10 @@ mod tests {
         LodView {
             clip_from_world: Mat4::IDENTITY,
             eye: Vec3::ZERO,
-            near: 10.0,
-            far: 30.0,
+            fade_start: 10.0,
+            fade_end: 30.0,
             steps: 64,
-            most: 8,
+            max_influences: 8,
             center: Vec3::ZERO,
             radius: 1.0,
             levels: LevelRanges::NONE,
@@ -208,14 +197,14 @@ mod tests {
     #[test]
     fn views_are_checked_field_by_field() {
         assert_eq!(view().validate(), Ok(()));
-        let refused = |view: LodView| view.validate().expect_err("refused").field;
+        let refused = |view: LodView| view.validate().expect_err("refused").path;
         assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
         assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
         assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
-        assert_eq!(refused(LodView { most: 0, ..view() }), "view.most");
-        assert_eq!(refused(LodView { most: 9, ..view() }), "view.most");
-        assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
-        assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
+        assert_eq!(refused(LodView { max_influences: 0, ..view() }), "view.max_influences");
+        assert_eq!(refused(LodView { max_influences: 9, ..view() }), "view.max_influences");
+        assert_eq!(refused(LodView { fade_start: 30.0, ..view() }), "view.fade_start");
+        assert_eq!(refused(LodView { fade_end: f32::INFINITY, ..view() }), "view.far");
     }
 
     #[test]
@@ -228,7 +217,7 @@ mod tests {
         assert_eq!(ranges.distances(), [-1.0, 5.0, 5.0, 9.0]);
         assert_eq!(LevelRanges::new(&[]), Ok(LevelRanges::NONE));
         assert_eq!(LevelRanges::NONE.at(f32::MAX), 0);
-        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").field;
+        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").path;
         assert_eq!(refused(&[2.0, 1.0]), "levels[1]");
         assert_eq!(refused(&[1.0, f32::NAN]), "levels[1]");
         assert_eq!(refused(&[f32::INFINITY]), "levels[0]");
@@ -281,13 +270,5 @@ mod tests {
         ] {
             assert!(!inside(outside), "{outside}");
         }
-    }
-
-    #[test]
-    fn balls_hold_their_places() {
-        let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
-        let (center, radius) = bounding_sphere(places.into_iter());
-        assert!(places.iter().all(|place| place.distance(center) <= radius) && radius < 1.5);
-        assert_eq!(bounding_sphere(std::iter::empty()), (Vec3::ZERO, 0.0));
     }
 }

@@ -163,7 +163,7 @@ fn crowd(
 fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    let rigid = InstanceLod { fade: 1.0, ..InstanceLod::FULL };
+    let rigid = InstanceLod { influence_fade: 1.0, ..InstanceLod::FULL };
     scene.crowd.instance_lods.write(gpu, &[rigid; CROWDS[1]])?;
     // A vertex, a bone and a weight in, the bone's rows, a vertex out.
     let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, instance_lod: rigid };
