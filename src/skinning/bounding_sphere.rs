@@ -1,4 +1,4 @@
-//! Spheres around models, in a set of points or in all of their clips.
+//! Bounding spheres: of points, and of models in all of their clips.
 
 use glam::Vec3;
 
@@ -10,18 +10,19 @@ use crate::asset::Model;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::bone_radii;
 
-/// Moments of each clip that are looked at, at least and at most: an hour at 60 a second.
+/// The smallest and the largest number of moments at which a clip is sampled; the largest is an hour at 60 per
+/// second.
 const MOMENTS: [usize; 2] = [32, 216_001];
 
-/// How much larger a sphere is than what it was measured from, for what lies between.
+/// The factor by which a sphere's radius is enlarged.
 pub(crate) const MARGIN: f32 = 1.05;
 
 /// A sphere in the model's space, in the model's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundingSphere {
-    /// Its center.
+    /// The sphere's centre.
     pub center: Vec3,
-    /// Its radius.
+    /// The sphere's radius.
     pub radius: f32,
 }
 
@@ -35,10 +36,11 @@ impl BoundingSphere {
         Self { center, radius: MARGIN * points.map(|point| point.distance(center)).fold(0.0, f32::max) }
     }
 
-    /// A sphere around all meshes of a model at rest and in every clip, larger by a twentieth for what lies between the
-    /// moments that are looked at: 60 a second and at least 32 of a clip; of clips of more than an hour 216,001, which then
-    /// lie further apart. For [`LodView`](super::lod::LodView). It is computed from the distances of vertices from their
-    /// bones alone, so it may be half again as large as it had to be; morph targets count as [`bone_radii`] says.
+    /// A sphere around all meshes at rest and in every clip, for
+    /// [`LodView`](super::lod::LodView). Clips are sampled 60 times a second, at least 32 times; a clip of more
+    /// than an hour is sampled 216,001 times, at larger intervals. The sphere is enlarged by a twentieth for motion
+    /// between samples. It is computed from the distances of vertices from their bones only, so that it may be half
+    /// again as large as necessary; morph targets count as [`bone_radii`] says.
     ///
     /// # Panics
     /// As [`bone_radii`].
@@ -48,7 +50,7 @@ impl BoundingSphere {
     }
 }
 
-/// The middle of a box; the origin where the box is empty.
+/// The centre of a box; the origin if the box is empty.
 pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
     if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }
@@ -78,7 +80,7 @@ fn box_in_clips(model: &Model) -> [Vec3; 2] {
     if low.cmple(high).all() { [low, high] } else { [Vec3::ZERO; 2] }
 }
 
-/// Whether any vertex follows each bone.
+/// For each bone, whether any vertex follows it.
 fn followed(model: &Model) -> Vec<bool> {
     let mut followed = vec![false; model.skeleton.len()];
     for mesh in &model.meshes {
@@ -131,7 +133,7 @@ mod tests {
         assert!(points.iter().all(|point| point.distance(center) <= radius) && radius < 1.5);
     }
 
-    /// A jump of a tenth of a second in a minute and a half.
+    /// A clip of a minute and a half with a jump that lasts a tenth of a second.
     #[test]
     fn the_sphere_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");
