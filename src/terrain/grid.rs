@@ -70,7 +70,7 @@ mod tests {
         let grid = Grid { first: [-1, 2], size: [2, 2] };
         assert_eq!(grid.patches(), Ok(vec![[-1, 2], [0, 2], [-1, 3], [0, 3]]));
         let beyond = Grid { first: [0, i32::MAX], size: [1, 2] };
-        assert_eq!(beyond.patches().expect_err("refused").field, "origin[1]");
+        assert_eq!(beyond.patches().expect_err("refused").path, "origin[1]");
     }
 
     #[test]
