@@ -370,6 +370,6 @@ fn tables_refuse_what_does_not_fit() {
     assert_eq!(field(bounds(&bone_radii)), "bone_radii[3]");
     let other = Stage::random(0, 7);
     assert_eq!(field(GateTable::of_animated_bones(&other.order, &stage.set, &clips)), "skeleton.len");
-    // The reference alone, without phases, has nothing to decide.
+    // The reference alone, without clip clocks, has nothing to decide.
     assert!(gate(&stage.animated_bones(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
 }
