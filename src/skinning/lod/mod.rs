@@ -1,8 +1,9 @@
-//! What a crowd is drawn with: which instances are seen, how far the influences of each fade with its distance, and
-//! which level of detail of the mesh it has there.
+//! Culling and level of detail of instances: which are seen, how far the influences of each fade with distance,
+//! and which level of detail each uses.
 //!
-//! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
-//! noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`]); seen again, it is skinned as a whole.
+//! The fade has discrete steps, so that an instance that hardly moves keeps its vertices; a single step moves
+//! no vertex noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`]); when it is seen
+//! again, all of it is skinned.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -25,31 +26,32 @@ pub use pass::{LodJob, LodPass};
 #[cfg(feature = "gpu")]
 pub(crate) use pass::{draws_at, numbers_at};
 
-/// Where a crowd is seen from, and how it fades.
+/// The view of a crowd, and its fade and levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LodView {
-    /// From world to clip space, depth 0 to 1.
+    /// The matrix from world space to clip space, depth 0 to 1.
     pub clip_from_world: Mat4,
-    /// The eye, world units.
+    /// Position of the eye in world units.
     pub eye: Vec3,
-    /// Every influence counts up to here, world units as [`LodView::projected_distance`] counts them.
-    pub near: f32,
-    /// From here on vertices follow one bone, likewise.
-    pub far: f32,
-    /// Steps of the fade; 64 is a good number.
+    /// The distance up to which every influence counts, in world units as [`LodView::projected_distance`]
+    /// measures them.
+    pub fade_start: f32,
+    /// The distance from which on vertices follow one bone, measured likewise.
+    pub fade_end: f32,
+    /// Number of steps of the fade; 64 is a good number.
     pub steps: u32,
-    /// The most influences of those that are seen, 1 to 8.
-    pub most: u32,
-    /// The middle of a ball around the model in all of its clips.
+    /// The largest number of influences of instances that are seen, 1 to 8.
+    pub max_influences: u32,
+    /// The centre of a sphere around the model in all of its clips.
     pub center: Vec3,
-    /// Its radius.
+    /// The radius of the sphere.
     pub radius: f32,
-    /// Where instances are drawn with levels of detail of their mesh.
+    /// The distances at which instances change their level of detail.
     pub levels: LevelRanges,
 }
 
-/// World units, as [`LodView::projected_distance`] counts them, from which on levels 1, 2 … of a character
-/// ([`level_errors`](super::level_errors)) are used, in place of finer ones.
+/// The distances, in world units as [`LodView::projected_distance`] measures them, from which on levels 1, 2 …
+/// of a character ([`level_errors`](super::level_errors)) replace finer ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelRanges {
     distances: [f32; MAX_LEVELS - 1],
@@ -57,13 +59,15 @@ pub struct LevelRanges {
 }
 
 impl LevelRanges {
-    /// Level 0 everywhere: the mesh itself.
+    /// Level 0, the mesh itself, at all distances.
     pub const NONE: Self = Self { distances: [f32::MAX; MAX_LEVELS - 1], coarser: 0 };
 
-    /// Where level 1 begins, level 2 and so on. A level that begins where the next one does is not used.
+    /// The distances at which level 1, level 2 and so on begin. A level that begins where the next one does is
+    /// not used.
     ///
     /// # Errors
-    /// [`InputError`] for distances that are not finite, or descend, and for [`MAX_LEVELS`] or more of them.
+    /// [`InputError`] for distances that are not finite or that descend, and for [`MAX_LEVELS`] or more of
+    /// them.
     pub fn new(distances: &[f32]) -> Result<Self, InputError> {
         let mut ranges = Self { coarser: distances.len(), ..Self::NONE };
         let Some(to) = ranges.distances.get_mut(..distances.len()) else {
@@ -82,7 +86,7 @@ impl LevelRanges {
         Ok(ranges)
     }
 
-    /// Where level 1 begins, level 2 and so on.
+    /// The distances at which level 1, level 2 and so on begin.
     pub fn distances(&self) -> &[f32] {
         &self.distances[..self.coarser]
     }
@@ -93,18 +97,19 @@ impl LevelRanges {
     }
 }
 
-/// Words from one level's list of drawn instances to the next one's: a multiple of 64, so that each list can be bound.
+/// Words from one level's list of drawn instances to the next: a multiple of 64, so that each list can be
+/// bound.
 pub fn list_stride(instances: usize) -> usize {
     instances.next_multiple_of(64)
 }
 
-/// Words of the lists of drawn instances of so many levels, 1 to [`MAX_LEVELS`]: [`list_stride`] each, but for a single
-/// one, which needs no more than there are instances.
+/// Number of words of the lists of drawn instances of `levels` levels, 1 to [`MAX_LEVELS`]: [`list_stride`]
+/// each. A single list needs only one word per instance.
 pub fn list_words(instances: usize, levels: usize) -> usize {
     if levels == 1 { instances } else { levels * list_stride(instances) }
 }
 
-/// [`LodView::near`] and [`LodView::far`] of crowds that do not fade.
+/// [`LodView::fade_start`] and [`LodView::fade_end`] for crowds that do not fade.
 pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
 
 impl LodView {
@@ -123,18 +128,22 @@ impl LodView {
         if self.steps == 0 || self.steps > 1 << 16 {
             return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
         }
-        if !(1..=MAX_INFLUENCES as u32).contains(&self.most) {
-            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MAX_INFLUENCES}")));
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
+            return Err(InputError::new(
+                "view.max_influences",
+                self.max_influences,
+                format!("must be in 1..={MAX_INFLUENCES}"),
+            ));
         }
-        InstanceLod::at_distance(0.0, [self.near, self.far])
+        InstanceLod::at_distance(0.0, [self.fade_start, self.fade_end])
             .map(|_| ())
-            .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
+            .map_err(|error| InputError::new(format!("view.{}", error.path), error.value, error.bound))
     }
 
-    /// How far away a place counts: its distance from the eye where that is straight ahead, less to the side, where a
-    /// perspective makes things larger; 0 beside the eye and behind it. For a place at a depth z and a distance d that is
-    /// z²/d, since what moves there by a small step moves on screen by focal·step·d/z² pixels at most. Of a parallel view
-    /// the distance.
+    /// The distance at which a point counts. It equals the distance from the eye straight ahead, is less to the
+    /// side, where perspective enlarges, and is 0 beside the eye and behind it. For a point at depth z and
+    /// distance d it is z²/d, because a small displacement there moves the point on screen by at most
+    /// focal·displacement·d/z² pixels. In a parallel view it is the distance.
     pub fn projected_distance(&self, place: Vec3) -> f32 {
         let towards = place - self.eye;
         let distance = towards.length();
@@ -147,15 +156,15 @@ impl LodView {
         }
     }
 
-    /// A unit vector, where the view is a perspective.
+    /// The unit vector ahead, if the view is a perspective.
     pub(crate) fn ahead(&self) -> Option<Vec3> {
         self.clip_from_world.row(3).truncate().try_normalize()
     }
 
-    /// The planes of the view's volume: unit normals inwards, and distances.
+    /// The planes of the view volume: unit normals that point inwards, and distances.
     pub fn planes(&self) -> [Vec4; 6] {
         let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_world.row(row));
-        // A plane that lies at infinity cuts nothing off.
+        // A plane at infinity cuts nothing off.
         let unit = |plane: Vec4| match plane.truncate().length() {
             length if length > 0.0 => plane / length,
             _ => Vec4::W,
@@ -164,23 +173,7 @@ impl LodView {
     }
 }
 
-/// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
-/// its clips: [`Extent`](super::extent::Extent).
-pub fn bounding_sphere(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
-    let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    let center = middle_of(low, high);
-    (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
-}
-
-/// Of a ball.
-pub(crate) const MARGIN: f32 = 1.05;
-
-/// The middle of a box, if it has any.
-pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
-    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
-}
-
-/// Where an instance of uniform scale stands: turned about +Y, then moved.
+/// The placement of an instance of uniform scale: rotated about +Y by `turn` radians, then translated.
 pub fn placed(at: Vec3, turn: f32, scale: f32) -> Affine {
     let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
     [[cosine, 0.0, sine, at.x], [0.0, scale, 0.0, at.y], [-sine, 0.0, cosine, at.z]]
@@ -195,10 +188,10 @@ mod tests {
         LodView {
             clip_from_world: Mat4::IDENTITY,
             eye: Vec3::ZERO,
-            near: 10.0,
-            far: 30.0,
+            fade_start: 10.0,
+            fade_end: 30.0,
             steps: 64,
-            most: 8,
+            max_influences: 8,
             center: Vec3::ZERO,
             radius: 1.0,
             levels: LevelRanges::NONE,
@@ -208,14 +201,14 @@ mod tests {
     #[test]
     fn views_are_checked_field_by_field() {
         assert_eq!(view().validate(), Ok(()));
-        let refused = |view: LodView| view.validate().expect_err("refused").field;
+        let refused = |view: LodView| view.validate().expect_err("refused").path;
         assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
         assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
         assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
-        assert_eq!(refused(LodView { most: 0, ..view() }), "view.most");
-        assert_eq!(refused(LodView { most: 9, ..view() }), "view.most");
-        assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
-        assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
+        assert_eq!(refused(LodView { max_influences: 0, ..view() }), "view.max_influences");
+        assert_eq!(refused(LodView { max_influences: 9, ..view() }), "view.max_influences");
+        assert_eq!(refused(LodView { fade_start: 30.0, ..view() }), "view.fade_start");
+        assert_eq!(refused(LodView { fade_end: f32::INFINITY, ..view() }), "view.far");
     }
 
     #[test]
@@ -228,7 +221,7 @@ mod tests {
         assert_eq!(ranges.distances(), [-1.0, 5.0, 5.0, 9.0]);
         assert_eq!(LevelRanges::new(&[]), Ok(LevelRanges::NONE));
         assert_eq!(LevelRanges::NONE.at(f32::MAX), 0);
-        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").field;
+        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").path;
         assert_eq!(refused(&[2.0, 1.0]), "levels[1]");
         assert_eq!(refused(&[1.0, f32::NAN]), "levels[1]");
         assert_eq!(refused(&[f32::INFINITY]), "levels[0]");
@@ -281,13 +274,5 @@ mod tests {
         ] {
             assert!(!inside(outside), "{outside}");
         }
-    }
-
-    #[test]
-    fn balls_hold_their_places() {
-        let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
-        let (center, radius) = bounding_sphere(places.into_iter());
-        assert!(places.iter().all(|place| place.distance(center) <= radius) && radius < 1.5);
-        assert_eq!(bounding_sphere(std::iter::empty()), (Vec3::ZERO, 0.0));
     }
 }

@@ -1,4 +1,4 @@
-//! Weights of morph targets: reference of `kernels/skinning/morph_weights.wgsl`.
+//! Weights of morph targets: the CPU reference of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
@@ -6,11 +6,11 @@ use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::asset::Mesh;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The weights of a mesh's targets where instances stand in the clips of a set, instance by instance; those of instances
-/// that are not seen stay. `clips` says which of the model's each of the set is.
+/// The weights of a mesh's targets at each instance's time in its clip, instance by instance; those of
+/// instances that are not seen stay unchanged. `clips` gives the index in the model of each clip of the set.
 ///
 /// # Panics
-/// For lists of other lengths, and instances of no clip of the set.
+/// If the lengths of the lists differ, and for instances of a clip that the set does not have.
 pub fn morph_weights(
     mesh: &Mesh,
     (set, clips): (&ClipSet, &[usize]),
@@ -21,7 +21,7 @@ pub fn morph_weights(
 ) {
     let targets = mesh.targets.len().max(1);
     let rooms = weights.chunks_exact_mut(targets).zip(instances).zip(instance_lods);
-    for ((weights, instance), _) in rooms.filter(|(_, instance_lod)| instance_lod.most > 0) {
+    for ((weights, instance), _) in rooms.filter(|(_, instance_lod)| instance_lod.max_influences > 0) {
         let duration = set.clips()[instance.clip as usize].duration;
         let time = inside_clip(instance.wrap(), duration, instance.start + instance.rate * elapsed);
         weights.copy_from_slice(&mesh.weights_at(clips[instance.clip as usize], time));
