@@ -17,11 +17,12 @@ struct BoundsParams {
 @group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
 
 const THREADS = 64u;
-// See BOUNDS_GROWTH of the host.
-const GROWTH = 1.0 + 1.0 / 524288.0;
-const OF_CENTRE = 1.0 / 2097152.0;
-// 2^-62
-const LEAST = 2.16840434e-19;
+// By what extents grow.
+const GROWTH: f32 = 1.0 + 1.0 / 524288.0;
+// What extents get of the distance of the centre.
+const OF_CENTRE: f32 = 1.0 / 2097152.0;
+// What a row is longer than its squares say: 2⁻⁶².
+const LEAST: f32 = 2.16840434e-19;
 // The largest f32, no digit more: compilers refuse what lies beyond.
 const LARGEST = 3.4028234663852886e38;
 

@@ -2,6 +2,7 @@
 // dispatch serves the chains of one level, whose parents are done. With WHOLE, a thread walks all chains of its
 // instance. With COMPACTED, only instances of a list are walked, and of them only what is dirty: with a bone always all
 // bones below it.
+import package::wgsl::animation::order::{CONTINUES, NO_PARENT};
 
 override WHOLE: bool = false;
 override COMPACTED: bool = false;
@@ -29,9 +30,6 @@ struct ConcatParams {
 @group(0) @binding(6) var<storage, read> locals: array<vec4<f32>>;
 // Three rows a bone.
 @group(0) @binding(7) var<storage, read_write> models: array<vec4<f32>>;
-
-const NO_PARENT = 0xffffffffu;
-const CONTINUES = 0xfffffffeu;
 
 struct Rows {
     x: vec4<f32>,

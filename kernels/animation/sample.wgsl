@@ -3,6 +3,7 @@
 // what other layers play over it, as far as weight and mask let them.
 import package::wgsl::animation::gating::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::interpolation::{LINEAR, STEP};
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 
 override COMPACTED: bool = false;
@@ -39,10 +40,11 @@ struct SampleParams {
 // For each layer above the base a weight an instance, then for each of them a mask of bones.
 @group(0) @binding(8) var<storage, read> shares: array<f32>;
 
-const CONSTANT = 0x3fffffffu;
-const STEP = 0u;
-const LINEAR = 1u;
-const VANISHING = 1e-12;
+// A track's timeline when its value never changes.
+const CONSTANT: u32 = 0x3fffffffu;
+// A spline of rotations that passes this close to zero, as a squared length, keeps the key before: nothing has a
+// direction there.
+const VANISHING: f32 = 1e-12;
 
 struct Between {
     // The value's index, and the interpolation to the next: STEP where there is nothing to interpolate.

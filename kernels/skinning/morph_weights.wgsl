@@ -2,6 +2,7 @@
 // finds one target's weight of one instance; instances that are not seen keep theirs.
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::interpolation::{LINEAR, SPLINE};
 import package::wgsl::animation::timeline::{place, times};
 import package::wgsl::skinning::reduction::Reduction;
 
@@ -13,13 +14,17 @@ struct MorphWeightsParams {
     elapsed: f32,
 }
 
-// A clip's keys.
+// A clip's keys in a set.
 struct WeightEntry {
+    // The clip's, in seconds.
     duration: f32,
+    // Where its key times begin.
     first_time: u32,
+    // How many, at least 1.
     keys: u32,
+    // Where its values begin.
     first_value: u32,
-    // 0 step, 1 linear, 2 cubic spline: in-tangents, values and out-tangents.
+    // STEP, LINEAR or SPLINE: in-tangents, values and out-tangents.
     interpolation: u32,
 }
 
@@ -33,9 +38,6 @@ struct WeightEntry {
 // A value a target, key by key.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
 @group(0) @binding(6) var<storage, read_write> weights: array<f32>;
-
-const LINEAR = 1u;
-const SPLINE = 2u;
 
 fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
     // In-tangents, values and out-tangents of a key, then those of the next.

@@ -6,31 +6,42 @@ import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surfa
 
 override METHOD: u32 = 0u;
 
+// What all points of a list are shaded with.
 struct ShadeView {
+    // From world to clip space, depth 0 to 1.
     clip_from_world: mat4x4<f32>,
-    // The eye (w = 1), or the direction towards it (w = 0).
+    // The eye with w = 1, or the direction towards it with w = 0 for a parallel projection; world space.
     eye: vec4<f32>,
-    // Soft shadow: steps, and the excess over distance at which shadow is full.
+    // Heights on the way to the light that a soft shadow looks at, 1 to `MOST_STEPS`.
     shadow_steps: u32,
+    // How far the surface rises above the way to the light, over its distance, where a soft shadow is full; 0.001 to
+    // 1000.
     softness: f32,
 }
 
+// A point of a relief, as the eye's ray met it.
 struct ShadePoint {
-    // Unit vector towards the light in tangent space; w: depth of the relief in uv units.
-    light: vec4<f32>,
-    // Where the eye's ray meets the polygon, in world space; w: world units a uv unit.
-    position: vec4<f32>,
-    // The eye's ray, and what it hit.
+    // The unit vector towards the light, tangent space.
+    light: vec3<f32>,
+    // Depth of the relief in uv units.
+    scale: f32,
+    // Where the eye's ray meets the polygon, world space.
+    position: vec3<f32>,
+    // World units a uv unit.
+    world: f32,
+    // The eye's ray.
     ray: SurfaceRay,
+    // What it hit.
     hit: SurfaceHit,
 }
 
+// How a point is shaded.
 struct Shade {
     // 1 where the light's own ray ends in the point, else 0.
     hard: f32,
-    // 0 in full shadow to 1 in full light.
+    // 0 in full shadow to 1 in full light, with penumbras.
     soft: f32,
-    // 0 (near) to 1 (far).
+    // The depth of the relief there, 0 (near) to 1 (far).
     depth: f32,
 }
 
@@ -48,14 +59,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         return;
     }
     let point = points[index];
-    let light = point.light.xyz;
-    let scale = point.light.w;
+    let light = point.light;
+    let scale = point.scale;
     let first = surface_trace(METHOD, heights, acceleration, surface_light_ray(point.hit, light, scale), march);
     let soft = surface_soft_shadow(
         heights, point.hit, light, scale, march, view.shadow_steps, view.softness);
-    let towards = surface_towards(view.eye, point.position.xyz);
-    let distance = surface_distance(point.ray, point.hit, scale) * point.position.w;
-    let depth = surface_depth(view.clip_from_world, point.position.xyz, towards, distance);
+    let towards = surface_towards(view.eye, point.position);
+    let distance = surface_distance(point.ray, point.hit, scale) * point.world;
+    let depth = surface_depth(view.clip_from_world, point.position, towards, distance);
     let hard = select(1.0, 0.0, surface_shaded(first, point.hit));
     shades[index] = Shade(hard, soft, depth);
 }

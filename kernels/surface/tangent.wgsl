@@ -16,12 +16,19 @@ struct TangentParams {
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
 @group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
-// 2^-100: what is smaller has no direction. Also as bits, and those of 2^100.
-const LEAST = 7.888609052210118e-31;
-const LEAST_BITS = 0x0d800000u;
-const LARGEST_BITS = 0x71800000u;
-const DEGENERATE = 1.0 / 16384.0;
-const VANISHING = 1.0 / 64.0;
+// 2^-100: what is smaller has no direction.
+const LEAST: f32 = 7.888609052210118e-31;
+// Its bits.
+const LEAST_BITS: u32 = 0x0d800000u;
+// The bits of 2^100.
+const LARGEST_BITS: u32 = 0x71800000u;
+// A triangle whose area, tangent, or area in uv is no more than this contributes nothing. All three are measured
+// after scaling the triangle to a box of edge 1, in uv in each direction by itself. The errors of f32 are at most a
+// sixteenth of it: they turn a tangent of this length by less than four degrees.
+const DEGENERATE: f32 = 1.0 / 16384.0;
+// A sum of tangents vanishes when what is orthogonal to the normal is no more than this share of the weights. Handedness
+// is negative when its sum is below minus this share.
+const VANISHING: f32 = 1.0 / 64.0;
 
 struct Contribution {
     tangent: vec3<f32>,

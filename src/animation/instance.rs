@@ -1,6 +1,7 @@
 //! What a character plays: a clip, from a start, at a rate.
 
 use crate::InputError;
+use crate::shared::animation::clock;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
 /// The most seconds that a start, or what has elapsed since, may be from 0, and the most clip seconds a second: their
@@ -15,7 +16,7 @@ pub enum Wrap {
     #[default]
     Loop = 0,
     /// The first or last pose stays.
-    Clamp = 1,
+    Clamp = clock::WRAP_CLAMP,
 }
 
 impl Wrap {

@@ -2,16 +2,14 @@
 //! missed before it shows. Quantized on the host, so that every device decides alike.
 
 use crate::InputError;
-pub use crate::shared::animation::gating::Lod;
-
-/// [`Lod::omega`] at full detail.
-pub const OMEGA_ONE: u32 = 1 << 16;
+use crate::shared::animation::gating;
+pub use crate::shared::animation::gating::{Lod, OMEGA_ONE};
 
 impl Lod {
     /// Not in view: costs nothing, and is sampled in full when it comes back.
-    pub const HIDDEN: u32 = 1;
+    pub const HIDDEN: u32 = gating::LOD_HIDDEN;
     /// Sampled in full this frame, whatever the gate says.
-    pub const REFRESH: u32 = 2;
+    pub const REFRESH: u32 = gating::LOD_REFRESH;
     /// Full detail.
     pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };
 }

@@ -1,12 +1,7 @@
 //! The order in which bones are walked: parents first, cut into chains.
 
 use crate::asset::skeleton::Skeleton;
-
-/// The parent of a root.
-pub const NO_PARENT: u32 = u32::MAX;
-
-/// The parent's bone is the slot before.
-pub const CONTINUES: u32 = u32::MAX - 1;
+pub use crate::shared::animation::order::{CONTINUES, NO_PARENT};
 
 /// A bone's place in an [`Order`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

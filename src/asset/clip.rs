@@ -26,6 +26,7 @@ mod replaced;
 use super::skeleton::Skeleton;
 use super::transform::{finite, unit};
 use crate::InputError;
+use crate::shared::animation::interpolation;
 
 /// The largest key time in seconds: some 12 days.
 pub const LONGEST: f32 = 1_048_576.0;
@@ -38,19 +39,19 @@ const LEAST_TIME: f32 = 7.888_609e-31;
 #[repr(u32)]
 pub enum Interpolation {
     /// The key before.
-    Step = 0,
+    Step = interpolation::STEP,
     /// On the straight line; rotations on the shortest arc.
-    Linear = 1,
+    Linear = interpolation::LINEAR,
     /// A Hermite spline with tangents at each key, in units a second; rotations are normalized after it.
-    CubicSpline = 2,
+    CubicSpline = interpolation::SPLINE,
 }
 
 impl Interpolation {
     /// What a track's number stands for.
     pub fn of_code(code: u32) -> Self {
         match code {
-            0 => Self::Step,
-            1 => Self::Linear,
+            interpolation::STEP => Self::Step,
+            interpolation::LINEAR => Self::Linear,
             _ => Self::CubicSpline,
         }
     }

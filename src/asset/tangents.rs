@@ -5,18 +5,11 @@ use glam::{DVec2, DVec3};
 
 use super::indices::check_triangles;
 use crate::InputError;
+use crate::shared::surface::tangent::{self, LARGEST_BITS, LEAST_BITS};
+pub use crate::shared::surface::tangent::{DEGENERATE, VANISHING};
 
 /// The largest size of a coordinate, of positions and uv.
 pub const COORDINATE_LIMIT: f32 = 1e18;
-
-/// A triangle whose area, tangent, or area in uv is no more than this contributes nothing. All three are measured
-/// after scaling the triangle to a box of edge 1, in uv in each direction by itself. The errors of
-/// f32 are at most a sixteenth of it: they turn a tangent of this length by less than four degrees.
-pub const DEGENERATE: f32 = 1.0 / 16_384.0;
-
-/// A sum of tangents vanishes when what is orthogonal to the normal is no more than this share of the weights.
-/// Handedness is negative when its sum is below minus this share.
-pub const VANISHING: f32 = 1.0 / 64.0;
 
 /// How far a component of a tangent may lie from the twin's, on any device, for a vertex of sensitivity 1
 /// ([`Frame`]).
@@ -116,10 +109,8 @@ impl Adjacency {
     }
 }
 
-/// 2⁻¹⁰⁰, its bits and those of 2¹⁰⁰.
-const LEAST: f64 = 7.888_609_052_210_118e-31;
-const LEAST_BITS: u32 = 0x0d80_0000;
-const LARGEST_BITS: u32 = 0x7180_0000;
+/// 2⁻¹⁰⁰.
+const LEAST: f64 = tangent::LEAST as f64;
 
 /// A unit of the last place of numbers around 1.
 const EPSILON: f64 = f32::EPSILON as f64;

@@ -1,32 +1,21 @@
 //! Draws skinned instances of a mesh into the caller's render pass: two indirect draws for all, or for all of a level of
 //! detail, the second of what is mirrored. A mesh has one material: a model of several is drawn mesh by mesh.
 
-use encase::ShaderType;
-use glam::{Mat4, Vec4};
+use glam::Mat4;
 
 use crate::asset::material::Alpha;
 use crate::asset::mesh::MOST_LEVELS;
 use crate::asset::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, shaders};
 use crate::render::albedo::Albedo;
-use crate::render::pipeline::Draws;
+use crate::render::pipeline::{Draws, bind};
+use crate::shared::render::skinned::SkinnedView;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{draws_at, list_stride};
 use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
-
-/// `SkinnedView` of the shader.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SkinnedView {
-    pub clip_from_world: Mat4,
-    pub light: Vec4,
-    pub color: Vec4,
-    pub vertices: u32,
-    pub cutoff: f32,
-    pub side: f32,
-}
 
 /// Draws meshes on targets of a format.
 #[derive(Debug, Clone)]
@@ -85,8 +74,7 @@ impl SkinnedRenderer {
             },
             vertices: &[],
         };
-        let key = format!("{} {:?} {sides:?} {}", draws.shader.name, self.color, draws.fragment);
-        gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
+        draws.pipeline(gpu, self.color)
     }
 
     /// Binds instances. Until [`SkinnedScene::arguments`] says otherwise, as many of the first list are drawn as it has
@@ -232,7 +220,6 @@ impl SkinnedScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::layout::layout_test;
 
     #[test]
     fn lists_are_whole() {
@@ -242,6 +229,4 @@ mod tests {
             assert_eq!(lists(words, places).expect_err("refused").field, "drawn.len");
         }
     }
-
-    layout_test!(skinned_view_layout: SkinnedView = RENDER_SKINNED "SkinnedView");
 }

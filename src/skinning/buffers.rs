@@ -10,6 +10,7 @@ use crate::asset::mesh::{MOST_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;
 use crate::asset::transform::rows;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
+use crate::shared::skinning::select::Dispatched;
 use crate::skinning::reduction::Reduction;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
@@ -168,7 +169,7 @@ pub struct ActiveClusters {
 }
 
 /// Words of [`ActiveClusters::dispatched`].
-pub const DISPATCHED_WORDS: usize = 5;
+pub const DISPATCHED_WORDS: usize = size_of::<Dispatched>() / size_of::<u32>();
 
 impl ActiveClusters {
     /// Room for all clusters of all instances; none is active.

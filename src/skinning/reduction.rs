@@ -3,21 +3,7 @@
 use crate::InputError;
 use crate::asset::influences::MOST_INFLUENCES;
 use crate::asset::mesh::MOST_LEVELS;
-
-/// Which influences count, and which vertices.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Reduction {
-    /// The λ of `fade`, 0 to 1.
-    pub fade: f32,
-    /// The k of `truncate`, at least 1; 0 of instances that are not seen, which are not skinned.
-    pub most: u32,
-    /// The character's level of detail: 0 is its meshes themselves; at level n each has the coarsest of
-    /// [`Mesh::levels`](crate::asset::Mesh::levels) that is off by no more than the n-th of
-    /// [`level_errors`](super::level_errors). Of one that there is not, the last.
-    pub level: u32,
-}
+pub use crate::shared::skinning::reduction::Reduction;
 
 impl Reduction {
     /// Every influence of every vertex.

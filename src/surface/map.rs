@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::shared::surface::ray;
 use crate::{Error, InputError};
 
 /// The longest edge of a map in texels: WebGPU's default limit for a texture.
@@ -10,12 +11,13 @@ pub const MAP_EDGE: u32 = 8192;
 /// What lies beyond a map's edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
+#[repr(u32)]
 pub enum Address {
     /// The map again: it tiles.
     #[default]
-    Wrap,
+    Wrap = ray::SURFACE_WRAP,
     /// The texels of the edge, for ever.
-    Clamp,
+    Clamp = ray::SURFACE_CLAMP,
 }
 
 impl Address {
@@ -27,7 +29,7 @@ impl Address {
         }
     }
 
-    /// Its number in the shaders: `SURFACE_WRAP` and `SURFACE_CLAMP` of `wgsl/surface/ray.wgsl`.
+    /// Its number in the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }

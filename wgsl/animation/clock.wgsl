@@ -4,7 +4,7 @@
 const WRAP_CLAMP = 1u;
 
 // After so many turns, f32 knows no place in a clip.
-const MOST_TURNS = 16777216.0;
+const MOST_TURNS: f32 = 16777216.0;
 
 // Seconds since the clip's start, 0 to `duration`, of a time in clip seconds, which may be negative; a loop never reaches
 // its end. Its start, where a loop's time is so large that it is nowhere.

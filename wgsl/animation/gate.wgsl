@@ -2,6 +2,7 @@
 import package::wgsl::animation::gated::bits::bits;
 import package::wgsl::animation::gating::{Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, fraction_of, is_ahead, verdict_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, share_of};
+import package::wgsl::animation::order::NO_PARENT;
 
 // One of the constants below.
 override MODE: u32 = 0;
@@ -106,7 +107,6 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     return chosen;
 }
 
-const NO_PARENT = 0xffffffffu;
 // More than is ever allowed.
 const EVERYTHING = 1u << 30u;
 // Of what a bone is granted: above 8 bits its share of what is left, and in the lowest five what rounding may hide.

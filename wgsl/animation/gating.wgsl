@@ -12,10 +12,11 @@ struct Lod {
     flags: u32,
 }
 
-// Flags: nothing is sampled; everything is, now.
+// Not in view: costs nothing, and is sampled in full when it comes back.
 const LOD_HIDDEN = 1u;
+// Sampled in full this frame, whatever the gate says.
 const LOD_REFRESH = 2u;
-// Full detail.
+// `Lod::omega` at full detail.
 const OMEGA_ONE = 65536u;
 
 // Where an instance stands.

@@ -15,11 +15,11 @@ const SURFACE_EXHAUSTED: u32 = 2u;
 // divides by next to nothing.
 const SURFACE_LEAST_COSINE: f32 = 0.0078125;
 
-// A ray through the volume, in tangent space.
+// A ray through the relief volume, in tangent space: at parameter t it is at uv origin + t · slope and height 1 − t.
 struct SurfaceRay {
     // uv where the ray enters the volume, at height 1.
     origin: vec2<f32>,
-    // uv that it travels while it falls to height 0: at parameter t it is at origin + t · slope, height 1 − t.
+    // uv that it travels while it falls to height 0.
     slope: vec2<f32>,
     // Cosine of the angle between the eye and the normal; a ray with 0 or less is a miss.
     cosine: f32,
@@ -40,18 +40,18 @@ struct SurfaceMarch {
     mip: u32,
 }
 
-// What a method found.
+// What a ray hit.
 struct SurfaceHit {
     // Displaced texture coordinates; beyond the tile where the ray left it.
     uv: vec2<f32>,
     // Height of the surface there.
     height: f32,
-    // The ray's parameter there: what depth follows from.
+    // The ray's parameter there, which depth follows from.
     parameter: f32,
     // Texels loaded, those of acceleration maps included.
     samples: u32,
     // SURFACE_MISS, SURFACE_HIT or SURFACE_EXHAUSTED.
-    outcome: u32,
+    outcome_code: u32,
 }
 
 // The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space; `scale` the volume's

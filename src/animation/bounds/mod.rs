@@ -13,7 +13,7 @@
 //!
 //! A box contains the exact one of the palette's `f32` values, on every device. With ε = 2⁻²⁴ (`+ − ×` to either
 //! neighbour 2ε, `inverseSqrt` 4ε, division 5ε, `sqrt` after both 9ε): a row's squared length carries 6ε, its length 12ε,
-//! times the reach 14ε. [`BOUNDS_GROWTH`] adds 32ε of the extent and [`BOUNDS_OF_CENTRE`] 8ε of the centre, of which
+//! times the reach 14ε. `GROWTH` adds 32ε of the extent and `OF_CENTRE` 8ε of the centre, of which
 //! multiplying and adding them takes 6ε and 4ε, and subtracting from the centre 2ε of both: at least 10ε and 2ε are left.
 //! Rows below 2⁻⁶³, whose squares devices may flush to 0, are covered by 2⁻⁶² of the reach. Values must stay below
 //! 2⁶³; who transforms vertices by the palette in `f32` adds rounding of his own, some 8ε of where they lie.
@@ -31,15 +31,6 @@ pub mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{BoundsPass, Share};
-
-/// By what extents grow.
-pub const BOUNDS_GROWTH: f32 = 1.0 + 1.0 / 524_288.0;
-
-/// What extents get of the distance of the centre.
-pub const BOUNDS_OF_CENTRE: f32 = 1.0 / 2_097_152.0;
-
-/// What a row is longer than its squares say: 2⁻⁶².
-pub const BOUNDS_LEAST: f32 = 2.168_404_3e-19;
 
 /// How far a side may lie from the twin's, on any device, times the largest side: 14ε and 6ε of the extent, 4ε of the
 /// centre and 2ε of the side from either: 52ε < 4e-6.

@@ -4,7 +4,7 @@ use super::{Bounds, check_reaches};
 use crate::animation::crowd::Crowd;
 use crate::gpu::bindings::animation::bounds as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::animation::bounds::BoundsParams;
+use crate::shared::animation::bounds::{BoundsParams, THREADS};
 use crate::{Error, InputError};
 
 /// What takes the bones of an instance together.
@@ -67,7 +67,7 @@ impl BoundsPass {
             bounds: bounds.slice().cast(),
         };
         let threads = match self.share {
-            Share::Workgroup => 64 * params.instances,
+            Share::Workgroup => THREADS * params.instances,
             Share::Whole => params.instances,
         };
         let step = Step {

@@ -1,7 +1,8 @@
 //! Bounds of instances: twin of `kernels/animation/bounds.wgsl`.
 
-use crate::animation::bounds::{BOUNDS_GROWTH, BOUNDS_LEAST, BOUNDS_OF_CENTRE, Bounds};
+use crate::animation::bounds::Bounds;
 use crate::asset::transform::Affine;
+use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTRE};
 
 /// The bounds of each instance, from its palette and the reach of each bone.
 ///
@@ -17,7 +18,7 @@ fn around(models: &[Affine], reaches: &[f32]) -> Bounds {
     for (model, reach) in models.iter().zip(reaches) {
         for (axis, [x, y, z, centre]) in model.iter().enumerate() {
             let length = (x * x + y * y + z * z).sqrt();
-            let half = reach * (length + BOUNDS_LEAST) * BOUNDS_GROWTH + centre.abs() * BOUNDS_OF_CENTRE;
+            let half = reach * (length + LEAST) * GROWTH + centre.abs() * OF_CENTRE;
             bounds.low[axis] = bounds.low[axis].min(centre - half);
             bounds.high[axis] = bounds.high[axis].max(centre + half);
         }

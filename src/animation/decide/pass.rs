@@ -3,14 +3,15 @@
 use super::Choice;
 use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
+use crate::animation::compact::pass as compact;
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gating::Gating;
-use crate::animation::phase::pass::PhaseTime;
+use crate::animation::phase::pass::{self as phase, PhaseTime};
 use crate::animation::phase::{PhaseJob, PhasePass};
-use crate::gpu::bindings::animation::decide as bindings;
+use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::CompactParams;
@@ -126,7 +127,7 @@ fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
             remedy: "take Dispatches::Each, as Dispatches::of would",
         });
     }
-    bindings::kernel(gpu, &bindings::Constants { mode: gate::mode(gate) })
+    bindings::decide::kernel(gpu, &bindings::decide::Constants { mode: gate::mode(gate) })
 }
 
 fn one(
@@ -141,33 +142,51 @@ fn one(
     let phase = PhaseTime::new(gpu, clips, crowd, gating)?;
     let gate = GateTime::new(gpu, gate, crowd, gating)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
-    let group = bindings::Group {
-        phase_params: &phase.uniform,
-        instances: crowd.instances.slice(),
-        clips: clips.clips.slice(),
-        timelines: clips.timelines.slice().cast(),
-        times: clips.times.slice(),
-        lods: gating.lods.slice(),
-        shares: crowd.shares.slice(),
-        history: gating.history.slice(),
-        phases: gating.phases.slice(),
-        gate_params: &gate.uniform,
-        movers: gating.movers.slice(),
-        table: gating.table.slice(),
-        sampled: gating.sampled.slice(),
-        kept: gating.kept.slice(),
-        bits: active.bits.slice(),
-        compact_params: &compact,
-        slots: active.slots.slice().cast(),
-        dirty: active.dirty.slice(),
-        counts: active.counts.slice(),
-        pairs: active.pairs.pairs.slice(),
-        pair_dispatch: active.pairs.dispatched.slice().cast(),
-        dirty_instances: active.instances.slice(),
-        instance_dispatches: active.dispatches.slice(),
-    };
+    let group = group(
+        phase::group(&phase, clips, crowd, gating),
+        gate::group(&gate, gating, active),
+        compact::group(&compact, active),
+    );
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
     Ok(Work::One { phase, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+}
+
+/// The resources of all three kernels that `animation/decide` stands for.
+fn group<'a>(
+    phase: bindings::phase::Group<'a>,
+    gate: bindings::gate::Group<'a>,
+    compact: bindings::compact::Group<'a>,
+) -> bindings::decide::Group<'a> {
+    let bindings::phase::Group { phase_params, instances, clips, timelines, times, .. } = phase;
+    let bindings::phase::Group { lods, shares, history, phases, .. } = phase;
+    let bindings::gate::Group { gate_params, movers, table, sampled, kept, bits, .. } = gate;
+    let bindings::compact::Group { compact_params, slots, dirty, counts, .. } = compact;
+    let bindings::compact::Group { pairs, pair_dispatch, dirty_instances, instance_dispatches, .. } = compact;
+    bindings::decide::Group {
+        phase_params,
+        instances,
+        clips,
+        timelines,
+        times,
+        lods,
+        shares,
+        history,
+        phases,
+        gate_params,
+        movers,
+        table,
+        sampled,
+        kept,
+        bits,
+        compact_params,
+        slots,
+        dirty,
+        counts,
+        pairs,
+        pair_dispatch,
+        dirty_instances,
+        instance_dispatches,
+    }
 }
 
 impl Decider {

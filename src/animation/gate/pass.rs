@@ -40,22 +40,27 @@ impl GatePass {
         active: &Active,
     ) -> Result<GateJob, Error> {
         let time = GateTime::new(gpu, self.gate, crowd, gating)?;
-        let group = bindings::Group {
-            lods: gating.lods.slice(),
-            phases: gating.phases.slice(),
-            gate_params: &time.uniform,
-            movers: gating.movers.slice(),
-            table: gating.table.slice(),
-            sampled: gating.sampled.slice(),
-            kept: gating.kept.slice(),
-            bits: active.bits.slice(),
-        };
+        let group = group(&time, gating, active).bind(gpu, &self.kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.threads(self.gate)),
             kernel: self.kernel.clone(),
         };
         Ok(GateJob { time, job: Job::new(gpu, "animation/gate", vec![step])? })
+    }
+}
+
+/// What a gate decides from, and its decision.
+pub(crate) fn group<'a>(time: &'a GateTime, gating: &'a Gating, active: &'a Active) -> bindings::Group<'a> {
+    bindings::Group {
+        lods: gating.lods.slice(),
+        phases: gating.phases.slice(),
+        gate_params: &time.uniform,
+        movers: gating.movers.slice(),
+        table: gating.table.slice(),
+        sampled: gating.sampled.slice(),
+        kept: gating.kept.slice(),
+        bits: active.bits.slice(),
     }
 }
 
@@ -74,7 +79,7 @@ pub(crate) fn mode(gate: Gate) -> u32 {
 #[derive(Debug, Clone)]
 pub(crate) struct GateTime {
     params: GateParams,
-    pub(crate) uniform: Uniform<GateParams>,
+    uniform: Uniform<GateParams>,
 }
 
 impl GateTime {

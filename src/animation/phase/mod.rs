@@ -4,6 +4,7 @@
 //! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
 //! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
+use crate::shared::animation::gating;
 pub use crate::shared::animation::gating::Phase;
 pub use crate::shared::animation::phase::BLENDED;
 
@@ -23,13 +24,13 @@ pub use pass::{PhaseJob, PhasePass};
 #[repr(u32)]
 pub enum Verdict {
     /// Nothing: the gate decides.
-    Free = 0,
+    Free = gating::PHASE_FREE,
     /// Nobody sees it: nothing is sampled.
-    Hidden = 1,
+    Hidden = gating::PHASE_HIDDEN,
     /// Its stored pose means nothing: everything is sampled.
-    Forced = 2,
+    Forced = gating::PHASE_FORCED,
     /// Layers lie above its clip: gates that decide by motion sample everything, others decide on every bone.
-    Blended = 3,
+    Blended = gating::PHASE_BLENDED,
 }
 
 impl Verdict {
@@ -59,9 +60,9 @@ impl Phase {
     /// What asks for a pose besides the time.
     pub fn verdict(&self) -> Verdict {
         match self.fraction_and_verdict >> 20 {
-            0 => Verdict::Free,
-            1 => Verdict::Hidden,
-            2 => Verdict::Forced,
+            gating::PHASE_FREE => Verdict::Free,
+            gating::PHASE_HIDDEN => Verdict::Hidden,
+            gating::PHASE_FORCED => Verdict::Forced,
             _ => Verdict::Blended,
         }
     }

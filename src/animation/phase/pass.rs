@@ -35,19 +35,9 @@ impl PhasePass {
         gating: &Gating,
     ) -> Result<PhaseJob, Error> {
         let time = PhaseTime::new(gpu, clips, crowd, gating)?;
-        let group = bindings::Group {
-            phase_params: &time.uniform,
-            instances: crowd.instances.slice(),
-            clips: clips.clips.slice(),
-            timelines: clips.timelines.slice().cast(),
-            times: clips.times.slice(),
-            lods: gating.lods.slice(),
-            shares: crowd.shares.slice(),
-            history: gating.history.slice(),
-            phases: gating.phases.slice(),
-        };
+        let group = group(&time, clips, crowd, gating).bind(gpu, &self.kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.params.instances),
             kernel: self.kernel.clone(),
         };
@@ -55,11 +45,31 @@ impl PhasePass {
     }
 }
 
+/// What phases are found from, and where they are written.
+pub(crate) fn group<'a>(
+    time: &'a PhaseTime,
+    clips: &'a ClipBuffers,
+    crowd: &'a Crowd,
+    gating: &'a Gating,
+) -> bindings::Group<'a> {
+    bindings::Group {
+        phase_params: &time.uniform,
+        instances: crowd.instances.slice(),
+        clips: clips.clips.slice(),
+        timelines: clips.timelines.slice().cast(),
+        times: clips.times.slice(),
+        lods: gating.lods.slice(),
+        shares: crowd.shares.slice(),
+        history: gating.history.slice(),
+        phases: gating.phases.slice(),
+    }
+}
+
 /// The time of the next submission.
 #[derive(Debug, Clone)]
 pub(crate) struct PhaseTime {
     params: PhaseParams,
-    pub(crate) uniform: Uniform<PhaseParams>,
+    uniform: Uniform<PhaseParams>,
 }
 
 impl PhaseTime {

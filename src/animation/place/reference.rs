@@ -4,9 +4,7 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::asset::keyframe::{Place, place};
-
-/// After so many turns, `f32` knows no place in a clip.
-const MOST_TURNS: f32 = 16_777_216.0;
+use crate::shared::animation::clock::MOST_TURNS;
 
 /// Seconds since the clip's start, inside the clip; its start, where a loop's time is so large that it is nowhere. In the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more
 /// exact where times are large.

@@ -4,6 +4,7 @@
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::asset::Mesh;
+pub use crate::shared::skinning::morph_weights::WeightEntry;
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -22,23 +23,6 @@ pub use pass::{MorphWeightsJob, MorphWeightsPass};
 /// With ε = 2⁻²⁴ a time carries 3ε of 16 s, in stretches of 1/8 s 2.3e-5 of a stretch; a spline's slope there is at most
 /// 1.5·2 + 2·1 = 5: 1.2e-4. Its arithmetic carries some 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
-
-/// A clip's keys in a set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct WeightEntry {
-    /// The clip's, in seconds.
-    pub duration: f32,
-    /// Where its key times begin.
-    pub first_time: u32,
-    /// How many, at least 1.
-    pub keys: u32,
-    /// Where its values begin.
-    pub first_value: u32,
-    /// [`Interpolation`](crate::asset::Interpolation).
-    pub interpolation: u32,
-}
 
 /// The weights of a mesh's targets in several clips.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,20 +1,12 @@
 //! `kernels/skinning/palette.wgsl`.
 
-use encase::ShaderType;
-
 use crate::Error;
 use crate::asset::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::skinning::palette as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::palette::PaletteParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
-
-/// `PaletteParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct PaletteParams {
-    pub bones: u32,
-    pub all_bones: u32,
-    pub pairs: u32,
-}
 
 /// Makes palettes.
 #[derive(Debug, Clone)]
@@ -29,8 +21,8 @@ impl PalettePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |dual| Kernel::new(gpu, &shaders::SKINNING_PALETTE, &[("DUAL", dual)]);
-        Ok(Self { linear: kernel(0.0)?, dual: kernel(1.0)? })
+        let kernel = |dual| bindings::kernel(gpu, &bindings::Constants { dual });
+        Ok(Self { linear: kernel(false)?, dual: kernel(true)? })
     }
 
     /// Prepares the palettes of all instances that are seen, from `models`, as [`crate::animation::concat`] writes them.
@@ -53,27 +45,19 @@ impl PalettePass {
             pairs: (crowd.instances * mesh.bones.len()) as u32,
         };
         let uniform = Uniform::new(gpu, "palette", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            mesh.bones.raw().as_entire_binding(),
-            mesh.inverse_binds.raw().as_entire_binding(),
-            models.raw().as_entire_binding(),
-            crowd.reductions.raw().as_entire_binding(),
-            crowd.palette.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            bones: mesh.bones.slice(),
+            inverse_binds: mesh.inverse_binds.slice().cast(),
+            models: models.slice().cast(),
+            reductions: crowd.reductions.slice(),
+            palette: crowd.palette.slice(),
+        };
         let step = Step {
-            groups: vec![kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, kernel)?],
             workgroups: kernel.spread(gpu, params.pairs),
             kernel: kernel.clone(),
         };
         Ok(Job::new(gpu, "skinning/palette", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(palette_params_layout: PaletteParams = SKINNING_PALETTE "PaletteParams");
 }

@@ -1,24 +1,10 @@
 //! `kernels/skinning/select.wgsl`.
 
-use encase::ShaderType;
-use glam::UVec4;
-
 use crate::Error;
-use crate::asset::mesh::MOST_LEVELS;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::skinning::select as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::select::{self, SelectParams};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
-
-/// `SelectParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SelectParams {
-    pub instances: u32,
-    pub clusters: u32,
-    pub words: u32,
-    pub most: u32,
-    pub vertices: u32,
-    pub targets: u32,
-    pub levels: [UVec4; MOST_LEVELS / 4],
-}
 
 /// What a selection reads and remembers.
 #[derive(Debug, Clone)]
@@ -38,7 +24,7 @@ pub struct SelectBuffers {
 }
 
 /// Words of an instance in [`SelectBuffers::skinned`], before its weights.
-pub const SKINNED_WORDS: usize = 4;
+pub const SKINNED_WORDS: usize = select::SKINNED_WORDS as usize;
 
 impl SelectBuffers {
     /// Room for a crowd. No bone has moved.
@@ -66,8 +52,8 @@ impl SelectPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |finish| Kernel::new(gpu, &shaders::SKINNING_SELECT, &[("FINISH", finish)]);
-        Ok(Self { select: kernel(0.0)?, finish: kernel(1.0)? })
+        let kernel = |finish| bindings::kernel(gpu, &bindings::Constants { finish });
+        Ok(Self { select: kernel(false)?, finish: kernel(true)? })
     }
 
     /// Prepares the list of clusters to be skinned.
@@ -99,20 +85,21 @@ impl SelectPass {
             levels: mesh.clusters_of_levels(),
         };
         let uniform = Uniform::new(gpu, "select", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            mesh.masks.raw().as_entire_binding(),
-            buffers.moved.raw().as_entire_binding(),
-            crowd.reductions.raw().as_entire_binding(),
-            crowd.weights.raw().as_entire_binding(),
-            mesh.delta_offsets.raw().as_entire_binding(),
-            buffers.skinned.raw().as_entire_binding(),
-            active.pairs.raw().as_entire_binding(),
-            active.dispatched.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            masks: mesh.masks.slice(),
+            moved: buffers.moved.slice(),
+            reductions: crowd.reductions.slice(),
+            // Compared as bits.
+            weights: crowd.weights.slice().cast(),
+            offsets: mesh.delta_offsets.slice(),
+            skinned: buffers.skinned.slice(),
+            pairs: active.pairs.slice(),
+            dispatched: active.dispatched.slice().cast(),
+        };
         let step = |kernel: &Kernel, threads: usize| {
             Ok(Step {
-                groups: vec![kernel.bind(gpu, 0, &resources)?],
+                groups: vec![group.bind(gpu, kernel)?],
                 workgroups: kernel.spread(gpu, threads as u32),
                 kernel: kernel.clone(),
             })
@@ -120,19 +107,5 @@ impl SelectPass {
         let steps = [step(&self.select, pairs), step(&self.finish, crowd.instances)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "skinning/select", steps)?)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(select_params_layout: SelectParams = SKINNING_SELECT "SelectParams");
-
-    #[test]
-    fn weights_begin_where_the_kernel_has_them() {
-        let shader = &crate::gpu::shaders::SKINNING_SELECT;
-        assert_eq!(crate::gpu::layout::constant(shader, "SKINNED_WORDS"), Some(SKINNED_WORDS as u32));
     }
 }

@@ -14,12 +14,9 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub mod verify;
 
+pub use crate::shared::surface::cone_map::OPENING;
 #[cfg(feature = "gpu")]
 pub use pass::{ConeMapPass, Cones};
-
-/// Distance over size from which a node counts whole. Larger is tighter and slower: 4 saves
-/// a march one load in twenty-five, and takes half as long again to make.
-pub const OPENING: f32 = 2.0;
 
 /// How far a radius may lie from the twin's, relative to it, on any device.
 ///

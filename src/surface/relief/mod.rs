@@ -15,22 +15,22 @@ pub mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::ReliefPass;
-#[cfg(feature = "gpu")]
-pub(crate) use pass::SurfaceMarch;
 
 use std::str::FromStr;
 
 use crate::InputError;
+pub use crate::shared::surface::ray::{SurfaceHit as Hit, SurfaceRay as Ray};
+use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
 /// The flattest cosine that rays are marched at: 89.55° from the normal.
-pub const LEAST_COSINE: f32 = 1.0 / 128.0;
+pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 
 /// The most linear steps of a march.
-pub const MOST_STEPS: u32 = 1024;
+pub const MOST_STEPS: u32 = linear::SURFACE_MOST_STEPS;
 
 /// The most binary steps of a march.
-pub const MOST_BINARY: u32 = 24;
+pub const MOST_BINARY: u32 = linear::SURFACE_MOST_BINARY;
 
 /// The deepest relief, in uv units.
 pub const MOST_SCALE: f32 = 1.0;
@@ -38,21 +38,22 @@ pub const MOST_SCALE: f32 = 1.0;
 /// How the surface is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[repr(u32)]
 pub enum Method {
     /// Not at all: the polygon's own coordinates.
-    Plain,
+    Plain = trace::SURFACE_PLAIN,
     /// One height, one shift (Kaneko 2001).
-    Parallax,
+    Parallax = trace::SURFACE_PARALLAX,
     /// The same with Welsh's offset limiting.
-    ParallaxLimited,
+    ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
     /// Linear, then binary search (Policarpo 2005; B table 4.4).
-    Relief,
+    Relief = trace::SURFACE_RELIEF,
     /// Linear search, then the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
-    Occlusion,
+    Occlusion = trace::SURFACE_OCCLUSION,
     /// Relaxed cones, safe under bilinear filtering, then binary search. Needs a cone map.
-    Cone,
+    Cone = trace::SURFACE_CONE,
     /// Max-mip traversal with exact patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
-    Quadtree,
+    Quadtree = trace::SURFACE_QUADTREE,
 }
 
 impl Method {
@@ -80,7 +81,7 @@ impl Method {
         }
     }
 
-    /// Its number in the shaders: `SURFACE_PLAIN` and its kin of `wgsl/surface/trace.wgsl`.
+    /// Its number in the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }
@@ -100,21 +101,6 @@ impl FromStr for Method {
             InputError::new("method", name, format!("must be one of {names}"))
         })
     }
-}
-
-/// A ray through the relief volume: at parameter t it is at uv `origin + t · slope` and height 1 − t.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Ray {
-    /// uv where it enters the volume, at height 1.
-    pub origin: [f32; 2],
-    /// uv that it travels while it falls to height 0.
-    pub slope: [f32; 2],
-    /// Cosine of the angle between eye and normal; 0 or less is a miss.
-    pub cosine: f32,
-    /// The parameter at which it meets the polygon: 0 where the polygon is the top of the volume.
-    pub polygon: f32,
 }
 
 impl Ray {
@@ -172,44 +158,42 @@ impl March {
 
 /// Whether a ray met the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Outcome {
     /// It came from behind.
-    Miss,
+    Miss = ray::SURFACE_MISS,
     /// It did.
-    Hit,
+    Hit = ray::SURFACE_HIT,
     /// The method ran out of steps; the result is where it stood. `cone` and `quadtree` look at 32,774 nodes at the
     /// most: enough for rays that cross 16,384 cells.
-    Exhausted,
+    Exhausted = ray::SURFACE_EXHAUSTED,
 }
 
-/// What a ray hit.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Hit {
-    /// Displaced texture coordinates; beyond the tile where the ray left it.
-    pub uv: [f32; 2],
-    /// Height of the surface there.
-    pub height: f32,
-    /// The ray's parameter there.
-    pub parameter: f32,
-    /// Texels loaded, those of acceleration maps included.
-    pub samples: u32,
-    /// 0 miss, 1 hit, 2 exhausted: see [`Hit::outcome`].
-    pub code: u32,
+impl Default for Hit {
+    /// A miss, at the corner of the tile.
+    fn default() -> Self {
+        let outcome_code = Outcome::Miss as u32;
+        Self { uv: [0.0; 2], height: 0.0, parameter: 0.0, samples: 0, outcome_code }
+    }
 }
 
 impl Hit {
     /// A point of the ray as the result.
     pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
-        Self { uv: ray.at(parameter), height: 1.0 - parameter, parameter, samples, code: outcome as u32 }
+        Self {
+            uv: ray.at(parameter),
+            height: 1.0 - parameter,
+            parameter,
+            samples,
+            outcome_code: outcome as u32,
+        }
     }
 
     /// Whether the ray met the surface.
     pub fn outcome(&self) -> Outcome {
-        match self.code {
-            0 => Outcome::Miss,
-            1 => Outcome::Hit,
+        match self.outcome_code {
+            ray::SURFACE_MISS => Outcome::Miss,
+            ray::SURFACE_HIT => Outcome::Hit,
             _ => Outcome::Exhausted,
         }
     }

@@ -35,6 +35,12 @@ impl SurfaceTextures {
         Ok(Self { heights, acceleration, method, address })
     }
 
+    /// All of the heights, and of the acceleration map, to be bound.
+    pub(crate) fn views(&self) -> [wgpu::TextureView; 2] {
+        [&self.heights, &self.acceleration]
+            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+
     /// Refuses a method or an address mode that they were not made for.
     pub(crate) fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
         if self.method != method {

@@ -1,24 +1,22 @@
 //! Self-shadow and depth of lists of points, beside as many bare texel loads.
 
 use crate::Error;
-use crate::baseline::loads::LoadsPass;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
+use crate::surface::bench::{bare_loads, rays};
 use crate::surface::map::Address;
 use crate::surface::material::Material;
 use crate::surface::relief::reference::Surface;
+use crate::surface::relief::reference::height::BILINEAR;
 use crate::surface::relief::reference::shadow::light_ray;
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::relief::{March, Method, Ray};
+use crate::surface::relief::{March, Method};
 use crate::surface::shade::reference::shade_all;
 use crate::surface::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 
 /// Points along each edge.
 const EDGE: u32 = 512;
-
-/// Texel loads of one bilinear height.
-const BILINEAR: u32 = 4;
 
 /// 512² points on cobbles of 512² texels, seen straight from above and lit by the default light; hard shadows by
 /// `quadtree` and by `relief`. `copy` is as many texel loads a point as both shadows make, and nothing else.
@@ -43,9 +41,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let input = Buffer::from_slice(gpu, "points", &points)?;
         let shades = Buffer::new(gpu, "shades", points.len())?;
         let job = ShadePass::new(gpu, method)?.prepare(gpu, &textures, &march, &view, &input, &shades)?;
-        let sums = Buffer::new(gpu, "sums", points.len())?;
-        let bare = LoadsPass::new(gpu)?;
-        let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+        let bare = bare_loads(gpu, &textures, EDGE, samples)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &bare),
@@ -63,9 +59,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
 /// A point a texel.
 fn points(surface: &Surface<'_>, method: Method, march: &March) -> Vec<ShadePoint> {
     let material = Material::default();
-    let at = |index: u32| (index as f32 + 0.5) / EDGE as f32;
-    let places = (0..EDGE).flat_map(|y| (0..EDGE).map(move |x| [at(x), at(y)]));
-    let rays = places.map(|uv| Ray::new(uv, [0.0, 0.0, 1.0], material.scale, 1.0)).collect::<Vec<_>>();
+    let rays = rays(EDGE, [0.0, 0.0, 1.0]);
     let hits = surface.trace_all(method, &rays, march);
     let points = rays.into_iter().zip(hits).map(|(ray, hit)| ShadePoint {
         light: material.light,

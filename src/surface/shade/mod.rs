@@ -18,21 +18,8 @@ pub use pass::ShadePass;
 use glam::{Mat4, Vec4};
 
 use crate::InputError;
-use crate::surface::relief::{Hit, MOST_STEPS, Ray};
-
-/// What all points of a list are shaded with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShadeView {
-    /// From world to clip space, depth 0 to 1.
-    pub clip_from_world: Mat4,
-    /// The eye with w = 1, or the direction towards it with w = 0 for a parallel projection; world space.
-    pub eye: Vec4,
-    /// Heights on the way to the light that a soft shadow looks at, 1 to [`MOST_STEPS`].
-    pub shadow_steps: u32,
-    /// How far the surface rises above the way to the light, over its distance, where a soft shadow is full; 0.001 to
-    /// 1000.
-    pub softness: f32,
-}
+pub use crate::shared::surface::shade::{Shade, ShadePoint, ShadeView};
+use crate::surface::relief::MOST_STEPS;
 
 impl Default for ShadeView {
     /// Seen straight from above, in parallel: a point's depth is −z. Shadows as [`Material`](super::Material) has them.
@@ -70,38 +57,6 @@ impl ShadeView {
         }
         Ok(())
     }
-}
-
-/// A point of a relief, as the eye's ray met it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct ShadePoint {
-    /// The unit vector towards the light, tangent space.
-    pub light: [f32; 3],
-    /// Depth of the relief in uv units.
-    pub scale: f32,
-    /// Where the eye's ray meets the polygon, world space.
-    pub position: [f32; 3],
-    /// World units a uv unit.
-    pub world: f32,
-    /// The eye's ray.
-    pub ray: Ray,
-    /// What it hit.
-    pub hit: Hit,
-}
-
-/// How a point is shaded.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Shade {
-    /// 1 where the light's own ray ends in the point, else 0.
-    pub hard: f32,
-    /// 0 in full shadow to 1 in full light, with penumbras.
-    pub soft: f32,
-    /// The depth of the relief there, 0 (near) to 1 (far).
-    pub depth: f32,
 }
 
 #[cfg(test)]

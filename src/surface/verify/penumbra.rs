@@ -1,12 +1,13 @@
 //! Where a soft shadow lies, in f64, whatever a device rounds. `docs/relief-bounds.md` derives it.
 
 use super::bounds::{ULP, off};
+use crate::shared::surface::shadow::SURFACE_SHADOW_BIAS;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{LEAST_COSINE, MOST_STEPS};
 use crate::surface::shade::{ShadePoint, ShadeView};
 
-/// What heights may differ by before a point shades itself: `SURFACE_SHADOW_BIAS`.
-pub(crate) const BIAS: f64 = 0.005_f32 as f64;
+/// What heights may differ by before a point shades itself.
+pub(crate) const BIAS: f64 = SURFACE_SHADOW_BIAS as f64;
 
 /// A map with how steep it is at each texel ([`steepness`](super::bounds::steepness)).
 #[derive(Debug, Clone, Copy)]

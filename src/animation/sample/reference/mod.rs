@@ -9,13 +9,11 @@ use crate::asset::keyframe::Place;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::keyframe::place;
 use crate::asset::transform::Transform;
+use crate::shared::animation::sample::VANISHING;
 
 mod arcs;
 
 use arcs::Arcs;
-
-/// A spline of rotations that passes this close to zero keeps the key before: nothing has a direction there.
-const VANISHING: f32 = 1e-12;
 
 /// Every bone's transform, in its parent's space, at a time inside the clip.
 pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {

@@ -1,6 +1,7 @@
 //! Twin of `wgsl/surface/shadow.wgsl`.
 
 use super::height::height;
+use crate::shared::surface::shadow::SURFACE_SHADOW_BIAS as BIAS;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, LEAST_COSINE, MOST_STEPS, March, Ray};
 
@@ -12,9 +13,6 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     let origin = [hit.uv[0] - rise * slope[0], hit.uv[1] - rise * slope[1]];
     Ray { origin, slope, cosine: light[2], polygon: 0.0 }
 }
-
-/// What heights may differ by before a point shades itself, of the relief's depth.
-const BIAS: f32 = 0.005;
 
 /// Whether the light's ray ended above the point that it was sent to.
 pub fn shaded(first: &Hit, hit: &Hit) -> bool {
