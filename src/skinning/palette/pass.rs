@@ -1,9 +1,10 @@
 //! `kernels/skinning/palette.wgsl`.
 
 use crate::Error;
-use crate::asset::transform::Affine;
+use crate::animation::ModelMatrices;
+use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::skinning::palette as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::palette::PaletteParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
@@ -25,19 +26,24 @@ impl PalettePass {
         Ok(Self { linear: kernel(false)?, dual: kernel(true)? })
     }
 
-    /// Prepares the palettes of all instances that are seen, from `models`, as [`crate::animation::concat`] writes them.
+    /// Prepares the palettes of all instances that are seen.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer models than the crowd needs; [`GpuError`].
+    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over those of a crowd
+    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending alone;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         mesh: &MeshBuffers,
-        models: &Buffer<Affine>,
+        matrices: &ModelMatrices,
         crowd: &SkinnedCrowd,
     ) -> Result<Job, Error> {
-        models.check_holds("models", crowd.instances * mesh.all_bones)?;
+        matrices.buffer().check_holds("matrices", crowd.instances * mesh.all_bones)?;
         crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        if crowd.blend == Blend::DualQuaternion {
+            matrices.consumer().claim(Consumer::DualQuaternions)?;
+        }
         let kernel = if crowd.blend == Blend::Linear { &self.linear } else { &self.dual };
         let params = PaletteParams {
             bones: mesh.bones.len() as u32,
@@ -49,7 +55,7 @@ impl PalettePass {
             params: &uniform,
             bones: mesh.bones.slice(),
             inverse_binds: mesh.inverse_binds.slice().cast(),
-            models: models.slice().cast(),
+            models: matrices.buffer().slice().cast(),
             reductions: crowd.reductions.slice(),
             palette: crowd.palette.slice(),
         };
