@@ -9,12 +9,11 @@ use crate::animation::order::{NO_PARENT, Order};
 use crate::asset::clip::{Clip, Interpolation, Part};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
+use crate::shared::animation::gate;
+pub(crate) use crate::shared::animation::gate::EVERYTHING;
 
 /// The largest sum of motion of a whole clip, in units.
-const MOST_MOTION: f64 = (1 << 30) as f64;
-
-/// More than is ever allowed.
-pub(crate) const EVERYTHING: u32 = 1 << 30;
+const MOST_MOTION: f64 = EVERYTHING as f64;
 
 /// Power of the rates of motion that shares are made of: 1 needs the fewest samples where shares are all that counts, 0
 /// takes all moving bones alike.
@@ -379,9 +378,9 @@ pub struct Allotment(pub u32);
 
 impl Allotment {
     /// The bone above is not the one before it in the order.
-    const STARTS: u32 = 1 << 5;
+    const STARTS: u32 = gate::STARTS;
     /// What it leaves is needed later.
-    const KEPT: u32 = 1 << 6;
+    const KEPT: u32 = gate::KEPT;
 
     /// `hidden`: a power of two, or 0.
     fn new(share: f64, hidden: u32) -> Self {

@@ -9,11 +9,15 @@ use crate::asset::Model;
 use crate::asset::mesh::{MOST_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;
 use crate::asset::transform::rows;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::shared::skinning::select::Dispatched;
 use crate::skinning::reduction::Reduction;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
+
+impl SeenAs<[f32; 2]> for Vertex {}
+impl SeenAs<Dispatched> for u32 {}
 
 /// A mesh on the device, and the skin that it follows. Vertices lie in clusters: see [`Clusters::order`].
 #[derive(Debug, Clone)]

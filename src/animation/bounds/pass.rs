@@ -2,10 +2,13 @@
 
 use super::{Bounds, check_reaches};
 use crate::animation::crowd::Crowd;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::bounds as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::bounds::{BoundsParams, THREADS};
 use crate::{Error, InputError};
+
+impl SeenAs<[f32; 4]> for Bounds {}
 
 /// What takes the bones of an instance together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

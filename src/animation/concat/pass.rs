@@ -2,12 +2,16 @@
 
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::order::{Order, Slot};
+use crate::animation::order::{Chain, Order, Slot};
 use crate::asset::skeleton::Skeleton;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::concat as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::concat::ConcatParams;
 use crate::{Error, InputError};
+
+impl SeenAs<[u32; 4]> for Slot {}
+impl SeenAs<[u32; 2]> for Chain {}
 
 /// How threads share the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,7 +139,7 @@ impl Nothing {
 struct Binder<'a> {
     order: Order,
     slots: Buffer<Slot>,
-    chains: Buffer<crate::animation::order::Chain>,
+    chains: Buffer<Chain>,
     crowd: &'a Crowd,
 }
 

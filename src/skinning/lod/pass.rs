@@ -6,12 +6,15 @@ use glam::Vec4;
 
 use super::{LodView, list_stride, list_words};
 use crate::asset::transform::Affine;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::skinning::lod as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::lod::{Arguments, Draw, LodParams};
 use crate::skinning::picture::is_mirrored;
 use crate::skinning::reduction::Reduction;
 use crate::{Error, InputError};
+
+impl SeenAs<Arguments> for u32 {}
 
 impl LodParams {
     fn new(view: &LodView, instances: usize) -> Self {
