@@ -12,7 +12,7 @@ struct ShadeView {
     clip_from_world: mat4x4<f32>,
     // The eye with w = 1, or the direction towards it with w = 0 for a parallel projection; world space.
     eye: vec4<f32>,
-    // Heights on the way to the light that a soft shadow looks at, 1 to `MOST_STEPS`.
+    // Heights on the way to the light that a soft shadow looks at, 1 to `MAX_STEPS`.
     shadow_steps: u32,
     // How far the surface rises above the way to the light, over its distance, where a soft shadow is full; 0.001 to
     // 1000.

@@ -3,14 +3,14 @@
 use super::Choice;
 use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
+use crate::animation::clip_clock::pass::{self as clip_clock, ClipClockTime};
+use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
 use crate::animation::compact::pass as compact;
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
-use crate::animation::gating::Gating;
-use crate::animation::phase::pass::{self as phase, PhaseTime};
-use crate::animation::phase::{PhaseJob, PhasePass};
+use crate::animation::gate_state::GateState;
 use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
@@ -61,7 +61,7 @@ enum Kernels {
 
 #[derive(Debug, Clone)]
 struct Steps {
-    phase: PhasePass,
+    clip_clock: ClipClockPass,
     decider: Decider,
     compact: CompactPass,
 }
@@ -80,8 +80,8 @@ impl DecidePass {
     /// driver's compiler reports.
     pub fn new(gpu: &Gpu, choice: Choice, dispatches: Dispatches) -> Result<Self, GpuError> {
         let steps = |decider| {
-            let (phase, compact) = (PhasePass::new(gpu)?, CompactPass::new(gpu)?);
-            Ok::<_, GpuError>(Kernels::Each(Box::new(Steps { phase, decider, compact })))
+            let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
+            Ok::<_, GpuError>(Kernels::Each(Box::new(Steps { clip_clock, decider, compact })))
         };
         let kernels = match (choice, dispatches) {
             (Choice::Gate(gate), Dispatches::One) => Kernels::One(whole(gpu, gate)?, gate),
@@ -101,14 +101,14 @@ impl DecidePass {
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gating: &Gating,
+        gate_state: &GateState,
         active: &Active,
     ) -> Result<DecideJob, Error> {
         let work = match &self.kernels {
-            Kernels::One(kernel, gate) => one(kernel, *gate, gpu, clips, crowd, gating, active)?,
+            Kernels::One(kernel, gate) => one(kernel, *gate, gpu, clips, crowd, gate_state, active)?,
             Kernels::Each(steps) => Work::Each {
-                phase: steps.phase.prepare(gpu, clips, crowd, gating)?,
-                decision: steps.decider.prepare(gpu, crowd, gating, active)?,
+                clip_clock: steps.clip_clock.prepare(gpu, clips, crowd, gate_state)?,
+                decision: steps.decider.prepare(gpu, crowd, gate_state, active)?,
                 lists: steps.compact.prepare(gpu, crowd, active, Stages::of(gpu, active))?,
             },
         };
@@ -137,65 +137,73 @@ fn one(
     gpu: &Gpu,
     clips: &ClipBuffers,
     crowd: &Crowd,
-    gating: &Gating,
+    gate_state: &GateState,
     active: &Active,
 ) -> Result<Work, Error> {
-    let phase = PhaseTime::new(gpu, clips, crowd, gating)?;
-    let gate = GateTime::new(gpu, gate, crowd, gating, active)?;
+    let clip_clock = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
+    let gate = GateTime::new(gpu, gate, crowd, gate_state, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
     let group = group(
-        phase::group(&phase, clips, crowd, gating),
-        gate::group(&gate, gating, active),
+        clip_clock::group(&clip_clock, clips, crowd, gate_state),
+        gate::group(&gate, gate_state, active),
         compact::group(&compact, active),
     );
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
-    Ok(Work::One { phase, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+    Ok(Work::One { clip_clock, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
 }
 
 /// The resources of all three kernels that `animation/decide` stands for.
 fn group<'a>(
-    phase: bindings::phase::Group<'a>,
+    clip_clock: bindings::clip_clock::Group<'a>,
     gate: bindings::gate::Group<'a>,
     compact: bindings::compact::Group<'a>,
 ) -> bindings::decide::Group<'a> {
-    let bindings::phase::Group { phase_params, instances, clips, timelines, times, .. } = phase;
-    let bindings::phase::Group { lods, shares, history, phases, .. } = phase;
-    let bindings::gate::Group { gate_params, movers, table, sampled, kept, bits, .. } = gate;
-    let bindings::compact::Group { compact_params, slots, dirty, counts, .. } = compact;
-    let bindings::compact::Group { pairs, pair_dispatch, dirty_instances, instance_dispatches, .. } = compact;
+    let bindings::clip_clock::Group { clip_clock_params, instances, clips, timelines, times, .. } =
+        clip_clock;
+    let bindings::clip_clock::Group { lods, layer_weights, history, clip_clocks, .. } = clip_clock;
+    let bindings::gate::Group { gate_params, animated_bones, table, sampled, remaining, bits, .. } = gate;
+    let bindings::compact::Group { compact_params, slots, updated_bones, counts, .. } = compact;
+    let bindings::compact::Group { pairs, pair_dispatch, updated_instances, instance_dispatches, .. } =
+        compact;
     bindings::decide::Group {
-        phase_params,
+        clip_clock_params,
         instances,
         clips,
         timelines,
         times,
         lods,
-        shares,
+        layer_weights,
         history,
-        phases,
+        clip_clocks,
         gate_params,
-        movers,
+        animated_bones,
         table,
         sampled,
-        kept,
+        remaining,
         bits,
         compact_params,
         slots,
-        dirty,
+        updated_bones,
         counts,
         pairs,
         pair_dispatch,
-        dirty_instances,
+        updated_instances,
         instance_dispatches,
     }
 }
 
 impl Decider {
-    fn prepare(&self, gpu: &Gpu, crowd: &Crowd, gating: &Gating, active: &Active) -> Result<Decision, Error> {
+    fn prepare(
+        &self,
+        gpu: &Gpu,
+        crowd: &Crowd,
+        gate_state: &GateState,
+        active: &Active,
+    ) -> Result<Decision, Error> {
         match self {
-            Self::Gate(pass) => Ok(Decision::Gate(pass.prepare(gpu, crowd, gating, active)?)),
+            Self::Gate(pass) => Ok(Decision::Gate(pass.prepare(gpu, crowd, gate_state, active)?)),
             Self::Budget(pass, most) => {
-                let job = pass.prepare(gpu, crowd, gating, active)?;
+                let job = pass.prepare(gpu, crowd, gate_state, active)?;
                 job.set(gpu, *most)?;
                 Ok(Decision::Budget(job))
             }
@@ -212,8 +220,8 @@ pub struct DecideJob {
 
 #[derive(Debug, Clone)]
 enum Work {
-    One { phase: PhaseTime, gate: GateTime, job: Job },
-    Each { phase: PhaseJob, decision: Decision, lists: CompactJob },
+    One { clip_clock: ClipClockTime, gate: GateTime, job: Job },
+    Each { clip_clock: ClipClockJob, decision: Decision, lists: CompactJob },
 }
 
 #[derive(Debug, Clone)]
@@ -223,19 +231,19 @@ enum Decision {
 }
 
 impl DecideJob {
-    /// Chooses frame and time of the next submission, the latter as for [`super::super::place::PlaceJob::set`].
+    /// Chooses frame and time of the next submission, the latter as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`].
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         let ahead = self.choice.ahead(frame);
         match &self.work {
-            Work::One { phase, gate, .. } => {
-                phase.set(gpu, elapsed, ahead)?;
+            Work::One { clip_clock, gate, .. } => {
+                clip_clock.set(gpu, elapsed, ahead)?;
                 gate.set(gpu, frame)?;
             }
-            Work::Each { phase, decision, .. } => {
-                phase.set(gpu, elapsed, ahead)?;
+            Work::Each { clip_clock, decision, .. } => {
+                clip_clock.set(gpu, elapsed, ahead)?;
                 if let Decision::Gate(job) = decision {
                     job.set(gpu, frame)?;
                 }
@@ -267,8 +275,8 @@ impl DecideJob {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         match &self.work {
             Work::One { job, .. } => job.dispatch(pass),
-            Work::Each { phase, decision, lists } => {
-                phase.dispatch(pass);
+            Work::Each { clip_clock, decision, lists } => {
+                clip_clock.dispatch(pass);
                 match decision {
                     Decision::Gate(job) => job.dispatch(pass),
                     Decision::Budget(job) => job.dispatch(pass),

@@ -10,8 +10,8 @@ use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::skinning::lod as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::lod::{Arguments, Draw, LodParams};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::picture::is_mirrored;
-use crate::skinning::reduction::Reduction;
 use crate::{Error, InputError};
 
 impl SeenAs<Arguments> for u32 {}
@@ -24,7 +24,7 @@ impl LodParams {
             planes: view.planes(),
             eye: view.eye.extend(view.near),
             ahead: view.ahead().map_or(Vec4::ZERO, |ahead| ahead.extend(1.0)),
-            ball: view.center.extend(view.radius),
+            bounding_sphere: view.center.extend(view.radius),
             far: view.far,
             steps: view.steps as f32,
             instances: instances as u32,
@@ -80,13 +80,13 @@ impl LodPass {
         gpu: &Gpu,
         view: &LodView,
         placements: &Buffer<Affine>,
-        reductions: &Buffer<Reduction>,
+        instance_lods: &Buffer<InstanceLod>,
         drawn: &Buffer<u32>,
         arguments: &Buffer<u32>,
     ) -> Result<LodJob, Error> {
         view.validate()?;
         let instances = placements.len();
-        reductions.check_holds("reductions", instances)?;
+        instance_lods.check_holds("instance_lods", instances)?;
         let levels = 1 + view.levels.distances().len();
         drawn.check_holds("drawn", list_words(instances, levels))?;
         arguments.check_holds("arguments", LEVEL_WORDS * levels)?;
@@ -94,7 +94,7 @@ impl LodPass {
         let group = bindings::Group {
             params: &uniform,
             placements: placements.slice().cast(),
-            reductions: reductions.slice(),
+            instance_lods: instance_lods.slice(),
             drawn: drawn.slice(),
             arguments: arguments.slice().cast(),
         };
@@ -160,7 +160,7 @@ impl LodJob {
 mod tests {
     use super::*;
     use crate::gpu::Options;
-    use crate::skinning::lod::{LevelRanges, NO_FADE, standing};
+    use crate::skinning::lod::{LevelRanges, NO_FADE, placed};
     use glam::{Mat4, Vec3};
 
     /// Lists of levels that a view no longer has are empty; more levels than there are lists are refused.
@@ -179,13 +179,14 @@ mod tests {
             radius: 10.0,
             levels: LevelRanges::new(distances).expect("ascending"),
         };
-        let places = [0.5, 1.5, 2.5, 3.5].map(|x| standing(Vec3::X * x, 0.0, 1.0));
+        let places = [0.5, 1.5, 2.5, 3.5].map(|x| placed(Vec3::X * x, 0.0, 1.0));
         let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
-        let reductions = Buffer::new(&gpu, "reductions", 4).expect("allocated");
+        let instance_lods = Buffer::new(&gpu, "instance_lods", 4).expect("allocated");
         let drawn = Buffer::new(&gpu, "drawn", list_words(4, 3)).expect("allocated");
         let arguments = Buffer::new(&gpu, "arguments", 30).expect("allocated");
         let pass = LodPass::new(&gpu).expect("compiled");
-        let prepare = |view: &LodView| pass.prepare(&gpu, view, &placements, &reductions, &drawn, &arguments);
+        let prepare =
+            |view: &LodView| pass.prepare(&gpu, view, &placements, &instance_lods, &drawn, &arguments);
         let lod = prepare(&view(&[1.0, 2.0])).expect("prepared");
         let seen = || {
             gpu.run("lod", |encoder| lod.record(encoder)).expect("run");

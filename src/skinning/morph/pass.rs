@@ -76,7 +76,7 @@ fn bind(
 ) -> Result<Group, Error> {
     crowd.morphed.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
     crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
-    crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+    crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
     let params = MorphParams {
         vertices: mesh.vertices.len() as u32,
         targets: mesh.targets as u32,
@@ -91,7 +91,7 @@ fn bind(
         offsets: mesh.delta_offsets.slice(),
         deltas: mesh.deltas.slice().cast(),
         weights: crowd.weights.slice(),
-        reductions: crowd.reductions.slice(),
+        instance_lods: crowd.instance_lods.slice(),
         pairs: active.pairs.slice(),
         dispatched: active.dispatched.slice().cast(),
         morphed: crowd.morphed.slice().cast(),

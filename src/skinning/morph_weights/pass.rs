@@ -38,7 +38,7 @@ impl MorphWeightsPass {
         let pairs = crowd.instances * set.targets;
         instances.check_holds("instances", crowd.instances)?;
         crowd.weights.check_holds("crowd.weights", pairs)?;
-        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         let params = MorphWeightsParams { targets: set.targets as u32, pairs: pairs as u32, elapsed: 0.0 };
         let uniform = Uniform::new(gpu, "morph weights", &params)?;
         let mut steps = Vec::new();
@@ -50,7 +50,7 @@ impl MorphWeightsPass {
                 params: &uniform,
                 instances: instances.slice(),
                 entries: entries.slice(),
-                reductions: crowd.reductions.slice(),
+                instance_lods: crowd.instance_lods.slice(),
                 times: times.slice(),
                 values: values.slice(),
                 weights: crowd.weights.slice(),
@@ -77,7 +77,7 @@ impl MorphWeightsJob {
     /// Chooses the time of the next submission: seconds since the instances' starts.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &MorphWeightsParams { elapsed, ..self.params })?)

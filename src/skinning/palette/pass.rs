@@ -40,7 +40,7 @@ impl PalettePass {
         crowd: &SkinnedCrowd,
     ) -> Result<Job, Error> {
         matrices.buffer().check_holds("matrices", crowd.instances * mesh.all_bones)?;
-        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         if crowd.blend == Blend::DualQuaternion {
             matrices.consumer().claim(Consumer::DualQuaternions)?;
         }
@@ -55,8 +55,8 @@ impl PalettePass {
             params: &uniform,
             bones: mesh.bones.slice(),
             inverse_binds: mesh.inverse_binds.slice().cast(),
-            models: matrices.buffer().slice().cast(),
-            reductions: crowd.reductions.slice(),
+            model_matrices: matrices.buffer().slice().cast(),
+            instance_lods: crowd.instance_lods.slice(),
             palette: crowd.palette.slice(),
         };
         let step = Step {

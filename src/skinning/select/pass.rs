@@ -11,8 +11,8 @@ use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, Sk
 pub struct SelectBuffers {
     /// The bones of each instance that were recomputed this frame, a bit a slot of the skeleton's order, in
     /// [`MeshBuffers::mask_words`] words an instance. [`SkinFrame`](crate::skinning::frame::SkinFrame) puts
-    /// [`Active::dirty`](crate::animation::active::Active::dirty) here where a gate decides. A bone below one that moved has moved too.
-    pub moved: Buffer<u32>,
+    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here where a gate decides. A bone below one that moved has moved too.
+    pub updated_bones: Buffer<u32>,
     /// Of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, most
     /// influences and level; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first,
     /// so that what is seen then is skinned.
@@ -33,7 +33,7 @@ impl SelectBuffers {
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
-            moved: Buffer::new(gpu, "moved bones", crowd.instances * mesh.mask_words)?,
+            updated_bones: Buffer::new(gpu, "updated bones", crowd.instances * mesh.mask_words)?,
             skinned: Buffer::new(gpu, "skinned last", crowd.instances * (SKINNED_WORDS + mesh.targets))?,
         })
     }
@@ -69,9 +69,9 @@ impl SelectPass {
         active: &ActiveClusters,
     ) -> Result<Job, Error> {
         let pairs = crowd.instances * mesh.clusters();
-        buffers.moved.check_holds("moved", crowd.instances * mesh.mask_words)?;
+        buffers.updated_bones.check_holds("updated_bones", crowd.instances * mesh.mask_words)?;
         buffers.skinned.check_holds("skinned", crowd.instances * (SKINNED_WORDS + mesh.targets))?;
-        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
         active.dispatched.check_holds("active.dispatched", DISPATCHED_WORDS)?;
         active.pairs.check_holds("active.pairs", pairs)?;
@@ -88,8 +88,8 @@ impl SelectPass {
         let group = bindings::Group {
             params: &uniform,
             masks: mesh.masks.slice(),
-            moved: buffers.moved.slice(),
-            reductions: crowd.reductions.slice(),
+            updated_bones: buffers.updated_bones.slice(),
+            instance_lods: crowd.instance_lods.slice(),
             // Compared as bits.
             weights: crowd.weights.slice().cast(),
             offsets: mesh.delta_offsets.slice(),

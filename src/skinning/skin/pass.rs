@@ -119,7 +119,7 @@ impl SkinPass {
             vertices: vertices.slice().cast(),
             influences: mesh.influences.slice(),
             palette: crowd.palette.slice(),
-            reductions: crowd.reductions.slice(),
+            instance_lods: crowd.instance_lods.slice(),
             pairs: active.pairs.slice(),
             dispatched: active.dispatched.slice().cast(),
             skinned: skinned.slice().cast(),

@@ -18,7 +18,7 @@ pub use crate::shared::surface::cone_map::OPENING;
 #[cfg(feature = "gpu")]
 pub use pass::{ConeMapPass, Cones};
 
-/// How far a radius may lie from the twin's, relative to it, on any device.
+/// How far a radius may lie from the reference's, relative to it, on any device.
 ///
 /// A radius is a quotient (2.5 ULP) of a distance (a square root of exact integers, 1.5 ULP, or a sum of two
 /// products of them: 3 ULP) and a difference of heights (1 ULP), less a millionth (1 ULP): 8 ULP < 1e-6. Which

@@ -19,7 +19,7 @@ use glam::{Mat4, Vec4};
 
 use crate::InputError;
 pub use crate::shared::surface::shade::{Shade, ShadePoint, ShadeView};
-use crate::surface::relief::MOST_STEPS;
+use crate::surface::relief::MAX_STEPS;
 
 impl Default for ShadeView {
     /// Seen straight from above, in parallel: a point's depth is −z. Shadows as [`Material`](super::Material) has them.
@@ -48,8 +48,8 @@ impl ShadeView {
         if !self.eye.is_finite() {
             return Err(InputError::new("eye", self.eye, "must be finite"));
         }
-        if !(1..=MOST_STEPS).contains(&self.shadow_steps) {
-            let bound = format!("must be in 1..={MOST_STEPS}");
+        if !(1..=MAX_STEPS).contains(&self.shadow_steps) {
+            let bound = format!("must be in 1..={MAX_STEPS}");
             return Err(InputError::new("shadow_steps", self.shadow_steps, bound));
         }
         if !(1e-3..=1e3).contains(&self.softness) {
@@ -69,7 +69,7 @@ mod tests {
         let field = |view: ShadeView| view.validate().expect_err("refused").field;
         assert_eq!(field(ShadeView { clip_from_world: Mat4::NAN, ..good }), "clip_from_world");
         assert_eq!(field(ShadeView { eye: Vec4::INFINITY, ..good }), "eye");
-        for shadow_steps in [0, MOST_STEPS + 1] {
+        for shadow_steps in [0, MAX_STEPS + 1] {
             assert_eq!(field(ShadeView { shadow_steps, ..good }), "shadow_steps");
         }
         for softness in [0.0, 2e3, f32::NAN] {

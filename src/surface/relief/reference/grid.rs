@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/grid.wgsl`.
+//! Reference of `wgsl/surface/grid.wgsl`.
 
 use crate::shared::surface::grid::{
     SURFACE_FAR as FAR, SURFACE_LEAST_TRAVEL as LEAST_TRAVEL, SURFACE_NEVER as NEVER,

@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/height.wgsl`.
+//! Reference of `wgsl/surface/height.wgsl`.
 
 pub use crate::shared::surface::height::SURFACE_BILINEAR as BILINEAR;
 use crate::surface::map::{Address, HeightMap};

@@ -4,9 +4,9 @@
 //! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
 //! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
-use crate::shared::animation::gating;
-pub use crate::shared::animation::gating::Phase;
-pub use crate::shared::animation::phase::BLENDED;
+pub use crate::shared::animation::clip_clock::BLENDED;
+use crate::shared::animation::gate_state;
+pub use crate::shared::animation::gate_state::ClipClock;
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -17,34 +17,34 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{PhaseJob, PhasePass};
+pub use pass::{ClipClockJob, ClipClockPass};
 
 /// What asks for a pose besides the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Verdict {
+pub enum UpdateReason {
     /// Nothing: the gate decides.
-    Free = gating::PHASE_FREE,
+    Free = gate_state::UPDATE_REASON_FREE,
     /// Nobody sees it: nothing is sampled.
-    Hidden = gating::PHASE_HIDDEN,
+    Hidden = gate_state::UPDATE_REASON_HIDDEN,
     /// Its stored pose means nothing: everything is sampled.
-    Forced = gating::PHASE_FORCED,
+    Forced = gate_state::UPDATE_REASON_FORCED,
     /// Layers lie above its clip: gates that decide by motion sample everything, others decide on every bone.
-    Blended = gating::PHASE_BLENDED,
+    Blended = gate_state::UPDATE_REASON_BLENDED,
 }
 
-impl Verdict {
+impl UpdateReason {
     /// Whether gates that decide by motion sample everything.
     pub fn forces_motion(self) -> bool {
         matches!(self, Self::Forced | Self::Blended)
     }
 }
 
-impl Phase {
+impl ClipClock {
     /// A phase from its parts; nothing may be sampled ahead.
-    pub fn new(row: u32, fraction: u32, verdict: Verdict, clip: u32) -> Self {
-        let fraction_and_verdict = (verdict as u32) << 20 | fraction;
-        Self { row, fraction_and_verdict, clip, ahead_row: row, ahead_fraction: fraction }
+    pub fn new(row: u32, fraction: u32, reason: UpdateReason, clip: u32) -> Self {
+        let fraction_and_reason = (reason as u32) << 20 | fraction;
+        Self { row, fraction_and_reason, clip, ahead_row: row, ahead_fraction: fraction }
     }
 
     /// Whether bones may be sampled ahead.
@@ -54,16 +54,16 @@ impl Phase {
 
     /// The way to the next row, 0 to 65536.
     pub fn fraction(&self) -> u32 {
-        self.fraction_and_verdict & 0xf_ffff
+        self.fraction_and_reason & 0xf_ffff
     }
 
     /// What asks for a pose besides the time.
-    pub fn verdict(&self) -> Verdict {
-        match self.fraction_and_verdict >> 20 {
-            gating::PHASE_FREE => Verdict::Free,
-            gating::PHASE_HIDDEN => Verdict::Hidden,
-            gating::PHASE_FORCED => Verdict::Forced,
-            _ => Verdict::Blended,
+    pub fn reason(&self) -> UpdateReason {
+        match self.fraction_and_reason >> 20 {
+            gate_state::UPDATE_REASON_FREE => UpdateReason::Free,
+            gate_state::UPDATE_REASON_HIDDEN => UpdateReason::Hidden,
+            gate_state::UPDATE_REASON_FORCED => UpdateReason::Forced,
+            _ => UpdateReason::Blended,
         }
     }
 }

@@ -1,5 +1,5 @@
 // Which influences of an instance count, and which vertices.
-struct Reduction {
+struct InstanceLod {
     // The λ of `fade`: 0 is full quality, 1 rigid.
     fade: f32,
     // The k of `truncate`, the most influences, at least 1; 0 of instances that are not seen, which are not skinned.
