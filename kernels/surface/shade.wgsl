@@ -1,4 +1,5 @@
-// Shades a list of points as fragment passes do: hard and soft self-shadow, and the depth of the relief, as numbers.
+// Shades a list of points as fragment passes do, and stores the results: hard and soft self-shadow, and the
+// depth of the relief.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::trace::surface_trace;
 import package::wgsl::surface::shade::{surface_depth, surface_distance, surface_towards};
@@ -6,42 +7,43 @@ import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surfa
 
 override METHOD: u32 = 0u;
 
-// What all points of a list are shaded with.
+// The view and shadow parameters that all points of a list share.
 struct ShadeView {
-    // From world to clip space, depth 0 to 1.
+    // The matrix from world space to clip space, depth 0 to 1.
     clip_from_world: mat4x4<f32>,
-    // The eye with w = 1, or the direction towards it with w = 0 for a parallel projection; world space.
+    // The position of the eye with w = 1, or for a parallel projection the direction towards it with w = 0; world
+    // space.
     eye: vec4<f32>,
-    // Heights on the way to the light that a soft shadow looks at, 1 to `MAX_STEPS`.
+    // Number of heights that a soft shadow samples on the way to the light, 1 to `MAX_STEPS`.
     shadow_steps: u32,
-    // How far the surface rises above the way to the light, over its distance, where a soft shadow is full; 0.001 to
-    // 1000.
+    // The ratio of the surface's height above the way to the light to its distance at which a soft shadow is full;
+    // 0.001 to 1000.
     softness: f32,
 }
 
-// A point of a relief, as the eye's ray met it.
+// A point of a relief where an eye's ray met it.
 struct ShadePoint {
-    // The unit vector towards the light, tangent space.
+    // Unit vector towards the light, in tangent space.
     light: vec3<f32>,
     // Depth of the relief in uv units.
     scale: f32,
-    // Where the eye's ray meets the polygon, world space.
+    // The point where the eye's ray meets the polygon, in world space.
     position: vec3<f32>,
-    // World units a uv unit.
+    // World units per uv unit.
     world: f32,
     // The eye's ray.
     ray: SurfaceRay,
-    // What it hit.
+    // The hit of that ray.
     hit: SurfaceHit,
 }
 
-// How a point is shaded.
+// The shading of a point.
 struct Shade {
-    // 1 where the light's own ray ends in the point, else 0.
+    // 1 if the light's ray ends in the point, else 0.
     hard: f32,
-    // 0 in full shadow to 1 in full light, with penumbras.
+    // Light with penumbras, 0 in full shadow to 1 in full light.
     soft: f32,
-    // The depth of the relief there, 0 (near) to 1 (far).
+    // Depth of the relief at the point, 0 (near) to 1 (far).
     depth: f32,
 }
 

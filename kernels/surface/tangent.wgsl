@@ -1,5 +1,5 @@
 // Tangent frames at the vertices of a triangle mesh (B section 4.2). Each vertex gathers the tangents of its
-// triangles in ascending order: no atomics, and the same sum in every run.
+// triangles in ascending order, so that no atomics are needed and the sum is the same in every run.
 
 struct TangentParams {
     vertices: u32,
@@ -7,27 +7,27 @@ struct TangentParams {
 
 @group(0) @binding(0) var<uniform> params: TangentParams;
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
-// Bits: a shader may take floats to be finite, and normals need not be.
+// Normals as bits: they need not be finite, and a shader may assume that floats are.
 @group(0) @binding(2) var<storage, read> normals: array<u32>;
 @group(0) @binding(3) var<storage, read> texture_coordinates: array<f32>;
 @group(0) @binding(4) var<storage, read> indices: array<u32>;
-// Where each vertex's corners begin, and the corners: positions in `indices`.
+// Where the corners of each vertex begin, and the corners, which are positions in `indices`.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
 @group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
-// 2^-100: what is smaller has no direction.
+// 2^-100, below which a vector has no direction.
 const LEAST: f32 = 7.888609052210118e-31;
 // Its bits.
 const LEAST_BITS: u32 = 0x0d800000u;
 // The bits of 2^100.
 const LARGEST_BITS: u32 = 0x71800000u;
-// A triangle whose area, tangent, or area in uv is no more than this contributes nothing. All three are measured
-// after scaling the triangle to a box of edge 1, in uv in each direction by itself. The errors of f32 are at most a
-// sixteenth of it: they turn a tangent of this length by less than four degrees.
+// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three are
+// measured after scaling the triangle to a box of edge 1, and in uv each direction separately. The errors of f32 are at
+// most a sixteenth of it: they rotate a tangent of this length by less than four degrees.
 const DEGENERATE: f32 = 1.0 / 16384.0;
-// A sum of tangents vanishes when what is orthogonal to the normal is no more than this share of the weights. Handedness
-// is negative when its sum is below minus this share.
+// A sum of tangents counts as 0 if its part orthogonal to the normal is no more than this fraction of the weights. The
+// handedness is negative if its sum is below minus this fraction.
 const VANISHING: f32 = 1.0 / 64.0;
 
 struct Contribution {
@@ -53,7 +53,7 @@ fn unit(vector: vec3<f32>) -> vec3<f32> {
     return vector * inverseSqrt(dot(vector, vector));
 }
 
-// What the triangle with this corner adds at the corner's vertex.
+// The contribution of the triangle that has this corner to the corner's vertex.
 fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     let nothing = Contribution(vec3<f32>(0.0), 0.0, 0.0);
     let first = corner - corner % 3u;
@@ -86,7 +86,7 @@ fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     return Contribution(unit(along) * signed_weight, weight, signed_weight * dot(normal, unit(face)));
 }
 
-// The first vector of the basis of Duff et al. 2017, from a unit normal.
+// The first vector of the basis of Duff et al. 2017 for a unit normal.
 fn fallback(normal: vec3<f32>, negative_z: bool) -> vec3<f32> {
     let side = select(1.0, -1.0, negative_z);
     let a = -1.0 / (side + normal.z);
@@ -117,7 +117,7 @@ fn frame(vertex: u32) -> vec4<f32> {
         return vec4<f32>(fallback(normal, (bits.z >> 31u) == 1u), 1.0);
     }
     let tangent = unit(flat);
-    // Where little was left of the sum, its rounding is large: once more.
+    // Repeats the projection: if little was left of the sum, its rounding error is large.
     let orthogonal = unit(tangent - normal * dot(normal, tangent));
     return vec4<f32>(orthogonal, select(1.0, -1.0, handedness < -least));
 }

@@ -1,4 +1,4 @@
-//! Pipelines that were compiled on a device, for every pass that asks for the same one again.
+//! A cache of the pipelines compiled on a device, which all passes share.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use super::GpuError;
 use super::shaders::Shader;
 
-/// Compiled pipelines by what they were compiled from.
+/// Compiled pipelines by the key from which they were compiled.
 #[derive(Debug)]
 pub(crate) struct Shared<K, T>(Mutex<HashMap<K, T>>);
 
@@ -18,16 +18,17 @@ impl<K, T> Default for Shared<K, T> {
 }
 
 impl<K: Eq + Hash, T: Clone> Shared<K, T> {
-    /// What was compiled for `key` before, else what `compile` gives.
+    /// The pipeline that was compiled for `key` before, or else the result of `compile`.
     ///
     /// # Errors
-    /// Those of `compile`, which is tried again next time.
+    /// Errors of `compile`, which is tried again at the next call.
     pub fn get(&self, key: K, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let all = || self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());
         }
-        // Not locked meanwhile: drivers take seconds, and two threads may compile different ones.
+        // The map is not locked during compilation: drivers take seconds, and two threads may compile different
+        // objects.
         let compiled = compile()?;
         Ok(all().entry(key).or_insert(compiled).clone())
     }

@@ -1,7 +1,7 @@
-//! Ray-height methods: which there are, what a ray is, how it is marched, and what it hits (B section 3.1).
+//! Ray-height methods: their list, their rays, their march and its results (B section 3.1).
 //!
-//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them flat. The kernel here
-//! runs them on lists of rays.
+//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
+//! kernel of this folder runs them on lists of rays.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -23,7 +23,7 @@ pub use crate::shared::surface::ray::{SurfaceHit as Hit, SurfaceRay as Ray};
 use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
-/// The flattest cosine that rays are marched at: 89.55° from the normal.
+/// The smallest cosine with which rays are marched: 89.55° from the normal.
 pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 
 /// The most linear steps of a march.
@@ -35,29 +35,29 @@ pub const MAX_BINARY: u32 = linear::SURFACE_MAX_BINARY;
 /// The deepest relief, in uv units.
 pub const MAX_SCALE: f32 = 1.0;
 
-/// How the surface is found.
+/// The method that finds the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u32)]
 pub enum Method {
-    /// Not at all: the polygon's own coordinates.
+    /// None: the polygon's own texture coordinates.
     Plain = trace::SURFACE_PLAIN,
-    /// One height, one shift (Kaneko 2001).
+    /// Parallax mapping: one height, one shift (Kaneko 2001).
     Parallax = trace::SURFACE_PARALLAX,
-    /// The same with Welsh's offset limiting.
+    /// Parallax mapping with Welsh's offset limiting.
     ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
-    /// Linear, then binary search (Policarpo 2005; B table 4.4).
+    /// Linear search, then binary search (Policarpo 2005; B table 4.4).
     Relief = trace::SURFACE_RELIEF,
     /// Linear search, then the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
     Occlusion = trace::SURFACE_OCCLUSION,
-    /// Relaxed cones, safe under bilinear filtering, then binary search. Needs a cone map.
+    /// Relaxed cones that are safe under bilinear filtering, then binary search. Needs a cone map.
     Cone = trace::SURFACE_CONE,
-    /// Max-mip traversal with exact patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
+    /// Max-mip traversal with exact bilinear patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
     Quadtree = trace::SURFACE_QUADTREE,
 }
 
 impl Method {
-    /// Every method, in the order of their numbers in the shaders.
+    /// All methods, in the order of their values in the shaders.
     pub const ALL: [Self; 7] = [
         Self::Plain,
         Self::Parallax,
@@ -68,7 +68,7 @@ impl Method {
         Self::Quadtree,
     ];
 
-    /// Its name in options and reports.
+    /// The method's name in options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -81,7 +81,7 @@ impl Method {
         }
     }
 
-    /// Its number in the shaders.
+    /// The method's value in the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }
@@ -104,8 +104,9 @@ impl FromStr for Method {
 }
 
 impl Ray {
-    /// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space, `scale`
-    /// the relief's depth in uv units, `plane` the polygon's height in the volume, 1 (top) to 0.
+    /// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space,
+    /// `scale` the depth of the relief in uv units, and `plane` the polygon's height in the volume, 0 (bottom)
+    /// to 1 (top).
     pub fn new(uv: [f32; 2], view: [f32; 3], scale: f32, plane: f32) -> Self {
         let steepness = -scale / view[2].max(LEAST_COSINE);
         let slope = [view[0] * steepness, view[1] * steepness];
@@ -120,14 +121,15 @@ impl Ray {
     }
 }
 
-/// How rays are marched.
+/// Parameters of a march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct March {
-    /// What lies beyond the map's edge. Acceleration maps are made for one address mode.
+    /// What lies beyond the map's edge. An acceleration map is computed for one address mode.
     pub address: Address,
-    /// Linear steps straight down and at the horizon, 1 to [`MAX_STEPS`]; between, ⌈mix(min, max, 1 − V.z)⌉.
+    /// Numbers of linear steps for rays straight down and at the horizon, each 1 to [`MAX_STEPS`]; in between
+    /// ⌈mix(min, max, 1 − V.z)⌉.
     pub steps: [u32; 2],
-    /// Binary steps behind them, and behind cones, up to [`MAX_BINARY`].
+    /// Number of binary steps after the linear steps or the cones, up to [`MAX_BINARY`].
     pub binary_steps: u32,
 }
 
@@ -156,16 +158,16 @@ impl March {
     }
 }
 
-/// Whether a ray met the surface.
+/// The outcome of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Outcome {
-    /// It came from behind.
+    /// The ray comes from behind.
     Miss = ray::SURFACE_MISS,
-    /// It did.
+    /// The ray met the surface.
     Hit = ray::SURFACE_HIT,
-    /// The method ran out of steps; the result is where it stood. `cone` and `quadtree` look at 32,774 nodes at the
-    /// most: enough for rays that cross 16,384 cells.
+    /// The method ran out of steps; the result is the point that it had reached. `cone` and `quadtree` visit at
+    /// most 32,774 nodes, which is enough for rays that cross 16,384 cells.
     Exhausted = ray::SURFACE_EXHAUSTED,
 }
 
@@ -178,7 +180,7 @@ impl Default for Hit {
 }
 
 impl Hit {
-    /// A point of the ray as the result.
+    /// The result at a point of the ray.
     pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self {
             uv: ray.at(parameter),
@@ -189,7 +191,7 @@ impl Hit {
         }
     }
 
-    /// Whether the ray met the surface.
+    /// The outcome that `code` stands for.
     pub fn outcome(&self) -> Outcome {
         match self.outcome_code {
             ray::SURFACE_MISS => Outcome::Miss,
@@ -228,7 +230,7 @@ mod tests {
         let at = ray.at(ray.polygon);
         assert!((at[0] - 0.25).abs() < 1e-7 && at[1] == 0.5, "{at:?}");
         assert!(ray.slope[0] < 0.0, "rays go away from the eye");
-        // At the horizon the slope is bounded.
+        // The slope is bounded at the horizon.
         assert!(Ray::new([0.0; 2], [1.0, 0.0, 1e-9], 0.1, 1.0).slope[0] >= -12.8);
     }
 }

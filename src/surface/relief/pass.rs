@@ -1,4 +1,4 @@
-//! `kernels/surface/relief.wgsl`.
+//! The GPU pass of `kernels/surface/relief.wgsl`.
 
 use super::{Hit, March, Method, Ray};
 use crate::gpu::bindings::surface::relief as bindings;
@@ -32,11 +32,11 @@ impl ReliefPass {
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }
 
-    /// Prepares the tracing of all `rays`: one hit each.
+    /// Prepares the tracing of all `rays`, with one hit each.
     ///
     /// # Errors
-    /// [`InputError`] for a march out of bounds, textures of another method or address mode, or too few hits;
-    /// [`GpuError`].
+    /// [`InputError`] for a march out of bounds, for textures of another method or address mode, and for a
+    /// buffer with too few hits; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

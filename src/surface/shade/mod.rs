@@ -1,8 +1,8 @@
-//! How points of a relief are shaded, as numbers: hard and soft self-shadow, and the depth that is written for them
-//! (B section 3.1.2).
+//! Shading of points of a relief: hard and soft self-shadow, and the depth that is written for them (B section
+//! 3.1.2).
 //!
-//! Material shaders import the functions from `wgsl/surface/`; `relievo shaders` writes them flat. The kernel here
-//! runs them on lists of points.
+//! Material shaders import the functions from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
+//! kernel of this folder runs them on lists of points.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -22,7 +22,8 @@ pub use crate::shared::surface::shade::{Shade, ShadePoint, ShadeView};
 use crate::surface::relief::MAX_STEPS;
 
 impl Default for ShadeView {
-    /// Seen straight from above, in parallel: a point's depth is −z. Shadows as [`Material`](super::Material) has them.
+    /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
+    /// [`Material`](super::Material)'s default.
     fn default() -> Self {
         let clip_from_world = Mat4::from_scale(glam::Vec3::new(1.0, 1.0, -1.0));
         let material = super::Material::default();

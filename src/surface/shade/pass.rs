@@ -1,4 +1,4 @@
-//! `kernels/surface/shade.wgsl`.
+//! The GPU pass of `kernels/surface/shade.wgsl`.
 
 use super::{Shade, ShadePoint, ShadeView};
 use crate::gpu::bindings::surface::shade as bindings;
@@ -8,7 +8,7 @@ use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{March, Method};
 use crate::{Error, InputError};
 
-/// Shades lists of points; hard shadows trace the light's rays with one method.
+/// Shades lists of points. Hard shadows trace the light's rays with one method.
 #[derive(Debug, Clone)]
 pub struct ShadePass {
     kernel: Kernel,
@@ -25,11 +25,11 @@ impl ShadePass {
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }
 
-    /// Prepares the shading of all `points`: one [`Shade`] each.
+    /// Prepares the shading of all `points`, with one [`Shade`] each.
     ///
     /// # Errors
-    /// [`InputError`] for a view or a march out of bounds, textures of another method or address mode, or too few
-    /// shades; [`GpuError`].
+    /// [`InputError`] for a view or a march out of bounds, for textures of another method or address mode, and
+    /// for a buffer with too few shades; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Reference of `wgsl/surface/height.wgsl`.
+//! Bilinear heights: the CPU reference of `wgsl/surface/height.wgsl`.
 
 pub use crate::shared::surface::height::SURFACE_BILINEAR as BILINEAR;
 use crate::surface::map::{Address, HeightMap};
