@@ -158,37 +158,30 @@ fn group<'a>(
     gate: bindings::gate::Group<'a>,
     compact: bindings::compact::Group<'a>,
 ) -> bindings::decide::Group<'a> {
-    let bindings::clip_clock::Group { clip_clock_params, instances, clips, timelines, times, .. } =
-        clip_clock;
-    let bindings::clip_clock::Group { lods, layer_weights, history, clip_clocks, .. } = clip_clock;
-    let bindings::gate::Group { gate_params, animated_bones, table, sampled, remaining, bits, .. } = gate;
-    let bindings::compact::Group { compact_params, slots, updated_bones, counts, .. } = compact;
-    let bindings::compact::Group { pairs, pair_dispatch, updated_instances, instance_dispatches, .. } =
-        compact;
     bindings::decide::Group {
-        clip_clock_params,
-        instances,
-        clips,
-        timelines,
-        times,
-        lods,
-        layer_weights,
-        history,
-        clip_clocks,
-        gate_params,
-        animated_bones,
-        table,
-        sampled,
-        remaining,
-        bits,
-        compact_params,
-        slots,
-        updated_bones,
-        counts,
-        pairs,
-        pair_dispatch,
-        updated_instances,
-        instance_dispatches,
+        clip_clock_params: clip_clock.clip_clock_params,
+        instances: clip_clock.instances,
+        clips: clip_clock.clips,
+        timelines: clip_clock.timelines,
+        times: clip_clock.times,
+        lods: clip_clock.lods,
+        layer_weights: clip_clock.layer_weights,
+        history: clip_clock.history,
+        clip_clocks: clip_clock.clip_clocks,
+        gate_params: gate.gate_params,
+        animated_bones: gate.animated_bones,
+        table: gate.table,
+        sampled: gate.sampled,
+        remaining: gate.remaining,
+        bits: gate.bits,
+        compact_params: compact.compact_params,
+        slots: compact.slots,
+        updated_bones: compact.updated_bones,
+        counts: compact.counts,
+        pairs: compact.pairs,
+        pair_dispatch: compact.pair_dispatch,
+        updated_instances: compact.updated_instances,
+        instance_dispatches: compact.instance_dispatches,
     }
 }
 
