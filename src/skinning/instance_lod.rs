@@ -1,4 +1,4 @@
-//! Which influences count, and which vertices (A section 8.4).
+//! Level of detail of an instance: which influences count, and which vertices are skinned (A section 8.4).
 
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
@@ -6,13 +6,13 @@ use crate::asset::mesh::MAX_LEVELS;
 pub use crate::shared::skinning::instance_lod::InstanceLod;
 
 impl InstanceLod {
-    /// Every influence of every vertex.
+    /// All influences of all vertices.
     pub const FULL: Self = Self { fade: 0.0, most: MAX_INFLUENCES as u32, level: 0 };
 
-    /// Of instances that are not seen: nothing is skinned.
+    /// For an instance that is not seen: nothing is skinned.
     pub const UNSEEN: Self = Self { fade: 0.0, most: 0, level: 0 };
 
-    /// The strongest influences.
+    /// The `most` strongest influences.
     ///
     /// # Errors
     /// [`InputError`] unless `most` is in 1 to [`MAX_INFLUENCES`].
@@ -21,7 +21,7 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// From full quality at 0 to rigid at 1.
+    /// A fade from full quality at 0 to rigid at 1.
     ///
     /// # Errors
     /// [`InputError`] unless `fade` is in 0 to 1.
@@ -30,7 +30,7 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Every influence of the vertices of a level.
+    /// All influences of the vertices of a level.
     ///
     /// # Errors
     /// [`InputError`] unless `level` is below [`MAX_LEVELS`].
@@ -39,10 +39,10 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Full quality up to `near`, rigid from `far` on, fading in between.
+    /// Full quality up to `near`, rigid from `far` on, and a fade in between.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and unless `near` is below `far`.
+    /// [`InputError`] for values that are not finite, and if `near` is not below `far`.
     pub fn at_distance(distance: f32, [near, far]: [f32; 2]) -> Result<Self, InputError> {
         for (field, value) in [("distance", distance), ("near", near), ("far", far)] {
             if !value.is_finite() {
@@ -59,7 +59,7 @@ impl InstanceLod {
         Self::fade(((distance - near) / (far - near)).clamp(0.0, 1.0))
     }
 
-    /// Checks the ranges of an instance that is seen.
+    /// Checks the ranges; the instance must be one that is seen.
     ///
     /// # Errors
     /// [`InputError`] that names the field.

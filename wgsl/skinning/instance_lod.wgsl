@@ -1,10 +1,11 @@
-// Which influences of an instance count, and which vertices.
+// The level of detail of one instance: its influences and its vertices.
 struct InstanceLod {
-    // The λ of `fade`: 0 is full quality, 1 rigid.
+    // The λ of `fade`: 0 is full quality, 1 is rigid.
     fade: f32,
-    // The k of `truncate`, the most influences, at least 1; 0 of instances that are not seen, which are not skinned.
+    // The k of `truncate`, the largest number of influences, at least 1; 0 for an instance that is not seen, which is not
+    // skinned.
     most: u32,
-    // The character's level of detail: 0 is its meshes themselves; at level n each has the coarsest of `Mesh::levels` that
-    // is off by no more than the n-th of `level_errors`. Of one that there is not, the last.
+    // The character's level of detail. Level 0 stands for the meshes themselves; at level n each mesh uses the coarsest of
+    // its `Mesh::levels` whose error is at most the n-th of `level_errors`. A number beyond the last level means the last.
     level: u32,
 }

@@ -1,4 +1,4 @@
-//! `kernels/skinning/morph.wgsl`.
+//! The GPU pass of `kernels/skinning/morph.wgsl`.
 
 use crate::Error;
 use crate::gpu::bindings::skinning::morph as bindings;
@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, U
 use crate::shared::skinning::morph::MorphParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 
-/// Adds morph targets.
+/// Applies morph targets.
 #[derive(Debug, Clone)]
 pub struct MorphPass {
     all: Kernel,
@@ -23,8 +23,8 @@ impl MorphPass {
         Ok(Self { all: kernel(false)?, active: kernel(true)? })
     }
 
-    /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail stay as they
-    /// were. Of a mesh without targets there are none, and nothing is done.
+    /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail keep
+    /// their previous contents. For a mesh without targets the job is empty.
     ///
     /// # Errors
     /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
@@ -42,8 +42,8 @@ impl MorphPass {
         Ok(Job::new(gpu, "skinning/morph", steps)?)
     }
 
-    /// Prepares the active clusters of all instances, of those that are seen and not beyond their level of detail; the
-    /// other vertices stay. Nothing for a mesh without targets.
+    /// Prepares the active clusters, as far as their instances are seen and the clusters are within the level
+    /// of detail; all other vertices stay unchanged. For a mesh without targets the job is empty.
     ///
     /// # Errors
     /// As [`MorphPass::prepare`].
