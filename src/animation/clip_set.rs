@@ -258,10 +258,10 @@ mod tests {
 
     #[test]
     fn clips_of_other_skeletons_are_refused() {
-        assert_eq!(ClipSet::new(&[]).expect_err("refused").field, "clips.len");
+        assert_eq!(ClipSet::new(&[]).expect_err("refused").path, "clips.len");
         let model = creature().expect("valid");
         let one = crate::asset::Skeleton::of_joints(model.skeleton.bones()[..1].to_vec()).expect("valid");
         let other = Clip::new("other", &one, &[Default::default()], 1.0).expect("valid");
-        assert_eq!(ClipSet::new(&[&model.clips[0], &other]).expect_err("refused").field, "clips[1].bones");
+        assert_eq!(ClipSet::new(&[&model.clips[0], &other]).expect_err("refused").path, "clips[1].bones");
     }
 }

@@ -97,7 +97,7 @@ mod tests {
         }
         assert_eq!(Wrap::Loop.inside(0.0, 3.0), Ok(0.0));
         for seconds in [f64::NAN, f64::INFINITY] {
-            assert_eq!(Wrap::Clamp.inside(2.0, seconds).expect_err("refused").field, "time");
+            assert_eq!(Wrap::Clamp.inside(2.0, seconds).expect_err("refused").path, "time");
         }
     }
 
@@ -105,8 +105,8 @@ mod tests {
     fn instances_are_checked_field_by_field() {
         let good = Instance::new(1, Wrap::Clamp, 0.5, -2.0);
         assert_eq!((good.validate(2), good.wrap()), (Ok(()), Wrap::Clamp));
-        assert_eq!(good.validate(1).expect_err("refused").field, "instance.clip");
-        let refused = |instance: Instance| instance.validate(2).expect_err("refused").field;
+        assert_eq!(good.validate(1).expect_err("refused").path, "instance.clip");
+        let refused = |instance: Instance| instance.validate(2).expect_err("refused").path;
         assert_eq!(refused(Instance { start: f32::NAN, ..good }), "instance.start");
         assert_eq!(refused(Instance { rate: f32::INFINITY, ..good }), "instance.rate");
         assert_eq!(refused(Instance { rate: -1.1e9, ..good }), "instance.rate");

@@ -133,7 +133,7 @@ mod tests {
         let good = Layer::new(vec![instance; 2], vec![0.0, 1.0]).masked(vec![0.5; 3]);
         assert_eq!(good.validate("layers[0]", 2, 2, 3), Ok(()));
         assert_eq!(good.weight(1, 2), 0.5);
-        let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").field;
+        let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").path;
         assert_eq!(refused(Layer { instances: vec![instance], ..good.clone() }), "layers[0].instances.len");
         assert_eq!(refused(Layer { weights: vec![1.0; 3], ..good.clone() }), "layers[0].weights.len");
         for wrong in [f32::NAN, f32::INFINITY, -0.1, 1.1] {
@@ -154,6 +154,6 @@ mod tests {
             assert_eq!(ones, 1 + model.skeleton.descendants()[bone] as usize);
             assert!(mask.iter().all(|value| [0.0, 1.0].contains(value)));
         }
-        assert_eq!(mask_below(&model.skeleton, 153).expect_err("refused").field, "bone");
+        assert_eq!(mask_below(&model.skeleton, 153).expect_err("refused").path, "bone");
     }
 }

@@ -102,7 +102,7 @@ mod tests {
         let range = Range { min: 200.0, max: 1700.0 };
         assert_eq!([0.0, 200.0, 950.0, 1700.0, 5000.0].map(|d| range.omega(d)), [65536, 65536, 32768, 0, 0]);
         assert!(range.validate().is_ok());
-        let refused = |min, max| Range { min, max }.validate().expect_err("refused").field;
+        let refused = |min, max| Range { min, max }.validate().expect_err("refused").path;
         assert_eq!([refused(-1.0, 2.0), refused(f32::NAN, 2.0)], ["range.min", "range.min"]);
         assert_eq!([refused(2.0, 2.0), refused(2.0, f32::INFINITY)], ["range.max", "range.max"]);
     }

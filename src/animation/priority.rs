@@ -427,7 +427,7 @@ mod tests {
     #[test]
     fn bad_weights_and_user_values_are_refused() {
         let refused = |weights: [f64; 6], user: &[f32]| {
-            Priorities::new(&skeleton(), &clip(), true, &Weights(weights), user).expect_err("refused").field
+            Priorities::new(&skeleton(), &clip(), true, &Weights(weights), user).expect_err("refused").path
         };
         let good = Weights::default().0;
         assert_eq!(refused([0.5; 6], &[0.5; 4]), "weights");

@@ -1,11 +1,11 @@
 // The level of detail of one instance: its influences and its vertices.
 struct InstanceLod {
     // The λ of `fade`: 0 is full quality, 1 is rigid.
-    fade: f32,
+    influence_fade: f32,
     // The k of `truncate`, the largest number of influences, at least 1; 0 for an instance that is not seen, which is not
     // skinned.
-    most: u32,
+    max_influences: u32,
     // The character's level of detail. Level 0 stands for the meshes themselves; at level n each mesh uses the coarsest of
     // its `Mesh::levels` whose error is at most the n-th of `level_errors`. A number beyond the last level means the last.
-    level: u32,
+    mesh_lod: u32,
 }

@@ -177,6 +177,6 @@ mod tests {
     fn tracks_that_it_cannot_play_are_refused() {
         let model = crate::samples::creature().expect("valid");
         let set = ClipSet::new(&[&model.clips[0]]).expect("valid");
-        assert_eq!(PlainSoa::new(&model.skeleton, &set).err().expect("refused").field, "tracks");
+        assert_eq!(PlainSoa::new(&model.skeleton, &set).err().expect("refused").path, "tracks");
     }
 }

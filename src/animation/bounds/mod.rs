@@ -83,9 +83,9 @@ mod tests {
     #[test]
     fn reaches_are_checked_one_by_one() {
         assert_eq!(check_bone_radii(&[0.0, 2.0], 2), Ok(()));
-        assert_eq!(check_bone_radii(&[0.0], 2).expect_err("refused").field, "bone_radii.len");
+        assert_eq!(check_bone_radii(&[0.0], 2).expect_err("refused").path, "bone_radii.len");
         for wrong in [-0.5, f32::NAN, f32::INFINITY] {
-            assert_eq!(check_bone_radii(&[0.0, wrong], 2).expect_err("refused").field, "bone_radii[1]");
+            assert_eq!(check_bone_radii(&[0.0, wrong], 2).expect_err("refused").path, "bone_radii[1]");
         }
     }
 
