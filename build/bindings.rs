@@ -1,8 +1,8 @@
-//! Rust for what kernels and host share, generated from the composed WGSL: structs and constants, and for every kernel
-//! its override constants and the resources of each bind group, by name and type.
+//! Generates the Rust that kernels and host share from the composed WGSL: structs and constants, and for every
+//! kernel its override constants and the resources of each bind group, by name and type.
 //!
-//! `shared.rs` needs no graphics library: a module a WGSL file, with the structs that lie in buffers and the constants
-//! of that file. `bindings.rs` needs the feature `gpu`: a module a kernel.
+//! `shared.rs` needs no graphics library. It has one module per WGSL file, with the constants of that file and
+//! its structs that lie in buffers. `bindings.rs` needs the feature `gpu` and has one module per kernel.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -17,7 +17,8 @@ use crate::types::{Use, constant_text, literal_text, scalar_name};
 /// A WGSL file's structs and constants as Rust, by name.
 pub type Items = BTreeMap<String, String>;
 
-/// Generated modules: of `shared.rs`, by the path of their WGSL file without `kernels/` or `wgsl/`; of `bindings.rs`.
+/// The generated modules: those of `shared.rs`, by the path of their WGSL file without `kernels/` or `wgsl/`,
+/// and those of `bindings.rs`.
 #[derive(Default)]
 pub struct Bindings {
     shared: BTreeMap<String, Items>,
@@ -25,7 +26,7 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// Adds what a kernel shares with the host.
+    /// Adds the items that a kernel shares with the host.
     pub fn add(&mut self, root: &Path, file: &Path, shader: &Shader) {
         let sources = Sources::of(root, file);
         let kernel = ShaderBindings { root, file, shader, sources: &sources };
@@ -34,7 +35,7 @@ impl Bindings {
         self.kernels.insert(shader.name.clone(), text);
     }
 
-    /// Adds what a drawing pass shares with the host: its structs and constants.
+    /// Adds the structs and constants that a drawing pass shares with the host.
     pub fn add_drawing(&mut self, root: &Path, file: &Path, shader: &Shader) {
         let sources = Sources::of(root, file);
         let drawing = ShaderBindings { root, file, shader, sources: &sources };
@@ -58,7 +59,7 @@ fn joined(items: &Items) -> String {
     items.values().map(String::as_str).collect::<Vec<_>>().join("\n")
 }
 
-/// `domain/file` and text as modules of modules.
+/// Modules given as `domain/file` and text, as nested Rust modules.
 fn nested(modules: &BTreeMap<String, String>) -> String {
     let mut text = String::new();
     let mut domain = "";
@@ -78,10 +79,10 @@ fn nested(modules: &BTreeMap<String, String>) -> String {
     if domain.is_empty() { text } else { text + "}\n" }
 }
 
-/// A doc comment; `fallback` where there is none.
+/// A doc comment, or `fallback` if there is no comment.
 pub fn doc(indent: &str, comment: &[&str], fallback: &str) -> String {
     let lines = if comment.is_empty() { vec![fallback] } else { comment.to_vec() };
-    // Links would lead nowhere from the generated module.
+    // Links would not resolve from the generated module.
     let plain = |line: &&str| line.replace("[`", "`").replace("`]", "`");
     lines.iter().map(|line| format!("{indent}/// {}\n", plain(line))).collect()
 }
@@ -99,7 +100,7 @@ impl ShaderBindings<'_> {
         refuse(self.file.strip_prefix(self.root).unwrap_or(self.file), what)
     }
 
-    /// The constants of all files that the shader is made of, as far as it uses them.
+    /// The constants that the shader uses, from all its files.
     fn constants(&self, shared: &mut BTreeMap<String, Items>) {
         let module = &self.shader.module;
         for (_, constant) in module.constants.iter() {

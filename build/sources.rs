@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The files that a shader is composed of, its own first.
+/// The files of which a shader is composed, its own first.
 pub struct Sources(Vec<(PathBuf, String)>);
 
 impl Sources {
@@ -24,7 +24,7 @@ impl Sources {
             .filter_map(|path| {
                 let names = path.trim_end_matches(';').split("::").map(str::trim);
                 let mut file = root.to_path_buf();
-                // The last one or two are items; the longest start that is a file counts.
+                // The last one or two names are items; the longest prefix that is a file counts.
                 names.filter(|name| !name.starts_with('{')).find_map(|name| {
                     file.push(name);
                     let module = file.with_extension("wgsl");

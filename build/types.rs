@@ -8,7 +8,7 @@ use naga::{Handle, Literal, Scalar, ScalarKind, StructMember, Type, TypeInner, V
 use crate::bindings::{Items, ShaderBindings, doc};
 
 impl ShaderBindings<'_> {
-    /// What a storage buffer has many of.
+    /// The element type of a storage buffer.
     pub fn element(&self, ty: Handle<Type>, shared: &mut BTreeMap<String, Items>) -> String {
         match &self.shader.module.types[ty].inner {
             TypeInner::Array { base, stride, .. } => {
@@ -45,7 +45,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// Adds a struct to its file's module; its path.
+    /// Adds a struct to its file's module, and returns its path.
     fn structure(
         &self,
         name: &str,
@@ -131,7 +131,7 @@ impl ShaderBindings<'_> {
     }
 }
 
-/// Whether a type holds whole numbers alone.
+/// Whether a type consists of integers only.
 fn is_whole(ty: &TypeInner) -> bool {
     match ty {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) | TypeInner::Vector { scalar, .. } => {
@@ -141,7 +141,7 @@ fn is_whole(ty: &TypeInner) -> bool {
     }
 }
 
-/// Where a type is used, which decides how the host lays it out.
+/// The use of a type, which decides its layout on the host.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Use {
     /// Written by encase.
@@ -172,7 +172,7 @@ pub fn scalar_name(scalar: Scalar) -> &'static str {
     }
 }
 
-/// Type and value of a constant: a literal, or a vector or an array of such, which is an array for the host.
+/// The Rust type and the value of a constant: a literal, or a vector or an array, which becomes an array.
 pub fn constant_text(module: &naga::Module, init: Handle<naga::Expression>) -> Option<(String, String)> {
     match &module.global_expressions[init] {
         naga::Expression::Literal(literal) => {
@@ -189,7 +189,7 @@ pub fn constant_text(module: &naga::Module, init: Handle<naga::Expression>) -> O
     }
 }
 
-/// Type and value.
+/// The Rust type and the value of a literal.
 pub fn literal_text(literal: Literal) -> Option<(&'static str, String)> {
     Some(match literal {
         Literal::Bool(value) => ("bool", value.to_string()),

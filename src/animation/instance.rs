@@ -1,26 +1,27 @@
-//! What a character plays: a clip, from a start, at a rate.
+//! What a character plays: a clip, with a start time and a rate.
 
 use crate::InputError;
 use crate::shared::animation::clock;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
-/// The most seconds that a start, or what has elapsed since, may be from 0, and the most clip seconds a second: their
-/// products and sums stay finite. Some 30 years.
+/// The largest absolute value of a start, of elapsed seconds, and of a rate: products and sums stay finite. It
+/// is about 30 years.
 pub const MAX_SECONDS: f32 = 1e9;
 
-/// What becomes of times outside a clip.
+/// How times outside a clip are treated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Wrap {
-    /// The clip begins again; its end is its start.
+    /// The clip repeats; its end coincides with its start.
     #[default]
     Loop = 0,
-    /// The first or last pose stays.
+    /// The first or the last pose is kept.
     Clamp = clock::WRAP_CLAMP,
 }
 
 impl Wrap {
-    /// The time inside a clip of `duration` seconds, `seconds` after its start. Negative where it plays backwards.
+    /// The time inside a clip of `duration` seconds that corresponds to `seconds` after its start, negative if
+    /// it plays backwards.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite.
@@ -37,15 +38,15 @@ impl Wrap {
     }
 }
 
-/// Checks what has elapsed.
+/// Checks elapsed seconds.
 #[cfg(any(feature = "gpu", test))]
 pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
     check_seconds("elapsed", elapsed)
 }
 
-/// Checks any seconds.
+/// Checks a number of seconds.
 pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
-    // NaN is not within.
+    // The comparison is false for NaN.
     if value.abs() <= MAX_SECONDS {
         return Ok(());
     }
@@ -53,17 +54,17 @@ pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
 }
 
 impl Instance {
-    /// A clip from a start, at a rate.
+    /// A clip with a start in seconds and a rate in clip seconds per second.
     pub fn new(clip: u32, wrap: Wrap, start: f32, rate: f32) -> Self {
         Self { clip, wrap_code: wrap as u32, start, rate }
     }
 
-    /// What becomes of times outside the clip.
+    /// How times outside the clip are treated.
     pub fn wrap(&self) -> Wrap {
         if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
     }
 
-    /// Checks that it plays one of `clips` clips, from a start and at a rate within ±[`MAX_SECONDS`].
+    /// Checks that it plays one of `clips` clips, with a start and a rate within ±[`MAX_SECONDS`].
     ///
     /// # Errors
     /// [`InputError`] that names the field.
