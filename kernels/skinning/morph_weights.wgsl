@@ -3,7 +3,7 @@
 // their weights.
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
-import package::wgsl::animation::interpolation::{LINEAR, SPLINE};
+import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_SPLINE};
 import package::wgsl::animation::timeline::{keyframe_cursor, times};
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
@@ -25,7 +25,7 @@ struct WeightEntry {
     keys: u32,
     // Index of its first value.
     first_value: u32,
-    // STEP, LINEAR, or SPLINE, which has in-tangents, values and out-tangents.
+    // INTERPOLATION_STEP, INTERPOLATION_LINEAR, or INTERPOLATION_SPLINE, which has in-tangents, values and out-tangents.
     interpolation: u32,
 }
 
@@ -76,7 +76,7 @@ fn main(
     // At the last key the fraction is 0.
     let is_between = t > 0.0;
     var weight = 0.0;
-    if entry.interpolation == SPLINE {
+    if entry.interpolation == INTERPOLATION_SPLINE {
         weight = values[first + (3u * found.x + 1u) * params.targets];
         if is_between {
             let at = entry.first_time + found.x;
@@ -84,7 +84,7 @@ fn main(
         }
     } else {
         weight = values[first + found.x * params.targets];
-        if is_between && entry.interpolation == LINEAR {
+        if is_between && entry.interpolation == INTERPOLATION_LINEAR {
             weight += (values[first + (found.x + 1u) * params.targets] - weight) * t;
         }
     }

@@ -42,20 +42,20 @@ const LEAST_TIME: f32 = 7.888_609e-31;
 #[repr(u32)]
 pub enum Interpolation {
     /// The value of the previous key.
-    Step = interpolation::STEP,
+    Step = interpolation::INTERPOLATION_STEP,
     /// Linear interpolation; for rotations, along the shortest arc.
-    Linear = interpolation::LINEAR,
+    Linear = interpolation::INTERPOLATION_LINEAR,
     /// A cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized
     /// afterwards.
-    CubicSpline = interpolation::SPLINE,
+    CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 
 impl Interpolation {
     /// The interpolation that a track's `code` stands for.
     pub fn of_code(code: u32) -> Self {
         match code {
-            interpolation::STEP => Self::Step,
-            interpolation::LINEAR => Self::Linear,
+            interpolation::INTERPOLATION_STEP => Self::Step,
+            interpolation::INTERPOLATION_LINEAR => Self::Linear,
             _ => Self::CubicSpline,
         }
     }

@@ -1,8 +1,8 @@
 // How values go from one key to the next, as tracks and weights say it.
 
 // They stay until the next key.
-const STEP: u32 = 0u;
+const INTERPOLATION_STEP: u32 = 0u;
 // A straight line; rotations take the shortest arc.
-const LINEAR: u32 = 1u;
+const INTERPOLATION_LINEAR: u32 = 1u;
 // A cubic Hermite spline: a key has an in-tangent, a value and an out-tangent.
-const SPLINE: u32 = 2u;
+const INTERPOLATION_SPLINE: u32 = 2u;
