@@ -55,7 +55,7 @@
 pub mod animation;
 pub mod asset;
 #[cfg(feature = "verify")]
-pub mod baseline;
+mod baseline;
 #[cfg(feature = "verify")]
 pub mod bench;
 pub mod error;

@@ -2,10 +2,10 @@
 //! cannot be avoided. Every speed figure of relievo is a ratio to one of them in the same run.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod copy;
 pub mod gather;
 pub mod loads;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 pub mod words;

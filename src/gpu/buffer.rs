@@ -126,7 +126,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     ///
     /// # Errors
     /// [`InputError`] that names `field`.
-    pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
+    pub(crate) fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
         if self.len >= needed {
             return Ok(());
         }

@@ -51,7 +51,7 @@ impl Kernel {
     ///
     /// # Errors
     /// [`GpuError::Validation`] when they do not fit the shader.
-    pub fn bind(&self, gpu: &Gpu, group: u32, resources: &[Resource<'_>]) -> Result<Group, GpuError> {
+    pub(crate) fn bind(&self, gpu: &Gpu, group: u32, resources: &[Resource<'_>]) -> Result<Group, GpuError> {
         bind(gpu, self.shader, &self.layouts, group, resources)
     }
 
@@ -84,7 +84,7 @@ impl Kernel {
     }
 
     /// Workgroups for `invocations` in one row, spread over x and y where they exceed the limit of a dimension.
-    pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
+    pub(crate) fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
@@ -94,19 +94,19 @@ impl Kernel {
     }
 
     /// Workgroups for `invocations` along x.
-    pub fn groups_for(&self, invocations: u32) -> u32 {
+    pub(crate) fn groups_for(&self, invocations: u32) -> u32 {
         invocations.div_ceil(self.workgroup_size()[0].max(1))
     }
 }
 
 /// Workgroups along x, y and z: rows as long as the device allows. For none, none along y.
-pub fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
+pub(crate) fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]
 }
 
 /// Compiles a shader.
-pub fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
+pub(crate) fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(shader.name),
         source: wgpu::ShaderSource::Wgsl(shader.source.into()),
@@ -114,7 +114,7 @@ pub fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
 }
 
 /// A pipeline layout of all groups.
-pub fn pipeline_layout(
+pub(crate) fn pipeline_layout(
     gpu: &Gpu,
     shader: &Shader,
     layouts: &[wgpu::BindGroupLayout],
@@ -130,7 +130,7 @@ pub fn pipeline_layout(
 ///
 /// # Errors
 /// [`GpuError::Validation`] when the device's limits do not allow them.
-pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
+pub(crate) fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
     let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
     gpu.scoped(|| {
         (0..groups)
@@ -154,7 +154,7 @@ pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>,
 ///
 /// # Errors
 /// [`GpuError::Validation`] when they do not fit the shader.
-pub fn bind(
+pub(crate) fn bind(
     gpu: &Gpu,
     shader: &Shader,
     layouts: &[wgpu::BindGroupLayout],

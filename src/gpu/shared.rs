@@ -20,7 +20,11 @@ impl<T: Clone> Shared<T> {
     ///
     /// # Errors
     /// Those of `compile`, which is tried again next time.
-    pub fn get(&self, key: String, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+    pub(crate) fn get(
+        &self,
+        key: String,
+        compile: impl FnOnce() -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
         let all = || self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());

@@ -57,7 +57,7 @@ pub struct LeftOut {
 
 impl Comparison {
     /// A comparison that fails whatever the values.
-    pub fn failed(values: usize, fault: String) -> Self {
+    pub(crate) fn failed(values: usize, fault: String) -> Self {
         let (error, bound, unit) = (f64::INFINITY, 0.0, "none");
         Self { holds: false, values, error, bound, unit, spread: None, left_out: None, fault: Some(fault) }
     }
@@ -166,7 +166,7 @@ pub struct Judgement {
 
 /// Values with a bound each: every error within its own, and at most a share `may_touch` of the values touching, at
 /// least one. `describe` describes a value by its index.
-pub fn each(
+pub(crate) fn each(
     judgements: &[Judgement],
     unit: &'static str,
     may_touch: f64,

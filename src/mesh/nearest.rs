@@ -6,7 +6,7 @@ use glam::Vec3;
 /// part of the plane, around corners, edges and the inside, that the point lies over). A triangle may be a line or a
 /// point. For sizes and distances of 1e-8 to 1e9, whose fourth powers are numbers, to about 1e-6 of the larger one;
 /// beyond, some place on the triangle, so that what is measured may be too far, and is never too near.
-pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(crate) fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
     if to_b <= 0.0 && to_c <= 0.0 {

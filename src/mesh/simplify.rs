@@ -182,7 +182,7 @@ impl Simplified {
     ///
     /// # Panics
     /// For a vertex that there is not.
-    pub fn point(&self, vertex: u32) -> u32 {
+    pub(crate) fn point(&self, vertex: u32) -> u32 {
         self.points[vertex as usize]
     }
 

@@ -5,6 +5,7 @@
 use glam::{Mat4, Vec3};
 
 use crate::animation::ModelMatrices;
+use crate::asset::Light;
 use crate::asset::Model;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -13,7 +14,6 @@ use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use crate::skinning::ball::ball_in_clips;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
-use crate::skinning::picture::Light;
 use crate::skinning::reduction::Reduction;
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};

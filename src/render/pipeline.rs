@@ -16,7 +16,7 @@ pub(super) struct Draws<'a> {
 
 impl Draws<'_> {
     /// Compiles the pipeline for targets of `color` format with a [`DEPTH_FORMAT`] depth buffer.
-    pub fn compile(&self, gpu: &Gpu, color: wgpu::TextureFormat) -> Result<RenderPipeline, GpuError> {
+    pub(crate) fn compile(&self, gpu: &Gpu, color: wgpu::TextureFormat) -> Result<RenderPipeline, GpuError> {
         let shader = self.shader;
         let layouts = layouts(gpu, shader)?;
         let options = || wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };

@@ -6,10 +6,10 @@ use glam::{Mat4, Vec4};
 use crate::gpu::{Gpu, GpuError, Group, Uniform, bind, shaders};
 use crate::render::color::ColorTexture;
 use crate::render::pipeline::Draws;
-use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{March, Method, SurfaceMarch};
+use crate::surface::{Green, Material, Shadow};
 use crate::{Error, InputError};
 
 /// `ReliefView` of the shader.

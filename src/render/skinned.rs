@@ -4,6 +4,7 @@
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
+use crate::asset::Light;
 use crate::asset::material::Alpha;
 use crate::asset::mesh::MOST_LEVELS;
 use crate::asset::transform::Affine;
@@ -13,7 +14,7 @@ use crate::render::pipeline::Draws;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{draws_at, list_stride};
-use crate::skinning::picture::{Light, is_mirrored};
+use crate::skinning::picture::is_mirrored;
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 

@@ -2,7 +2,7 @@
 
 pub mod ball;
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod character_levels;
@@ -23,7 +23,7 @@ pub mod reduction;
 pub mod select;
 pub mod skin;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 pub mod vertex;
 
 pub use character_levels::{level_errors, own_levels};

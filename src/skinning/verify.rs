@@ -14,7 +14,7 @@ use crate::skinning::vertex::Vertex;
 
 /// A random mesh, and the skeleton and skin that it follows.
 #[derive(Debug, Clone, Copy)]
-pub struct Shape {
+pub(crate) struct Shape {
     /// Of the skeleton; the skin has half of them, at least one.
     pub bones: usize,
     /// Of the mesh.
@@ -29,7 +29,7 @@ pub struct Shape {
 
 /// Vertices around the boundaries of clusters; bones around those of sets; one influence to eight; no levels, some and
 /// as many as there may be.
-pub const SHAPES: [Shape; 8] = [
+pub(crate) const SHAPES: [Shape; 8] = [
     Shape { bones: 1, vertices: 1, influences: 1, targets: 0, levels: 0 },
     Shape { bones: 9, vertices: 63, influences: 2, targets: 1, levels: 1 },
     Shape { bones: 32, vertices: 64, influences: 3, targets: 0, levels: 0 },
@@ -44,7 +44,7 @@ pub const SHAPES: [Shape; 8] = [
 ///
 /// # Errors
 /// None: it is checked like any other.
-pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
+pub(crate) fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
     let mut draw = Draw::new(case ^ 0x5c1);
     let skeleton = random_skeleton(case, shape.bones)?;
     let bones: Vec<u32> = (0..shape.bones as u32).rev().step_by(2).collect();
@@ -141,7 +141,7 @@ pub(crate) fn near_identity(draw: &mut Draw) -> Affine {
 
 /// Matrices that lie near each other, so that their means are no worse than they are: for each instance a turn of its
 /// own, some mirrored.
-pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine> {
+pub(crate) fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine> {
     let mut draw = Draw::new(case ^ 0xba1e);
     let mut matrices = Vec::with_capacity(bones * instances);
     for instance in 0..instances {
@@ -155,7 +155,7 @@ pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine>
 }
 
 /// Full, truncated, fading and unseen ones in turn, half of them at coarse levels, which the mesh may lack.
-pub fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
+pub(crate) fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
     let mut draw = Draw::new(case ^ 0xfade);
     let reduction = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
         0 => Reduction::FULL,

@@ -28,7 +28,7 @@ impl Address {
     }
 
     /// Its number in the shaders: `SURFACE_WRAP` and `SURFACE_CLAMP` of `wgsl/surface/ray.wgsl`.
-    pub fn code(self) -> u32 {
+    pub(crate) fn code(self) -> u32 {
         self as u32
     }
 }
@@ -107,7 +107,7 @@ impl HeightMap {
 
     /// The next mip level: half the edges, rounded down but at least 1; each texel the mean of the four that it
     /// covers.
-    pub fn halved(&self) -> Self {
+    pub(crate) fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mean = |x: u32, y: u32| {
             let four = [[0, 0], [1, 0], [0, 1], [1, 1]];

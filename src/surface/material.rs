@@ -16,17 +16,6 @@ pub enum Shadow {
     Soft,
 }
 
-impl Shadow {
-    /// Its name in options and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Hard => "hard",
-            Self::Soft => "soft",
-        }
-    }
-}
-
 /// Where green of a normal map points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]

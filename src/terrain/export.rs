@@ -43,7 +43,7 @@ impl HeightRange {
     }
 
     /// The height of a sample.
-    pub fn height(&self, sample: u16) -> f64 {
+    pub(crate) fn height(&self, sample: u16) -> f64 {
         self.low + (self.high - self.low) * f64::from(sample) / 65_535.0
     }
 }

@@ -150,7 +150,7 @@ impl Features {
     }
 
     /// How features are injected, if there are any.
-    pub fn injection(&self) -> Option<FeatureMode> {
+    pub(crate) fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
     }
 
@@ -166,7 +166,12 @@ impl Features {
     /// The injected points of a square lattice: first sample `origin`, `width` samples `spacing` apart, in
     /// world coordinates of `world`; as (column, row, height), row by row. Points that lie on the lattice of
     /// twice the spacing are left out if `new_only`.
-    pub fn on_lattice(&self, world: [i32; 2], lattice: Lattice, new_only: bool) -> Vec<(u32, u32, i32)> {
+    pub(crate) fn on_lattice(
+        &self,
+        world: [i32; 2],
+        lattice: Lattice,
+        new_only: bool,
+    ) -> Vec<(u32, u32, i32)> {
         let Some(points) = self.worlds.get(&world) else { return Vec::new() };
         let Lattice { origin, width, spacing } = lattice;
         let end = |start: i64| start + i64::from(width.max(1) - 1) * spacing;
@@ -185,7 +190,12 @@ impl Features {
 
     /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend` a
     /// window's rim shows other patches, or the other side of its own, and their features with them.
-    pub fn in_windows(&self, config: &Config, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<(u32, u32)>> {
+    pub(crate) fn in_windows(
+        &self,
+        config: &Config,
+        patches: &[[i32; 2]],
+        reach: u32,
+    ) -> Vec<Vec<(u32, u32)>> {
         if config.border == Border::Seamless || self.is_empty() {
             let points = |patch: &[i32; 2]| {
                 let lattice = Window { patch: *patch, reach }.lattice(config);
@@ -217,7 +227,7 @@ impl Features {
     }
 
     /// The world that a patch lives in: see [`Features::on_lattice`].
-    pub fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
+    pub(crate) fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }
 }

@@ -29,7 +29,7 @@ impl Draw {
     }
 
     /// Adds to `heights[i]` the offset of the point (x + i·step, y), in world coordinates.
-    pub fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
+    pub(crate) fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
         for (chunk, row) in heights.chunks_mut(LANES).enumerate() {
             let start = x.wrapping_add(step.wrapping_mul((chunk * LANES) as u32));
             let columns = std::array::from_fn(|lane| start.wrapping_add(step.wrapping_mul(lane as u32)));
@@ -69,7 +69,7 @@ pub enum FeatureMode {
 
 impl FeatureMode {
     /// The value of the shaders' `FEATURES`; 0 stands for no features.
-    pub fn code(self) -> u32 {
+    pub(crate) fn code(self) -> u32 {
         match self {
             Self::Keep => 1,
             Self::Additive => 2,
@@ -78,7 +78,7 @@ impl FeatureMode {
 }
 
 /// Injects a feature into a computed height.
-pub fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
+pub(crate) fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
     match mode {
         FeatureMode::Keep => feature,
         FeatureMode::Additive => computed + feature,

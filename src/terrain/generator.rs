@@ -51,7 +51,7 @@ impl Generator {
     }
 
     /// Patches that one part of the result may hold.
-    pub fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
+    pub(crate) fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
         Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.reach(margin))
     }
 

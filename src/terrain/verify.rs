@@ -30,7 +30,7 @@ pub const LIMIT: i32 = HEIGHT_LIMIT as i32;
 ///
 /// # Errors
 /// [`InputError`] never, for valid configurations.
-pub fn scattered(
+pub(crate) fn scattered(
     config: &Config,
     patch: [i32; 2],
     mode: FeatureMode,
@@ -56,6 +56,6 @@ pub fn scattered(
 ///
 /// # Errors
 /// [`InputError`] never.
-pub fn config(json: &serde_json::Value) -> Result<Config, Error> {
+pub(crate) fn config(json: &serde_json::Value) -> Result<Config, Error> {
     Ok(Config::from_json(&json.to_string())?)
 }

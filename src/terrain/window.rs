@@ -26,12 +26,12 @@ pub struct Span {
 
 impl Span {
     /// What the lattice of twice the spacing must give so that this span can be computed: one cell of halo.
-    pub fn coarser(self) -> Self {
+    pub(crate) fn coarser(self) -> Self {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
     /// The number of indices.
-    pub fn width(self) -> usize {
+    pub(crate) fn width(self) -> usize {
         (self.last - self.first + 1) as usize
     }
 }
@@ -43,7 +43,7 @@ impl Window {
     }
 
     /// The columns and rows of the window, in samples.
-    pub fn spans(&self, config: &Config) -> [Span; 2] {
+    pub(crate) fn spans(&self, config: &Config) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
             let first = i64::from(patch) * edge - i64::from(self.reach);
@@ -52,7 +52,7 @@ impl Window {
     }
 
     /// The columns and rows at every level, the base lattice first.
-    pub fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
+    pub(crate) fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
         let mut levels = vec![self.spans(config)];
         for _ in 0..config.levels() {
             let finer = levels[levels.len() - 1];
@@ -63,7 +63,7 @@ impl Window {
     }
 
     /// The lattice of the window's samples, in the world that its features live in.
-    pub fn lattice(&self, config: &Config) -> Lattice {
+    pub(crate) fn lattice(&self, config: &Config) -> Lattice {
         let spacing = config.sample_spacing();
         let origin = if config.border == Border::Seamless {
             self.spans(config).map(|span| span.first * spacing)
@@ -113,7 +113,7 @@ pub struct Lattice {
 
 impl Lattice {
     /// The lattice with one point more on every side.
-    pub fn grown(self) -> Self {
+    pub(crate) fn grown(self) -> Self {
         Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
     }
 }

@@ -15,6 +15,7 @@ use relievo::animation::place::PlacePass;
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Layer, Lod, ModelMatrices};
 use relievo::asset::Affine;
+use relievo::asset::Light;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
 use relievo::gpu::{Buffer, Gpu, GpuError};
@@ -23,7 +24,6 @@ use relievo::samples::creature;
 use relievo::skinning::Blend;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::NO_FADE;
-use relievo::skinning::picture::Light;
 use relievo::surface::Mips;
 
 use crate::harness::gpu;

@@ -4,6 +4,7 @@ use glam::{Mat4, Vec3, camera};
 use relievo::animation::ModelMatrices;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::Light;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
@@ -13,7 +14,6 @@ use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedSc
 use relievo::samples::creature;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, ball, standing};
-use relievo::skinning::picture::Light;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::select::SKINNED_WORDS;
 use relievo::skinning::vertex::Blend;

@@ -5,6 +5,7 @@ use image::{Rgba, RgbaImage};
 use relievo::animation::ModelMatrices;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::Light;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Bone, Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
@@ -14,7 +15,6 @@ use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, S
 use relievo::samples::creature;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::{LevelRanges, LodPass, LodView, ball, standing};
-use relievo::skinning::picture::Light;
 use relievo::skinning::reduction::Reduction;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;

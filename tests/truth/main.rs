@@ -7,15 +7,16 @@ use glam::Vec3;
 use relievo::animation::concat::reference::concat;
 use relievo::animation::instance::Wrap;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::Light;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::picture::reference::{Part, Scene};
+use relievo::skinning::picture::framing;
 use relievo::skinning::picture::texture::Surface;
-use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::picture::{Part, Scene};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, Reduction, Vertex, add_levels};
 

@@ -1,4 +1,5 @@
 // Draws skinned instances of a mesh: textured, lit, each at a place of its own; opaque, cut out, or through a screen.
+import package::wgsl::light::lambert;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
@@ -77,7 +78,7 @@ fn lit(color: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
         normal = select(-normal, normal, is_front == (view.side > 0.0));
     }
     let direct = max(dot(normal, view.light.xyz), 0.0);
-    return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
+    return vec4<f32>(lambert(color, view.light.w, direct), 1.0);
 }
 
 // Nothing becomes of alpha. An entry of its own: what may be discarded is tested for depth late.

@@ -1,4 +1,5 @@
 // A directional light over terrain, in linear light.
+import package::wgsl::light::lambert;
 
 // The sun: one direction for all of the terrain.
 struct Light {
@@ -10,6 +11,5 @@ struct Light {
 
 // What a surface of a linear albedo and a unit normal sends to the eye, linear: Lambert's cosine, and the ambient part.
 fn lit(light: Light, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<f32> {
-    let facing = max(0.0, dot(normal, light.direction));
-    return albedo * (light.ambient + (1.0 - light.ambient) * facing);
+    return lambert(albedo, light.ambient, max(0.0, dot(normal, light.direction)));
 }

@@ -18,7 +18,7 @@ use crate::baseline::gather::Reads;
 use crate::gpu::{Gpu, Job};
 
 /// A frame of the kernels.
-pub struct DeviceFrame {
+pub(crate) struct DeviceFrame {
     place: PlaceJob,
     sample: Job,
     concat: ConcatJob,
@@ -26,7 +26,7 @@ pub struct DeviceFrame {
 }
 
 impl DeviceFrame {
-    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
+    pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
         let place = PlacePass::new(gpu)?.prepare(gpu, &scene.clips, &scene.crowd)?;
         place.set(gpu, ELAPSED)?;
         Ok(Self {
@@ -37,30 +37,30 @@ impl DeviceFrame {
         })
     }
 
-    pub fn set(&self, gpu: &Gpu) -> Result<(), Error> {
+    pub(crate) fn set(&self, gpu: &Gpu) -> Result<(), Error> {
         self.place.set(gpu, ELAPSED)
     }
 
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.place.record(encoder);
         self.sample.record(encoder);
         self.concat.record(encoder);
     }
 
-    pub fn record_copies(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record_copies(&self, encoder: &mut wgpu::CommandEncoder) {
         self.copies.iter().for_each(|copy| copy.record(encoder));
     }
 }
 
 /// A frame of the twins.
-pub struct TwinFrame {
+pub(crate) struct TwinFrame {
     places: Vec<Place>,
     locals: Vec<Transform>,
     models: Vec<Affine>,
 }
 
 impl TwinFrame {
-    pub fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &Scene) -> Self {
         Self {
             places: scene.places.clone(),
             locals: vec![Transform::IDENTITY; scene.skeleton.len()],
@@ -68,7 +68,7 @@ impl TwinFrame {
         }
     }
 
-    pub fn compute(&mut self, scene: &Scene) {
+    pub(crate) fn compute(&mut self, scene: &Scene) {
         let Self { places, locals, models } = self;
         places_into(&scene.set, &scene.instances, ELAPSED, places);
         let room = scene.set.timelines_a_clip();
@@ -82,7 +82,7 @@ impl TwinFrame {
 }
 
 /// A frame of the opponent.
-pub struct PlainFrame {
+pub(crate) struct PlainFrame {
     plain: PlainSoa,
     places: Vec<Place>,
     locals: Vec<[f32; 8]>,
@@ -90,13 +90,13 @@ pub struct PlainFrame {
 }
 
 impl PlainFrame {
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, Error> {
         let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
         let (places, locals) = (scene.places.clone(), plain.locals());
         Ok(Self { plain, places, locals, models: vec![AFFINE_IDENTITY; scene.pairs()] })
     }
 
-    pub fn compute(&mut self, scene: &Scene) {
+    pub(crate) fn compute(&mut self, scene: &Scene) {
         let Self { plain, places, locals, models } = self;
         places_into(&scene.set, &scene.instances, ELAPSED, places);
         for (place, models) in places.iter().zip(black_box(models).chunks_mut(scene.skeleton.len())) {

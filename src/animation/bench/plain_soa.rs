@@ -21,7 +21,7 @@ type Lanes = [f32; LANES];
 const NUMBERS: usize = 10;
 
 /// A clip's keys, and what a skeleton needs.
-pub struct PlainSoa {
+pub(crate) struct PlainSoa {
     /// Key by key, number by number, bones in blocks.
     keys: Vec<Lanes>,
     parents: Vec<Option<u32>>,
@@ -32,7 +32,7 @@ impl PlainSoa {
     ///
     /// # Errors
     /// [`InputError`] for tracks that are not linear, or not all on the clip's first timeline.
-    pub fn new(skeleton: &Skeleton, set: &ClipSet) -> Result<Self, InputError> {
+    pub(crate) fn new(skeleton: &Skeleton, set: &ClipSet) -> Result<Self, InputError> {
         let tracks = &set.tracks()[..3 * set.bones()];
         let common = (Interpolation::Linear as u32) << 30;
         if let Some(index) = tracks.iter().position(|track| track.timeline_and_code != common) {
@@ -62,12 +62,12 @@ impl PlainSoa {
     }
 
     /// Room for an instance's local transforms.
-    pub fn locals(&self) -> Vec<Lanes> {
+    pub(crate) fn locals(&self) -> Vec<Lanes> {
         vec![[0.0; LANES]; NUMBERS * self.blocks()]
     }
 
     /// An instance's local transforms.
-    pub fn sample(&self, place: Place, locals: &mut [Lanes]) {
+    pub(crate) fn sample(&self, place: Place, locals: &mut [Lanes]) {
         let blocks = self.blocks();
         let of_key = |key: usize| &self.keys[key * NUMBERS * blocks..][..NUMBERS * blocks];
         let from = of_key(place.key as usize);
@@ -89,7 +89,7 @@ impl PlainSoa {
     }
 
     /// An instance's palette. Bones wait for their parents, so one after another.
-    pub fn concat(&self, locals: &[Lanes], models: &mut [Affine]) {
+    pub(crate) fn concat(&self, locals: &[Lanes], models: &mut [Affine]) {
         let blocks = self.blocks();
         for (bone, parent) in self.parents.iter().enumerate() {
             let of = |number: usize| locals[number * blocks + bone / LANES][bone % LANES];

@@ -9,12 +9,12 @@
 //! What is below an active bone is a run of slots too: so a thread that knows the first bone to compute knows them all.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ConcatActiveJob, ConcatJob, ConcatPass, Walk};

@@ -8,12 +8,12 @@ pub use crate::shared::animation::gating::Phase;
 pub use crate::shared::animation::phase::BLENDED;
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{PhaseJob, PhasePass};

@@ -5,12 +5,12 @@
 //! so five terms keep it within [`SLERP_BOUND`] of the true rotation for every two keys.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SampleActiveJob, SamplePass};

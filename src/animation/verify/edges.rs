@@ -13,7 +13,7 @@ use crate::asset::skeleton::{Bone, Skeleton};
 use crate::asset::transform::Transform;
 
 /// The crowd, and for each instance its time in the first clip, or `None` where it plays the second.
-pub struct Edges {
+pub(crate) struct Edges {
     /// The clips.
     pub set: ClipSet,
     /// What is played.
@@ -36,7 +36,7 @@ fn turning(last: [f32; 4]) -> Option<Keys> {
 }
 
 /// When the poses are what [`Edges::poses`] says: seconds since the instances' starts.
-pub const ELAPSED: f32 = 0.25;
+pub(crate) const ELAPSED: f32 = 0.25;
 
 /// Six bones for a second, and no time; and both again with all rotations' keys negated, which are the same rotations.
 fn clips(skeleton: &Skeleton) -> Result<[Clip; 4], InputError> {
@@ -85,7 +85,7 @@ fn clips(skeleton: &Skeleton) -> Result<[Clip; 4], InputError> {
 ///
 /// # Errors
 /// None: it is checked like any other.
-pub fn edges() -> Result<Edges, InputError> {
+pub(crate) fn edges() -> Result<Edges, InputError> {
     let bone = |at: u32| Bone { name: format!("bone {at}"), parent: at.checked_sub(1), rest: REST };
     let skeleton = Skeleton::of_joints((0..6).map(bone).collect())?;
     let clips = clips(&skeleton)?;
@@ -117,7 +117,7 @@ pub fn edges() -> Result<Edges, InputError> {
 
 impl Edges {
     /// Each instance's places, as far as its clip has timelines.
-    pub fn places(&self) -> Vec<Vec<Place>> {
+    pub(crate) fn places(&self) -> Vec<Vec<Place>> {
         let place = |key, fraction| Place { key, fraction };
         let of = |time: &Option<f32>| match *time {
             // The quarters that all tracks' times are together; repeated, whole, and late times.
@@ -134,7 +134,7 @@ impl Edges {
     }
 
     /// Each instance's bones.
-    pub fn poses(&self) -> Vec<Transform> {
+    pub(crate) fn poses(&self) -> Vec<Transform> {
         let at = |x: f32| Transform { translation: [x, 0.0, 0.0], ..REST };
         let turned =
             |angle: f32| Transform { rotation: [0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()], ..REST };

@@ -1,6 +1,6 @@
 //! Parity of `kernels/animation/`.
 
-pub mod edges;
+pub(crate) mod edges;
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
@@ -12,16 +12,16 @@ use crate::asset::transform::Transform;
 use crate::terrain::verify::random_words;
 
 /// Random numbers, the same on every machine.
-pub struct Draw(std::vec::IntoIter<u32>, u32);
+pub(crate) struct Draw(std::vec::IntoIter<u32>, u32);
 
 impl Draw {
     /// The draw of a test case.
-    pub fn new(case: u32) -> Self {
+    pub(crate) fn new(case: u32) -> Self {
         Self(Vec::new().into_iter(), case << 16)
     }
 
     /// A word.
-    pub fn word(&mut self) -> u32 {
+    pub(crate) fn word(&mut self) -> u32 {
         loop {
             if let Some(word) = self.0.next() {
                 return word;
@@ -32,12 +32,12 @@ impl Draw {
     }
 
     /// From −1 to 1, in steps that `f32` holds exactly.
-    pub fn signed(&mut self) -> f32 {
+    pub(crate) fn signed(&mut self) -> f32 {
         (self.word() >> 8) as f32 / 8_388_608.0 - 1.0
     }
 
     /// A quaternion.
-    pub fn rotation(&mut self) -> [f32; 4] {
+    pub(crate) fn rotation(&mut self) -> [f32; 4] {
         loop {
             let q = [0; 4].map(|_| self.signed());
             if q.iter().map(|x| x * x).sum::<f32>() > 0.01 {
@@ -51,7 +51,7 @@ impl Draw {
 ///
 /// # Errors
 /// None: it is checked like any other.
-pub fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> {
+pub(crate) fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> {
     let mut draw = Draw::new(case);
     let bone = |index: usize| {
         let parent = match (index as u32, draw.word()) {
@@ -72,7 +72,7 @@ pub fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> 
 ///
 /// # Errors
 /// None: they are checked like any others.
-pub fn random_clips(case: u32, skeleton: &Skeleton, clips: usize) -> Result<Vec<Clip>, InputError> {
+pub(crate) fn random_clips(case: u32, skeleton: &Skeleton, clips: usize) -> Result<Vec<Clip>, InputError> {
     let mut draw = Draw::new(case ^ 0x0a11);
     let clip = |index: usize| {
         let shared = times(&mut draw, 0, index + 1 == clips);
@@ -124,7 +124,7 @@ pub(crate) fn keys(draw: &mut Draw, shared: &[f32], is_rotation: bool) -> Option
 
 /// Random instances, forwards and backwards, at times from −64 to 64 s in steps of 2⁻²⁰ s: 26 bits, so not all are
 /// exact.
-pub fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance> {
+pub(crate) fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance> {
     let mut draw = Draw::new(case ^ 0x1257);
     let instance = |_| {
         let clip = draw.word() % set.clips().len() as u32;
@@ -141,7 +141,7 @@ pub fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance>
 ///
 /// # Errors
 /// None: they are checked like any others.
-pub fn random_crowd(
+pub(crate) fn random_crowd(
     case: u32,
     bones: usize,
     instances: usize,
@@ -154,7 +154,7 @@ pub fn random_crowd(
 }
 
 /// Bones and instances around every workgroup boundary.
-pub const SIZES: [[usize; 2]; 16] = [
+pub(crate) const SIZES: [[usize; 2]; 16] = [
     [1, 1],
     [1, 64],
     [1, 65],

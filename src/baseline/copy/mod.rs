@@ -1,10 +1,10 @@
 //! A copy of bytes (`kernels/baseline/copy.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use crate::gpu::bindings::baseline::copy as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};

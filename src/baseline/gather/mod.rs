@@ -1,10 +1,10 @@
 //! Reads of keys as sampling reads them, and its writes (`kernels/baseline/gather.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::gpu::bindings::baseline::gather as bindings;

@@ -9,7 +9,12 @@ use crate::asset::keyframe::Place;
 ///
 /// # Panics
 /// With fewer values than tracks have, and at a place of the last key.
-pub fn gather(set: &ClipSet, instances: &[Instance], places: &[Place], gathered: &mut [[[u32; 4]; 3]]) {
+pub(crate) fn gather(
+    set: &ClipSet,
+    instances: &[Instance],
+    places: &[Place],
+    gathered: &mut [[[u32; 4]; 3]],
+) {
     let bones = set.bones();
     for ((instance, place), gathered) in instances.iter().zip(places).zip(gathered.chunks_mut(bones)) {
         let tracks = &set.tracks()[3 * bones * instance.clip as usize..];
@@ -28,7 +33,7 @@ pub fn gather(set: &ClipSet, instances: &[Instance], places: &[Place], gathered:
 ///
 /// # Panics
 /// As [`gather`].
-pub fn gather_keys(set: &ClipSet, keys: u32, places: &[Place], gathered: &mut [[[u32; 4]; 3]]) {
+pub(crate) fn gather_keys(set: &ClipSet, keys: u32, places: &[Place], gathered: &mut [[[u32; 4]; 3]]) {
     for (place, gathered) in places.iter().zip(gathered.chunks_mut(set.bones())) {
         for (bone, gathered) in (0..).zip(gathered) {
             let [moved, turned, scaled] =

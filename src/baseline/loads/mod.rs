@@ -1,10 +1,10 @@
 //! Texel loads (`kernels/baseline/loads.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use glam::UVec2;
 

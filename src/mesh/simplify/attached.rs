@@ -57,13 +57,19 @@ impl Attached {
     }
 
     /// Chooses the most that a place may be off from now on.
-    pub fn set_most(&mut self, distance: f32) {
+    pub(crate) fn set_most(&mut self, distance: f32) {
         self.most = distance * distance;
     }
 
     /// Whether a point may become its neighbour: it, and all places on the triangles that this changes, find a triangle
     /// among those that both have then; and the middles of these and of their edges lie near the mesh.
-    pub fn keeps_near(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
+    pub(crate) fn keeps_near(
+        &mut self,
+        topology: &Topology,
+        points: &Points,
+        point: u32,
+        neighbor: u32,
+    ) -> bool {
         self.looked_at = None;
         self.triangles.clear();
         self.found.clear();
@@ -130,7 +136,7 @@ impl Attached {
     }
 
     /// Takes note of a collapse that keeps near, before it happens.
-    pub fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
+    pub(crate) fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         // Others may have been looked at since.
         if self.looked_at.take() != Some([point, neighbor]) {
             self.keeps_near(topology, points, point, neighbor);

@@ -62,12 +62,12 @@ impl<'a> Attributes<'a> {
         vertices.iter().for_each(|vertex| self.quadrics[*vertex as usize].add(&quadric));
     }
 
-    pub fn weight(&self, vertex: u32) -> f64 {
+    pub(crate) fn weight(&self, vertex: u32) -> f64 {
         self.quadrics[vertex as usize].weight
     }
 
     /// The sum where a vertex becomes another, `d` away.
-    pub fn cost(&self, vertex: u32, heir: u32, d: DVec3) -> f64 {
+    pub(crate) fn cost(&self, vertex: u32, heir: u32, d: DVec3) -> f64 {
         let quadric = &self.quadrics[vertex as usize];
         let mut cost = quadric.at(d);
         for attribute in 0..self.stride {
@@ -79,7 +79,7 @@ impl<'a> Attributes<'a> {
     }
 
     /// A vertex becomes another, `d` away.
-    pub fn merge(&mut self, vertex: u32, heir: u32, d: DVec3) {
+    pub(crate) fn merge(&mut self, vertex: u32, heir: u32, d: DVec3) {
         let cost = self.cost(vertex, heir, d);
         let [from, to] = [vertex, heir].map(|vertex| vertex as usize * self.stride);
         let weight = self.weight(vertex);

@@ -8,7 +8,12 @@ use super::turned::normal;
 
 /// Squared, so that it is ordered and rooted as quadrics are; the largest over the poses. None where it is not below
 /// `most`.
-pub fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
+pub(crate) fn cost(
+    topology: &Topology,
+    points: &Points,
+    [point, neighbor]: [u32; 2],
+    most: f64,
+) -> Option<f64> {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
         let unit = |spoke: &Spoke| unit_normal(topology, points, spoke.triangle, pose);
@@ -31,7 +36,7 @@ pub fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], m
 }
 
 /// Whether the normals of two points, sums of those of their triangles, are more than 90° apart in the first pose.
-pub fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
+pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     let sum = |point| -> DVec3 {
         topology.spokes(point).map(|spoke| unit_normal(topology, points, spoke.triangle, 0)).sum()
     };

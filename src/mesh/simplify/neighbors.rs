@@ -70,7 +70,7 @@ pub struct Neighbors {
 
 impl Neighbors {
     /// Looks around a point that is not locked.
-    pub fn look(&mut self, topology: &Topology, point: u32, marks: &mut [Marks; 2]) {
+    pub(crate) fn look(&mut self, topology: &Topology, point: u32, marks: &mut [Marks; 2]) {
         self.all.clear();
         self.wedges.clear();
         let [points, vertices] = marks;
@@ -144,16 +144,16 @@ impl Neighbors {
         });
     }
 
-    pub fn all(&self) -> &[Neighbor] {
+    pub(crate) fn all(&self) -> &[Neighbor] {
         &self.all
     }
 
-    pub fn wedges(&self) -> &[Wedge] {
+    pub(crate) fn wedges(&self) -> &[Wedge] {
         &self.wedges
     }
 
     /// What a wedge may become: what it shares an edge with, or else what others of its sheet do.
-    pub fn heirs(&self, neighbor: &Neighbor, wedge: &Wedge) -> Heirs {
+    pub(crate) fn heirs(&self, neighbor: &Neighbor, wedge: &Wedge) -> Heirs {
         let mut heirs = Heirs::default();
         let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);
         own.for_each(|meet| heirs.add(meet.other));

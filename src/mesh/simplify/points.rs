@@ -43,26 +43,26 @@ impl Points {
         self.starts.len() - 1
     }
 
-    pub fn poses(&self) -> usize {
+    pub(crate) fn poses(&self) -> usize {
         self.poses
     }
 
     /// Of a vertex.
-    pub fn of(&self, vertex: u32) -> u32 {
+    pub(crate) fn of(&self, vertex: u32) -> u32 {
         self.of[vertex as usize]
     }
 
     /// The vertices of a point, ascending.
-    pub fn wedges(&self, point: u32) -> &[u32] {
+    pub(crate) fn wedges(&self, point: u32) -> &[u32] {
         &self.wedges[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
     }
 
-    pub fn place(&self, point: u32, pose: usize) -> DVec3 {
+    pub(crate) fn place(&self, point: u32, pose: usize) -> DVec3 {
         glam::Vec3::from(self.places[point as usize * self.poses + pose]).as_dvec3()
     }
 
     /// Of each vertex.
-    pub fn into_of(self) -> Vec<u32> {
+    pub(crate) fn into_of(self) -> Vec<u32> {
         self.of
     }
 }

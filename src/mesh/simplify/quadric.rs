@@ -19,13 +19,13 @@ pub struct Quadric {
 impl Quadric {
     /// Of `weight × (gradient · d)²`; squared distances from a plane through the origin where the gradient has unit
     /// length.
-    pub fn linear(gradient: DVec3, weight: f64) -> Self {
+    pub(crate) fn linear(gradient: DVec3, weight: f64) -> Self {
         let DVec3 { x, y, z } = gradient;
         let a = [x * x, x * y, x * z, y * y, y * z, z * z].map(|product| product * weight);
         Self { a, b: DVec3::ZERO, c: 0.0, weight }
     }
 
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         for (sum, value) in self.a.iter_mut().zip(other.a) {
             *sum += value;
         }
@@ -35,7 +35,7 @@ impl Quadric {
     }
 
     /// As [`Self::add`], without its weight.
-    pub fn add_unweighted(&mut self, other: &Self) {
+    pub(crate) fn add_unweighted(&mut self, other: &Self) {
         let weight = self.weight;
         self.add(other);
         self.weight = weight;
@@ -53,18 +53,18 @@ impl Quadric {
     }
 
     /// Its value at a distance from the origin, not below 0.
-    pub fn at(&self, d: DVec3) -> f64 {
+    pub(crate) fn at(&self, d: DVec3) -> f64 {
         ((self.slope(d) + self.b).dot(d) + self.c).max(0.0)
     }
 
     /// The same from another origin.
-    pub fn moved(&self, d: DVec3) -> Self {
+    pub(crate) fn moved(&self, d: DVec3) -> Self {
         Self { a: self.a, b: self.slope(d), c: self.at(d), weight: self.weight }
     }
 
     /// As [`Self::moved`], where functions also change by a constant at the new origin: their sum with the gradients is
     /// taken from b, and c becomes `c`.
-    pub fn moved_by(&self, d: DVec3, gradients: DVec3, c: f64) -> Self {
+    pub(crate) fn moved_by(&self, d: DVec3, gradients: DVec3, c: f64) -> Self {
         Self { a: self.a, b: self.slope(d) - gradients, c, weight: self.weight }
     }
 }

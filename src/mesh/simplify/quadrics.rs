@@ -29,13 +29,13 @@ impl<'a> Quadrics<'a> {
         Self { shape, attributes }
     }
 
-    pub fn has_attributes(&self) -> bool {
+    pub(crate) fn has_attributes(&self) -> bool {
         self.attributes.is_some()
     }
 
     /// The mean square distance of a point's planes from its neighbour, in the worst pose; none where it is not below
     /// `most`.
-    pub fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
+    pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
             let quadric = &self.shape[point as usize * points.poses() + pose];
@@ -51,7 +51,7 @@ impl<'a> Quadrics<'a> {
     }
 
     /// The mean square difference of attributes, where a point and all its wedges become what they had best become.
-    pub fn attribute_cost(
+    pub(crate) fn attribute_cost(
         &self,
         points: &Points,
         neighbors: &Neighbors,
@@ -69,7 +69,7 @@ impl<'a> Quadrics<'a> {
     }
 
     /// What a wedge becomes, at the least cost to its attributes, and that cost.
-    pub fn heir(
+    pub(crate) fn heir(
         &self,
         points: &Points,
         neighbors: &Neighbors,
@@ -84,7 +84,7 @@ impl<'a> Quadrics<'a> {
     }
 
     /// A point becomes its neighbour, and its wedges what `moved` says.
-    pub fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
+    pub(crate) fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for pose in 0..points.poses() {
             let d = points.place(neighbor, pose) - points.place(point, pose);
             let [from, to] = [point, neighbor].map(|point| point as usize * points.poses() + pose);

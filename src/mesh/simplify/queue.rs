@@ -33,12 +33,12 @@ impl Queue {
         Self { waiting: heap.len(), heap, changes: vec![0; best.len()], best }
     }
 
-    pub fn best(&self, point: u32) -> Option<&Best> {
+    pub(crate) fn best(&self, point: u32) -> Option<&Best> {
         self.best[point as usize].as_ref()
     }
 
     /// Takes the place of what it was.
-    pub fn set(&mut self, point: u32, best: Option<Best>) {
+    pub(crate) fn set(&mut self, point: u32, best: Option<Best>) {
         let before = &mut self.best[point as usize];
         self.waiting = self.waiting + usize::from(best.is_some()) - usize::from(before.is_some());
         *before = best;
@@ -54,7 +54,7 @@ impl Queue {
     }
 
     /// The cheapest, the lower point first of two. It stays the point's best, and has to be set again.
-    pub fn pop(&mut self) -> Option<(u32, Best)> {
+    pub(crate) fn pop(&mut self) -> Option<(u32, Best)> {
         while let Some(entry) = self.heap.pop() {
             let Reverse((_, point, _)) = entry;
             if holds(&entry, &self.best, &self.changes)

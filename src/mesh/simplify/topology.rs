@@ -15,7 +15,7 @@ impl Marks {
     }
 
     /// Forgets all.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         if self.current == u32::MAX {
             self.stamps.fill(0);
             self.current = 0;
@@ -23,17 +23,17 @@ impl Marks {
         self.current += 1;
     }
 
-    pub fn get(&self, at: u32) -> Option<u32> {
+    pub(crate) fn get(&self, at: u32) -> Option<u32> {
         (self.stamps[at as usize] == self.current).then(|| self.values[at as usize])
     }
 
-    pub fn set(&mut self, at: u32, value: u32) {
+    pub(crate) fn set(&mut self, at: u32, value: u32) {
         self.stamps[at as usize] = self.current;
         self.values[at as usize] = value;
     }
 
     /// Whether it had none.
-    pub fn insert(&mut self, at: u32) -> bool {
+    pub(crate) fn insert(&mut self, at: u32) -> bool {
         let is_new = self.get(at).is_none();
         self.set(at, 0);
         is_new
@@ -133,24 +133,24 @@ impl Topology {
     }
 
     /// Triangles left.
-    pub fn triangles(&self) -> usize {
+    pub(crate) fn triangles(&self) -> usize {
         self.triangles
     }
 
-    pub fn kind(&self, point: u32) -> Kind {
+    pub(crate) fn kind(&self, point: u32) -> Kind {
         self.kinds[point as usize]
     }
 
-    pub fn corners(&self, triangle: u32) -> &[Corner; 3] {
+    pub(crate) fn corners(&self, triangle: u32) -> &[Corner; 3] {
         &self.corners[triangle as usize]
     }
 
     /// The triangles of a point.
-    pub fn around(&self, point: u32) -> &[u32] {
+    pub(crate) fn around(&self, point: u32) -> &[u32] {
         &self.around[point as usize]
     }
 
-    pub fn spokes(&self, point: u32) -> impl Iterator<Item = Spoke> + '_ {
+    pub(crate) fn spokes(&self, point: u32) -> impl Iterator<Item = Spoke> + '_ {
         self.around(point).iter().map(move |&triangle| {
             let [a, b, c] = self.corners[triangle as usize];
             let [own, next, last] = match point {
@@ -164,7 +164,7 @@ impl Topology {
 
     /// Whether a point may become its neighbour without a change of topology: whoever neighbours both lies across a
     /// triangle of theirs, and no two of these share a triangle with each of them.
-    pub fn keeps_topology(&self, point: u32, neighbor: u32, marks: &mut Marks) -> bool {
+    pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32, marks: &mut Marks) -> bool {
         marks.clear();
         let mut across = [u32::MAX; 2];
         let mut shared = 0;
@@ -202,7 +202,7 @@ impl Topology {
     }
 
     /// A point becomes its neighbour; `moved` has what each of its vertices becomes.
-    pub fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
+    pub(crate) fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for triangle in std::mem::take(&mut self.around[point as usize]) {
             let corners = &mut self.corners[triangle as usize];
             if corners.iter().any(|corner| corner.point == neighbor) {

@@ -14,7 +14,7 @@ const NO_AREA: f64 = 1e-12;
 pub struct Flat;
 
 /// Of a triangle's corners: as long as twice its area, to the side from which they are counter-clockwise.
-pub fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
+pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     let (first, second) = (b - a, c - a);
     let normal = first.cross(second);
     let least = NO_AREA * first.length_squared() * second.length_squared();
@@ -23,7 +23,7 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
 
 /// Whether a triangle of a point turns by 90° or more, or loses its area, in any pose, where the point becomes its
 /// neighbour. Triangles without area may turn.
-pub fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
+pub(crate) fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
     let stays = |pose: usize, [from, to]: [DVec3; 2], others: [u32; 2]| {
         let [next, last] = others.map(|other| points.place(other, pose));
         match (normal([from, next, last]), normal([to, next, last])) {

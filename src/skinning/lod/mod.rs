@@ -13,12 +13,12 @@ use crate::asset::transform::Affine;
 use crate::skinning::reduction::Reduction;
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{LodJob, LodPass};

@@ -6,12 +6,12 @@ use crate::animation::clip_set::ClipSet;
 use crate::asset::Mesh;
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{MorphWeightsJob, MorphWeightsPass};

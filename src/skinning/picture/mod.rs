@@ -1,44 +1,13 @@
-//! How a picture of skinned meshes is lit and framed.
+//! A picture of skinned meshes without a GPU, and how it is framed.
 
-pub mod reference;
+mod scene;
 pub mod texture;
+
+pub use scene::{Part, Scene};
 
 use glam::{DVec3, Mat4, Vec2, Vec3, camera};
 
-use crate::InputError;
 use crate::skinning::vertex::Vertex;
-
-/// A directional light, in linear light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Light {
-    /// Towards the light, of any length but 0.
-    pub direction: Vec3,
-    /// What faces away from it still gets, 0 to 1.
-    pub ambient: f32,
-}
-
-impl Default for Light {
-    fn default() -> Self {
-        Self { direction: Vec3::new(-0.4, 0.8, 0.6), ambient: 0.12 }
-    }
-}
-
-impl Light {
-    /// Checks the ranges.
-    ///
-    /// # Errors
-    /// [`InputError`] that names the field.
-    pub fn validate(&self) -> Result<(), InputError> {
-        if self.direction.try_normalize().is_none() {
-            let value = self.direction.to_string();
-            return Err(InputError::new("light.direction", value, "must be finite and not 0"));
-        }
-        if !(0.0..=1.0).contains(&self.ambient) {
-            return Err(InputError::new("light.ambient", self.ambient, "must be in 0..=1"));
-        }
-        Ok(())
-    }
-}
 
 /// Whether what is seen through this matrix, from some space to clip space, is a mirror image: triangles that run
 /// counter-clockwise in that space, seen from outside, then run clockwise on the screen. Of a parallel view, whose depth

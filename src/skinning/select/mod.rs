@@ -7,12 +7,12 @@
 //! Clusters beyond its level keep their vertices likewise, and are skinned once the level is a finer one.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SKINNED_WORDS, SelectBuffers, SelectPass};

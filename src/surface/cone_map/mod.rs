@@ -7,12 +7,12 @@
 //! A radius is at most the shorter edge of the map in cells: on maps of a few rows `quadtree` is far cheaper.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ConeMapPass, Cones};

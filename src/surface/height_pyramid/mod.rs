@@ -2,12 +2,12 @@
 //! highest of its four children. What `quadtree` traverses, and what cone maps are made from.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{HeightPyramidPass, Pyramids};

@@ -4,7 +4,7 @@
 //! runs them on lists of rays.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
@@ -129,7 +129,7 @@ impl Ray {
     }
 
     /// uv at a parameter.
-    pub fn at(&self, parameter: f32) -> [f32; 2] {
+    pub(crate) fn at(&self, parameter: f32) -> [f32; 2] {
         [self.origin[0] + parameter * self.slope[0], self.origin[1] + parameter * self.slope[1]]
     }
 }
@@ -201,7 +201,7 @@ pub struct Hit {
 
 impl Hit {
     /// A point of the ray as the result.
-    pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
+    pub(crate) fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self { uv: ray.at(parameter), height: 1.0 - parameter, parameter, samples, code: outcome as u32 }
     }
 

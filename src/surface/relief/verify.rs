@@ -20,7 +20,7 @@ pub const TOUCHING: f64 = 0.2;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for method in Method::ALL {
         let pass = ReliefPass::new(gpu, method)?;

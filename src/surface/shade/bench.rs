@@ -5,8 +5,8 @@ use crate::baseline::loads::LoadsPass;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
+use crate::surface::Material;
 use crate::surface::map::Address;
-use crate::surface::material::Material;
 use crate::surface::relief::reference::Surface;
 use crate::surface::relief::reference::shadow::light_ray;
 use crate::surface::relief::textures::SurfaceTextures;
@@ -25,7 +25,7 @@ const BILINEAR: u32 = 4;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let map = BuiltInMap::Cobbles.height_map(512)?;
     let (march, view) = (March::default(), ShadeView::default());

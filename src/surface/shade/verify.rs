@@ -34,7 +34,7 @@ pub const AT_EYE: f64 = 0.01;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for method in Method::ALL {
         let pass = ShadePass::new(gpu, method)?;
@@ -80,7 +80,7 @@ pub fn perspective() -> ShadeView {
 }
 
 /// The same without perspective.
-pub fn parallel() -> ShadeView {
+pub(crate) fn parallel() -> ShadeView {
     let towards = Vec3::new(0.48, -0.6, 0.64);
     let depth = -0.1 * towards;
     let rows = [Vec4::X, Vec4::Y, depth.extend(0.5), Vec4::W];

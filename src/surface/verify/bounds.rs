@@ -127,7 +127,7 @@ fn felt(ray: &Ray, map: &HeightMap, address: Address, positions: [f64; 2]) -> f6
 }
 
 /// For each texel the most that heights change over a texel along x, and along y, in the cells around it.
-pub fn steepness(map: &HeightMap, address: Address) -> Vec<[f64; 2]> {
+pub(crate) fn steepness(map: &HeightMap, address: Address) -> Vec<[f64; 2]> {
     let (width, height) = (map.width() as i32, map.height() as i32);
     let rise = |x: i32, y: i32, [dx, dy]: [i32; 2]| {
         f64::from((map.texel(x + dx, y + dy, address) - map.texel(x, y, address)).abs())
@@ -160,7 +160,7 @@ fn moved(
 }
 
 /// How far a height may be off, where heights change by `steepness` a texel and points may be off by `position` texels.
-pub fn off(steepness: f64, position: f64) -> f64 {
+pub(crate) fn off(steepness: f64, position: f64) -> f64 {
     position / (1.0 - 2.0 * position.min(0.25)) * steepness + ULP * (12.0 + 40.0 * steepness)
 }
 

@@ -8,7 +8,7 @@ use crate::surface::shade::{ShadePoint, ShadeView};
 ///
 /// Sums, differences and products are within a unit in the last place, quotients within 2.5, and a square root, the
 /// quotient of 1 and an inverse square root, within 4.5. Both sides round: twice.
-pub fn depth_off(view: &ShadeView, point: &ShadePoint) -> f64 {
+pub(crate) fn depth_off(view: &ShadeView, point: &ShadePoint) -> f64 {
     let position = point.position.map(f64::from);
     let eye = view.eye.to_array().map(f64::from);
     let way = [0, 1, 2].map(|i| eye[i] - eye[3] * position[i]);

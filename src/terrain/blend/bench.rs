@@ -12,7 +12,7 @@ use crate::terrain::fields::Fields;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
     let host = some_heights((width * width * count) as usize);

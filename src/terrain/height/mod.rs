@@ -2,12 +2,12 @@
 //! `seamless`). Integers throughout: the same bits on every device.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{Blocks, HeightBatch, HeightJob, HeightPass, HeightScratch};

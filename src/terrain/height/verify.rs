@@ -19,7 +19,7 @@ use crate::terrain::window::Window;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for offset in ["signed", "positive", "gaussian"] {
         let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
         let pass = HeightPass::new(cases.gpu, code, None)?;

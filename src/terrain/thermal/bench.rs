@@ -11,7 +11,7 @@ use crate::terrain::thermal::{Thermal, ThermalPass};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     case(bench, "257x257 batch 64, 1 iteration", [259, 64], 1)?;
     case(bench, "513x513, 50 iterations", [613, 1], 50)
 }

@@ -6,7 +6,7 @@ use crate::surface::map::{Address, HeightMap};
 pub const BILINEAR: u32 = 4;
 
 /// The bilinear height at `uv`.
-pub fn height(map: &HeightMap, uv: [f32; 2], address: Address) -> f32 {
+pub(crate) fn height(map: &HeightMap, uv: [f32; 2], address: Address) -> f32 {
     let edges = [map.width(), map.height()];
     let axis = |axis: usize| {
         let size = edges[axis] as f32;

@@ -5,7 +5,7 @@ use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, LEAST_COSINE, MOST_STEPS, March, Ray};
 
 /// The light's ray that ends in a point of the surface. `light` is the unit vector towards it in tangent space.
-pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
+pub(crate) fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     let steepness = -scale / light[2].max(LEAST_COSINE);
     let slope = [light[0] * steepness, light[1] * steepness];
     let rise = 1.0 - hit.height;
@@ -17,12 +17,12 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
 const BIAS: f32 = 0.005;
 
 /// Whether the light's ray ended above the point that it was sent to.
-pub fn shaded(first: &Hit, hit: &Hit) -> bool {
+pub(crate) fn shaded(first: &Hit, hit: &Hit) -> bool {
     first.parameter < 1.0 - hit.height - BIAS
 }
 
 /// 0 in full shadow to 1 in full light.
-pub fn soft_shadow(
+pub(crate) fn soft_shadow(
     map: &HeightMap,
     hit: &Hit,
     light: [f32; 3],
