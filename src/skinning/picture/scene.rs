@@ -1,11 +1,11 @@
-//! A picture of skinned meshes without a GPU: twin of `wgsl/render/skinned.wgsl`, for one instance.
+//! A picture of skinned meshes without a GPU: reference of `wgsl/render/skinned.wgsl`, for one instance.
 
 use glam::{Mat4, Vec3, Vec4};
 
 use super::is_mirrored;
 use super::texture::Surface;
 use crate::asset::Mesh;
-use crate::asset::material::{Alpha, screen};
+use crate::asset::material::{Alpha, dithered};
 use crate::asset::{Light, light::lambert};
 use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
@@ -136,7 +136,7 @@ impl Canvas<'_> {
         let least = match surface.alpha {
             Alpha::Opaque => f32::NEG_INFINITY,
             Alpha::Mask(cutoff) => cutoff,
-            Alpha::Screen => screen(place),
+            Alpha::Dithered => dithered(place),
         };
         if alpha < least {
             return;
@@ -155,8 +155,8 @@ impl Triangle<'_> {
     /// What each corner has of a place on the screen.
     fn shares(&self, x: f32, y: f32) -> Vec3 {
         let [a, b, c] = self.screen;
-        let share = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
-        Vec3::new(share(b, c), share(c, a), share(a, b))
+        let fraction = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
+        Vec3::new(fraction(b, c), fraction(c, a), fraction(a, b))
     }
 
     /// The same of the triangle itself.
