@@ -17,6 +17,7 @@ mod readback;
 pub mod shaders;
 mod shared;
 mod timer;
+mod tuning;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -30,6 +31,7 @@ pub use kernel::{Group, Kernel, Resource};
 pub(crate) use kernel::{bind, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};
+pub(crate) use tuning::Tuning;
 
 use shared::Shared;
 
@@ -50,6 +52,7 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     summary: AdapterSummary,
+    tuning: Tuning,
     heard: Arc<Mutex<Heard>>,
     memory: Arc<Memory>,
     pub(crate) kernels: Arc<Shared<Kernel>>,
@@ -76,7 +79,7 @@ impl Gpu {
     /// As [`Gpu::headless`].
     pub async fn headless_async(options: &Options) -> Result<Self, GpuError> {
         let adapter = adapter::choose(options).await?;
-        let summary = AdapterSummary::of(&adapter.get_info());
+        let info = adapter.get_info();
         let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("relievo"),
@@ -84,24 +87,24 @@ impl Gpu {
             required_limits: limits(&adapter.limits()),
             ..Default::default()
         };
-        let (device, queue) = (adapter.request_device(&descriptor).await).map_err(|error| {
-            GpuError::NoDevice { adapter: summary.name.clone(), reason: error.to_string() }
-        })?;
+        let (device, queue) = (adapter.request_device(&descriptor).await)
+            .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
         let heard = Arc::new(Mutex::new(Heard::default()));
         listen(&device, &heard);
-        Ok(Self { heard, ..Self::new(device, queue, summary) })
+        Ok(Self { heard, ..Self::new(device, queue, &info) })
     }
 
     /// Embeds in a program that has its own device. Its error handlers are left alone; relievo's own calls
     /// are wrapped in error scopes.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let summary = AdapterSummary::of(&device.adapter_info());
-        Self::new(device, queue, summary)
+        let info = device.adapter_info();
+        Self::new(device, queue, &info)
     }
 
-    fn new(device: wgpu::Device, queue: wgpu::Queue, summary: AdapterSummary) -> Self {
+    fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
+        let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
         let (heard, memory, kernels, render_pipelines) = Default::default();
-        Self { device, queue, summary, heard, memory, kernels, render_pipelines }
+        Self { device, queue, summary, tuning, heard, memory, kernels, render_pipelines }
     }
 
     /// The wgpu device.
@@ -117,6 +120,11 @@ impl Gpu {
     /// Name, kind and driver of the adapter.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.summary
+    }
+
+    /// What is fastest on the adapter.
+    pub(crate) fn tuning(&self) -> Tuning {
+        self.tuning
     }
 
     /// What relievo's storage buffers hold on this device.

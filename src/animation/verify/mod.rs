@@ -12,7 +12,7 @@ use crate::asset::transform::Transform;
 use crate::terrain::verify::random_words;
 
 /// Random numbers, the same on every machine.
-pub(crate) struct Draw(std::vec::IntoIter<u32>, u32);
+pub struct Draw(std::vec::IntoIter<u32>, u32);
 
 impl Draw {
     /// The draw of a test case.
@@ -51,7 +51,7 @@ impl Draw {
 ///
 /// # Errors
 /// None: it is checked like any other.
-pub(crate) fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> {
+pub fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> {
     let mut draw = Draw::new(case);
     let bone = |index: usize| {
         let parent = match (index as u32, draw.word()) {
@@ -72,7 +72,7 @@ pub(crate) fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, Input
 ///
 /// # Errors
 /// None: they are checked like any others.
-pub(crate) fn random_clips(case: u32, skeleton: &Skeleton, clips: usize) -> Result<Vec<Clip>, InputError> {
+pub fn random_clips(case: u32, skeleton: &Skeleton, clips: usize) -> Result<Vec<Clip>, InputError> {
     let mut draw = Draw::new(case ^ 0x0a11);
     let clip = |index: usize| {
         let shared = times(&mut draw, 0, index + 1 == clips);

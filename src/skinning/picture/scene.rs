@@ -119,12 +119,12 @@ impl Canvas<'_> {
 
     fn fragment(&mut self, place: [u32; 2], triangle: &Triangle<'_>) {
         let [x, y] = place.map(|at| at as f32 + 0.5);
-        let shares = triangle.shares(x, y);
-        if shares.min_element() < 0.0 {
+        let barycentric = triangle.barycentric(x, y);
+        if barycentric.min_element() < 0.0 {
             return;
         }
         let pixel = (place[1] * self.scene.size[0] + place[0]) as usize;
-        let depth = shares.dot(Vec3::from(triangle.screen.map(|corner| corner.z)));
+        let depth = barycentric.dot(Vec3::from(triangle.screen.map(|corner| corner.z)));
         if !(0.0..self.depths[pixel]).contains(&depth) {
             return;
         }
@@ -153,15 +153,15 @@ impl Canvas<'_> {
 
 impl Triangle<'_> {
     /// What each corner has of a place on the screen.
-    fn shares(&self, x: f32, y: f32) -> Vec3 {
+    fn barycentric(&self, x: f32, y: f32) -> Vec3 {
         let [a, b, c] = self.screen;
-        let fraction = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
-        Vec3::new(fraction(b, c), fraction(c, a), fraction(a, b))
+        let edge = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
+        Vec3::new(edge(b, c), edge(c, a), edge(a, b))
     }
 
     /// The same of the triangle itself.
     fn weights(&self, x: f32, y: f32) -> Vec3 {
-        let weights = self.shares(x, y) * Vec3::from(self.screen.map(|corner| corner.w));
+        let weights = self.barycentric(x, y) * Vec3::from(self.screen.map(|corner| corner.w));
         weights / weights.element_sum()
     }
 

@@ -10,4 +10,7 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{Blocks, HeightBatch, HeightJob, HeightPass, HeightScratch};
+#[cfg(feature = "verify")]
+pub(crate) use pass::Blocks;
+#[cfg(feature = "gpu")]
+pub use pass::{HeightBatch, HeightJob, HeightPass, HeightScratch};
