@@ -14,8 +14,7 @@
 //!   `render`: a camera, an off-screen target, and passes that draw into the caller's render pass.
 //! - `samples`: a creature with clips, and height maps with their colours. Feature `samples`.
 //! - `verify` and `bench`: every kernel against its reference, and beside a copy of the same bytes. What `relievo verify` and
-//!   `relievo bench` run. Feature `verify`, with `harness` (comparators, clocks) and `baseline` (kernels to measure
-//!   against).
+//!   `relievo bench` run. Feature `verify`, with `harness` (comparators, clocks).
 //! - [`srgb`]: bytes and linear light. [`mod@hash`]: counter-based random words.
 //! - [`error`]: bad input by field, value and bound.
 //!

@@ -3,9 +3,9 @@
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
-pub mod copy;
-pub mod gather;
-pub mod loads;
+pub(crate) mod copy;
+pub(crate) mod gather;
+pub(crate) mod loads;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
-pub mod words;
+pub(crate) mod words;

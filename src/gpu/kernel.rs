@@ -12,7 +12,7 @@ pub struct Kernel {
 }
 
 /// A resource to bind.
-pub type Resource<'a> = wgpu::BindingResource<'a>;
+pub(crate) type Resource<'a> = wgpu::BindingResource<'a>;
 
 /// Bind groups of one kernel, in order.
 pub type Group = wgpu::BindGroup;

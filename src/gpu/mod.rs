@@ -27,7 +27,7 @@ pub use adapter::{AdapterSummary, Options, adapters};
 pub(crate) use buffer::storage_bytes;
 pub use buffer::{Buffer, Uniform, storage};
 pub use job::{INVOCATIONS_A_SUBMISSION, IndirectJob, Job, Step, compute_pass};
-pub use kernel::{Group, Kernel, Resource};
+pub use kernel::{Group, Kernel};
 pub(crate) use kernel::{bind, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};

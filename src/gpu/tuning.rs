@@ -51,7 +51,6 @@ impl Tuning {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::gpu::{Gpu, Options, adapters};
 
     /// Today's drivers, by the names that people know them by.

@@ -28,7 +28,7 @@ impl From<ColorTexture> for Albedo {
 }
 
 /// How textures are uploaded: [`ColorTexture::new`] or [`ColorTexture::linear`].
-pub type Upload = fn(&Gpu, &Mips, bool) -> Result<ColorTexture, GpuError>;
+pub(crate) type Upload = fn(&Gpu, &Mips, bool) -> Result<ColorTexture, GpuError>;
 
 impl Albedo {
     /// One for each mesh of a model, each texture uploaded once. Meshes without a material get `other`.

@@ -17,7 +17,7 @@ pub struct Window {
 
 /// Indices of lattice points along one axis, both ends included, in units of the lattice's spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
+pub(crate) struct Span {
     /// The first index.
     pub first: i64,
     /// The last index.
@@ -103,7 +103,7 @@ impl Window {
 
 /// A square lattice in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Lattice {
+pub(crate) struct Lattice {
     /// World coordinates (X, Y) of the first point; a multiple of `spacing`.
     pub origin: [i64; 2],
     /// Points along an edge.

@@ -16,12 +16,12 @@ pub struct Draw(std::vec::IntoIter<u32>, u32);
 
 impl Draw {
     /// The draw of a test case.
-    pub(crate) fn new(case: u32) -> Self {
+    pub fn new(case: u32) -> Self {
         Self(Vec::new().into_iter(), case << 16)
     }
 
     /// A word.
-    pub(crate) fn word(&mut self) -> u32 {
+    pub fn word(&mut self) -> u32 {
         loop {
             if let Some(word) = self.0.next() {
                 return word;
@@ -32,12 +32,12 @@ impl Draw {
     }
 
     /// From −1 to 1, in steps that `f32` holds exactly.
-    pub(crate) fn signed(&mut self) -> f32 {
+    pub fn signed(&mut self) -> f32 {
         (self.word() >> 8) as f32 / 8_388_608.0 - 1.0
     }
 
     /// A quaternion.
-    pub(crate) fn rotation(&mut self) -> [f32; 4] {
+    pub fn rotation(&mut self) -> [f32; 4] {
         loop {
             let q = [0; 4].map(|_| self.signed());
             if q.iter().map(|x| x * x).sum::<f32>() > 0.01 {
@@ -124,7 +124,7 @@ pub(crate) fn keys(draw: &mut Draw, shared: &[f32], is_rotation: bool) -> Option
 
 /// Random instances, forwards and backwards, at times from −64 to 64 s in steps of 2⁻²⁰ s: 26 bits, so not all are
 /// exact.
-pub(crate) fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance> {
+pub fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance> {
     let mut draw = Draw::new(case ^ 0x1257);
     let instance = |_| {
         let clip = draw.word() % set.clips().len() as u32;
@@ -141,7 +141,7 @@ pub(crate) fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<In
 ///
 /// # Errors
 /// None: they are checked like any others.
-pub(crate) fn random_crowd(
+pub fn random_crowd(
     case: u32,
     bones: usize,
     instances: usize,

@@ -10,7 +10,7 @@ use super::turned::normal;
 /// For each vertex, the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
 /// the attribute, k its accumulated constant difference, and d and s are the differences in position and
 /// attribute from the vertex.
-pub struct Attributes<'a> {
+pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
     /// The part without s, and the sums of weights.
@@ -21,7 +21,7 @@ pub struct Attributes<'a> {
 
 impl<'a> Attributes<'a> {
     /// Sums over the first `triangles` triangles; `place` gives the position of each point.
-    pub fn new(
+    pub(crate) fn new(
         topology: &Topology,
         triangles: u32,
         place: impl Fn(u32) -> DVec3,

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// squares: a rounding error of 2⁻⁵² is 10⁻⁸ of an edge, where f32 would leave 2 · 10⁻⁴ and would find a cost
 /// on flat ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Quadric {
+pub(crate) struct Quadric {
     /// The upper triangle of A: xx, xy, xz, yy, yz, zz.
     a: [f64; 6],
     b: DVec3,

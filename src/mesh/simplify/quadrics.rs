@@ -9,14 +9,14 @@ use super::topology::{Corner, Topology};
 use super::turned::normal;
 
 /// The quadrics of a mesh.
-pub struct Quadrics<'a> {
+pub(crate) struct Quadrics<'a> {
     /// Quadrics of positions, point by point, each in all poses.
     shape: Vec<Quadric>,
     attributes: Option<Attributes<'a>>,
 }
 
 impl<'a> Quadrics<'a> {
-    pub fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
+    pub(crate) fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
         let mut shape = vec![Quadric::default(); points.len() * points.poses()];
         let triangles = (surface.indices.len() / 3) as u32;
         for triangle in 0..triangles {

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 /// The best collapse of a point: the neighbour, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Best {
+pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
     pub cost: f64,
@@ -18,7 +18,7 @@ type Entry = Reverse<(u64, u32, u32)>;
 
 /// The best collapse of each point, cheapest first. Stale entries are dropped when they reach the top, or when
 /// they are in the majority.
-pub struct Queue {
+pub(crate) struct Queue {
     heap: BinaryHeap<Entry>,
     best: Vec<Option<Best>>,
     changes: Vec<u32>,
@@ -27,7 +27,7 @@ pub struct Queue {
 }
 
 impl Queue {
-    pub fn new(best: Vec<Option<Best>>) -> Self {
+    pub(crate) fn new(best: Vec<Option<Best>>) -> Self {
         let entries = (0_u32..).zip(&best).filter_map(|(point, best)| Some(entry(point, best.as_ref()?, 0)));
         let heap: BinaryHeap<_> = entries.collect();
         Self { waiting: heap.len(), heap, changes: vec![0; best.len()], best }

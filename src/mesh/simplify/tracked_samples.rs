@@ -8,7 +8,7 @@ use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
 /// Samples of the mesh, each assigned to a remaining triangle that is within the limit of it in every pose.
-pub struct TrackedSamples {
+pub(crate) struct TrackedSamples {
     /// For each triangle, the samples assigned to it: numbers of removed points, and beyond those, numbers of
     /// midpoints.
     collapsed: Vec<Vec<u32>>,
@@ -37,7 +37,7 @@ struct Middles {
 }
 
 impl TrackedSamples {
-    pub fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
+    pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
         let mut collapsed = vec![Vec::new(); triangles];
         let mut middles = Middles { places: Vec::new(), triangles: Vec::new() };
         for point in 0..points.len() as u32 {

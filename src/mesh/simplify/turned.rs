@@ -11,7 +11,7 @@ const NO_AREA: f64 = 1e-12;
 
 /// A triangle without area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Flat;
+pub(crate) struct Flat;
 
 /// The normal of a triangle: its length is twice the area, and the corners are counter-clockwise seen from the
 /// side to which it points.

@@ -4,13 +4,13 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::Error;
-use crate::baseline::loads::LoadsPass;
 use crate::gpu::{Buffer, Gpu};
 use crate::harness::{Backend, Bench, Contender};
 use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
 use crate::samples::BuiltInMap;
 use crate::surface::Material;
+use crate::surface::bench::loads_of;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
@@ -85,9 +85,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), 
     let input = Buffer::from_slice(gpu, "rays", &rays)?;
     let hits = Buffer::new(gpu, "hits", rays.len())?;
     let job = ReliefPass::new(gpu, method)?.prepare(gpu, &textures, &march, &input, &hits)?;
-    let sums = Buffer::new(gpu, "sums", rays.len())?;
-    let bare = LoadsPass::new(gpu)?;
-    let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+    let bare = loads_of(gpu, &textures, EDGE, mean.round() as u32)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &bare),

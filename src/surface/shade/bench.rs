@@ -2,11 +2,11 @@
 //! bare texel loads.
 
 use crate::Error;
-use crate::baseline::loads::LoadsPass;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
 use crate::surface::Material;
+use crate::surface::bench::loads_of;
 use crate::surface::map::Address;
 use crate::surface::relief::reference::Surface;
 use crate::surface::relief::reference::shadow::light_ray;
@@ -45,9 +45,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let input = Buffer::from_slice(gpu, "points", &points)?;
         let shades = Buffer::new(gpu, "shades", points.len())?;
         let job = ShadePass::new(gpu, method)?.prepare(gpu, &textures, &march, &view, &input, &shades)?;
-        let sums = Buffer::new(gpu, "sums", points.len())?;
-        let bare = LoadsPass::new(gpu)?;
-        let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+        let bare = loads_of(gpu, &textures, EDGE, mean.round() as u32)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &bare),

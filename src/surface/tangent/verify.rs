@@ -11,7 +11,7 @@ use crate::terrain::verify::random_words;
 
 /// A mesh that owns its data.
 #[derive(Debug, Clone, Default)]
-pub struct Owned {
+pub(crate) struct Owned {
     /// See [`Mesh`].
     pub positions: Vec<[f32; 3]>,
     /// See [`Mesh`].

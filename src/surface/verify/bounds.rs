@@ -13,10 +13,10 @@ use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
 
 /// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
 /// result.
-pub const ULP: f64 = 1.0 / 8_388_608.0;
+pub(crate) const ULP: f64 = 1.0 / 8_388_608.0;
 
 /// Rays with a bound wider than this, in texels, prove little and count as touching.
-pub const BLUNT: f64 = 1.0 / 32.0;
+pub(crate) const BLUNT: f64 = 1.0 / 32.0;
 
 /// The relative error of a step over a cone: that of the radius, and that of the step's own arithmetic.
 const CONE_STEP: f64 = RADIUS_BOUND as f64 + 12.0 * ULP;

@@ -27,7 +27,7 @@ pub(crate) struct Node {
 }
 
 impl Grid {
-    pub fn new(map: &HeightMap, ray: &Ray, address: Address) -> Self {
+    pub(crate) fn new(map: &HeightMap, ray: &Ray, address: Address) -> Self {
         let size = [map.width(), map.height()];
         let texel = [0, 1].map(|i| ray.origin[i] * size[i] as f32 - 0.5);
         let travel = [0, 1].map(|i| ray.slope[i] * size[i] as f32);
