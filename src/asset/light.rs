@@ -7,9 +7,9 @@ use crate::InputError;
 /// A directional light, in linear light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// Towards the light, of any length but 0.
+    /// The direction towards the light, of any length but 0.
     pub direction: Vec3,
-    /// What faces away from it still gets, 0 to 1.
+    /// Light that surfaces facing away still receive, 0 to 1.
     pub ambient: f32,
 }
 

@@ -9,16 +9,16 @@ use crate::asset::transform::rows;
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::vertex::Blend;
 
-/// What takes vertices from where they were bound to the model's space: one matrix a bone of the skin.
+/// The palette of a skin, one matrix per bone: model matrix × inverse bind matrix.
 ///
 /// # Panics
-/// For a skin that does not fit the skeleton of `model_matrices`.
+/// For a skin that does not match the skeleton of `model_matrices`.
 pub fn palette(skin: &Skin, model_matrices: &[Affine]) -> Vec<Affine> {
     let bones = skin.bones.iter().zip(&skin.inverse_binds);
     bones.map(|(bone, bind)| product(&model_matrices[*bone as usize], &rows(bind))).collect()
 }
 
-/// The palette of a kind of blending.
+/// The palette for a kind of blending.
 pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Palette {
     let linear = palette(skin, model_matrices);
     match blend {
@@ -27,11 +27,11 @@ pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Pale
     }
 }
 
-/// A matrix taken apart into a stretch and a rigid motion after it.
+/// Decomposes a matrix into a stretch and a rigid motion after it.
 pub fn dual(matrix: &Affine) -> DualBone {
     let column = |at: usize| Vec3::new(matrix[0][at], matrix[1][at], matrix[2][at]);
     let [a, b, c] = [0, 1, 2].map(column);
-    // What has no direction gets one that leaves the others alone.
+    // A column without direction is replaced by one that leaves the others unchanged.
     let x = unit_or(a, Vec3::X);
     let along = x.dot(b);
     let y = unit_or(b - along * x, upright(x));
@@ -45,10 +45,10 @@ pub fn dual(matrix: &Affine) -> DualBone {
     }
 }
 
-/// A vector of length 1, or the other one where it has no direction.
+/// The vector scaled to length 1, or `other` if it has no direction.
 pub(crate) fn unit_or(vector: Vec3, other: Vec3) -> Vec3 {
     let size = vector.abs().max_element();
-    // What is smaller than this, devices may flush to zero.
+    // Devices may flush values smaller than this to zero.
     if size < 1e-30 {
         return other;
     }
@@ -56,7 +56,7 @@ pub(crate) fn unit_or(vector: Vec3, other: Vec3) -> Vec3 {
     (1.0 / scaled.length_squared().sqrt()) * scaled
 }
 
-/// A unit vector at a right angle to a unit vector: Duff et al. 2017.
+/// A unit vector at a right angle to a unit vector (Duff et al. 2017).
 fn upright(unit: Vec3) -> Vec3 {
     let [x, y, z] = unit.to_array();
     let side = if z < 0.0 { -1.0 } else { 1.0 };
@@ -64,8 +64,8 @@ fn upright(unit: Vec3) -> Vec3 {
     Vec3::new(1.0 + side * x * x * a, side * x * y * a, -side * x)
 }
 
-/// The unit quaternion of a rotation's columns, of whichever sign. Its largest component is at least ½, and found
-/// without a cancelling sum.
+/// The unit quaternion, of either sign, of a rotation given by its columns. Its largest component is at least ½
+/// and is computed without cancellation.
 fn quaternion(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [f32; 4] {
     let squares = [
         1.0 + x[0] - y[1] - z[2],
