@@ -25,7 +25,7 @@ use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::samples::creature;
-use relievo::skinning::bounding_sphere::bounding_sphere_in_clips;
+use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::lod::placed;
 use relievo::skinning::vertex::Blend;
 use relievo::skinning::{Extent, add_levels, level_errors, poses_of};
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 model,
                 matrices: posed.model_matrices(),
                 placements: &placements,
-                fade,
+                fade_range: fade,
                 levels: &levels,
                 blend: Blend::Linear,
                 albedos: &albedos,
@@ -112,7 +112,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Between which distances a model fades, and from where on it has each of its levels of detail.
 fn ranges(model: &Model, poses: usize) -> Result<([f32; 2], Vec<f32>), relievo::InputError> {
-    let scale = scale(bounding_sphere_in_clips(model).1);
+    let scale = scale(BoundingSphere::in_clips(model).radius);
     let extent = Extent::of_model(model, &[0], poses)?.scaled(scale);
     let projection = Projection::new(SIZE[1], FIELD_OF_VIEW, 0.1);
     let errors = level_errors(&model.meshes).into_iter().map(|error| scale * error);
@@ -126,7 +126,7 @@ fn scale(radius: f32) -> f32 {
 
 /// In rows away from the eye, every character two metres large, turned every way.
 fn places(model: &Model, index: usize, characters: usize) -> Vec<Affine> {
-    let (center, radius) = bounding_sphere_in_clips(model);
+    let BoundingSphere { center, radius } = BoundingSphere::in_clips(model);
     let scale = scale(radius);
     let place = |at: usize| {
         let (row, column) = (at / 8, (at % 8 * characters + index) as f32);

@@ -245,7 +245,7 @@ mod tests {
         assert_eq!((lists(0, 9), lists(9, 9), lists(64, 64)), (Ok([1, 0]), Ok([1, 9]), Ok([1, 64])));
         assert_eq!((lists(192, 64), lists(256, 65)), (Ok([3, 64]), Ok([2, 128])));
         for (words, places) in [(64, 63), (10, 9), (129, 64), (17 * 64, 64)] {
-            assert_eq!(lists(words, places).expect_err("refused").field, "drawn.len");
+            assert_eq!(lists(words, places).expect_err("refused").path, "drawn.len");
         }
     }
 

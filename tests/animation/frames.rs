@@ -177,7 +177,7 @@ fn bounds_of_one_path_meet_no_sampling_of_the_other() {
 #[track_caller]
 fn names_both(refused: Result<(), Error>, [path, other]: [RotationPath; 2]) {
     let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-    assert_eq!((error.field.as_str(), error.value), ("crowd.path", format!("{other:?}")));
+    assert_eq!((error.path.as_str(), error.value), ("crowd.path", format!("{other:?}")));
     assert!(error.bound.contains(&format!("{path:?}")), "{}", error.bound);
 }
 

@@ -328,7 +328,7 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
     let refused = |table: &GateTable, path| {
         Crowd::new(&stage.order, &stage.set, table, path, instances.to_vec()).err().map(|error| {
             assert!(error.bound.contains(&format!("{:?}", table.path().expect("has motion"))), "{error}");
-            (error.field, error.value)
+            (error.path, error.value)
         })
     };
     let wrong = |path| Some(("crowd.path".to_owned(), format!("{path:?}")));
@@ -350,7 +350,7 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
 #[test]
 fn tables_refuse_what_does_not_fit() {
     let stage = Stage::creature();
-    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
+    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").path;
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
     assert_eq!(field(GateTable::of_animated_bones(&stage.order, &stage.set, &clips[..1])), "clips.len");
     // As many clips, but in another order, or another one among them.
@@ -367,7 +367,7 @@ fn tables_refuse_what_does_not_fit() {
     assert_eq!(field(bounds(&[])), "bone_radii.len");
     let mut bone_radii = stage.bone_radii.clone();
     bone_radii[3] = f32::NAN;
-    assert_eq!(field(bounds(&bone_radii)), "reaches[3]");
+    assert_eq!(field(bounds(&bone_radii)), "bone_radii[3]");
     let other = Stage::random(0, 7);
     assert_eq!(field(GateTable::of_animated_bones(&other.order, &stage.set, &clips)), "skeleton.len");
     // The reference alone, without phases, has nothing to decide.
