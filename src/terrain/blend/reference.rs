@@ -1,11 +1,12 @@
 //! Zone weights and the top-down colour map: the CPU reference of `kernels/terrain/blend.wgsl` and
 //! `wgsl/terrain/zones.wgsl`.
 
+use glam::Vec3;
+
 use crate::asset::light::lambert;
 use crate::srgb;
 use crate::terrain::blend::{MapZone, Shading, WeightMode};
 use crate::terrain::normals::reference::unit_normal;
-use glam::Vec3;
 
 /// The weight of a zone at `height` (B equation 3.6): 1 at `max`, falling linearly to 0 at `max` ± (`max` −
 /// `min`).
