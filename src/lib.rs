@@ -24,8 +24,8 @@
 //! `samples` generates a creature with clips, and height maps with their colours. It needs the feature `samples`.
 //!
 //! `verify` compares every kernel with its reference (`relievo verify`), and `bench` measures it against a copy of
-//! the same bytes (`relievo bench`). They use `harness` (comparators and clocks) and `baseline` (kernels to measure
-//! against). All four need the feature `verify`.
+//! the same bytes (`relievo bench`). They use `harness` (comparators and clocks). All
+//! three need the feature `verify`.
 //!
 //! `measure` measures surface mapping on the caller's own height maps: error and cost of every method. `files` writes
 //! reports and pictures whole or not at all. Both need the feature `verify`. `plot` draws charts of such figures and
@@ -89,7 +89,7 @@
 pub mod animation;
 pub mod asset;
 #[cfg(feature = "verify")]
-pub mod baseline;
+mod baseline;
 #[cfg(feature = "verify")]
 pub mod bench;
 pub mod error;

@@ -270,7 +270,7 @@ fn every_file_that_a_shader_could_import_is_in_one_module() {
         .filter(|file| !is_bound(file))
         .map(|file| file.strip_prefix(root()).expect("below").to_string_lossy().replace('\\', "/"))
         .collect();
-    assert!(importable.len() > 20, "{importable:?}");
+    assert!(!importable.is_empty());
     assert_eq!(exported.iter().cloned().collect::<BTreeSet<_>>(), importable);
     assert_eq!(exported.len(), importable.len(), "a file is in two modules: {exported:?}");
 }

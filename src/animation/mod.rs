@@ -3,7 +3,7 @@
 
 pub mod active;
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod bounds;
 pub mod budget;
 #[cfg(feature = "gpu")]

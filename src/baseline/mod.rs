@@ -2,10 +2,10 @@
 //! be avoided. Every speed figure of relievo is a ratio to one of them in the same run.
 
 #[cfg(feature = "verify")]
-pub mod bench;
-pub mod copy;
-pub mod gather;
-pub mod loads;
+pub(crate) mod bench;
+pub(crate) mod copy;
+pub(crate) mod gather;
+pub(crate) mod loads;
 #[cfg(feature = "verify")]
-pub mod verify;
-pub mod words;
+pub(crate) mod verify;
+pub(crate) mod words;

@@ -69,6 +69,18 @@ pub enum GpuError {
     },
 }
 
+impl GpuError {
+    /// The same error with what the caller knows to help where a limit is exceeded.
+    pub(crate) fn with_remedy(self, remedy: &'static str) -> Self {
+        match self {
+            Self::Limit { pass, limit, needed, available, .. } => {
+                Self::Limit { pass, limit, needed, available, remedy }
+            }
+            other => other,
+        }
+    }
+}
+
 impl From<wgpu::Error> for GpuError {
     fn from(error: wgpu::Error) -> Self {
         match error {

@@ -3,7 +3,7 @@
 use super::GpuError;
 
 /// The environment variable that selects an adapter when [`Options::adapter`] does not.
-pub const ADAPTER_VARIABLE: &str = "RELIEVO_ADAPTER";
+pub(crate) const ADAPTER_VARIABLE: &str = "RELIEVO_ADAPTER";
 
 /// How to choose an adapter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -34,7 +34,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 limit: "maxStorageBufferBindingSize",
                 needed: size,
                 available: gpu.max_binding(),
-                remedy: "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer iterations of erosion), or compute on the CPU (--backend cpu)",
+                remedy: "split the batch",
             });
         }
         let usage = wgpu::BufferUsages::STORAGE
@@ -126,7 +126,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     ///
     /// # Errors
     /// [`InputError`] that names `field`.
-    pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
+    pub(crate) fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
         if self.len >= needed {
             return Ok(());
         }

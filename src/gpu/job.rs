@@ -131,7 +131,7 @@ impl IndirectJob {
     }
 
     /// Adds all dispatches, in order, to a compute pass that is being recorded.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.kernel.pipeline);
         for (group, offset) in &self.groups {
             pass.set_bind_group(0, group, &[]);

@@ -5,14 +5,14 @@ use super::{Gpu, GpuError, Program};
 
 /// A compute pipeline of one shader, with its override constants set.
 #[derive(Debug, Clone)]
-pub(crate) struct Kernel {
+pub struct Kernel {
     shader: &'static Shader,
     pub(super) pipeline: wgpu::ComputePipeline,
     layouts: Vec<wgpu::BindGroupLayout>,
 }
 
 /// A bind group of a kernel.
-pub(crate) type Group = wgpu::BindGroup;
+pub type Group = wgpu::BindGroup;
 
 impl Kernel {
     /// Compiles the pipeline, or returns the same one if it was compiled on this device before. `constants` sets
@@ -20,7 +20,7 @@ impl Kernel {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn new(
+    pub fn new(
         gpu: &Gpu,
         shader: &'static Shader,
         constants: &[(&'static str, f64)],

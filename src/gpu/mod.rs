@@ -15,6 +15,7 @@ mod readback;
 pub mod shaders;
 mod shared;
 mod timer;
+mod tuning;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -23,9 +24,11 @@ pub use crate::error::GpuError;
 pub use adapter::{AdapterSummary, Options, adapters};
 pub use buffer::{Buffer, Uniform};
 pub use job::{INVOCATIONS_A_SUBMISSION, IndirectJob, Job, Step, compute_pass};
-pub(crate) use kernel::{Group, Kernel, layouts, module, pipeline_layout, rows_of_workgroups};
+pub use kernel::{Group, Kernel};
+pub(crate) use kernel::{layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};
+pub(crate) use tuning::Tuning;
 
 use shared::Shared;
 pub(crate) use shared::{Drawing, Program};
@@ -47,6 +50,7 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     summary: AdapterSummary,
+    tuning: Tuning,
     heard: Arc<Mutex<Heard>>,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
@@ -73,7 +77,7 @@ impl Gpu {
     /// As [`Gpu::headless`].
     pub async fn headless_async(options: &Options) -> Result<Self, GpuError> {
         let adapter = adapter::choose(options).await?;
-        let summary = AdapterSummary::of(&adapter.get_info());
+        let info = adapter.get_info();
         let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("relievo"),
@@ -81,24 +85,24 @@ impl Gpu {
             required_limits: limits(&adapter.limits()),
             ..Default::default()
         };
-        let (device, queue) = (adapter.request_device(&descriptor).await).map_err(|error| {
-            GpuError::NoDevice { adapter: summary.name.clone(), reason: error.to_string() }
-        })?;
+        let (device, queue) = (adapter.request_device(&descriptor).await)
+            .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
         let heard = Arc::new(Mutex::new(Heard::default()));
         listen(&device, &heard);
-        Ok(Self { heard, ..Self::new(device, queue, summary) })
+        Ok(Self { heard, ..Self::new(device, queue, &info) })
     }
 
     /// Uses the device of an embedding program. The program's error handlers stay in place; relievo wraps its
     /// own calls in error scopes.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let summary = AdapterSummary::of(&device.adapter_info());
-        Self::new(device, queue, summary)
+        let info = device.adapter_info();
+        Self::new(device, queue, &info)
     }
 
-    fn new(device: wgpu::Device, queue: wgpu::Queue, summary: AdapterSummary) -> Self {
+    fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
+        let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
         let (heard, memory, kernels, render_pipelines) = Default::default();
-        Self { device, queue, summary, heard, memory, kernels, render_pipelines }
+        Self { device, queue, summary, tuning, heard, memory, kernels, render_pipelines }
     }
 
     /// The wgpu device.
@@ -114,6 +118,11 @@ impl Gpu {
     /// Name, kind and driver of the adapter.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.summary
+    }
+
+    /// What is fastest on the adapter.
+    pub(crate) fn tuning(&self) -> Tuning {
+        self.tuning
     }
 
     /// The bytes that relievo's storage buffers hold on this device.

@@ -17,7 +17,7 @@ impl Readback {
     ///
     /// # Errors
     /// Errors of the device.
-    pub fn start(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Self, GpuError> {
+    pub(crate) fn start(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Self, GpuError> {
         let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         gpu.scoped(|| {
             let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
@@ -45,7 +45,7 @@ impl Readback {
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].
-    pub async fn answer(self) -> Result<Vec<u8>, GpuError> {
+    pub(crate) async fn answer(self) -> Result<Vec<u8>, GpuError> {
         let lost = |reason: String| GpuError::DeviceLost { reason };
         let Some(mapped) = self.mapped else { return Ok(Vec::new()) };
         mapped.await.map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;

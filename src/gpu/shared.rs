@@ -22,7 +22,7 @@ impl<K: Eq + Hash, T: Clone> Shared<K, T> {
     ///
     /// # Errors
     /// Errors of `compile`, which is tried again at the next call.
-    pub fn get(&self, key: K, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+    pub(crate) fn get(&self, key: K, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let all = || self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());

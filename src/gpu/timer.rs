@@ -63,7 +63,7 @@ impl Timer {
     /// # Errors
     /// [`GpuError::OutOfMemory`].
     pub fn for_drawing(gpu: &Gpu) -> Result<Self, GpuError> {
-        if gpu.adapter().kind == "cpu" { Ok(Self { queries: None }) } else { Self::new(gpu) }
+        if gpu.adapter().is_software() { Ok(Self { queries: None }) } else { Self::new(gpu) }
     }
 
     /// The clock that [`Timer::measure`] uses.

@@ -40,12 +40,12 @@ pub struct Cases<'a> {
 
 impl Cases<'_> {
     /// Records that this device cannot run a case, and why. A kernel whose cases are all skipped does not hold.
-    pub fn skip(&mut self, case: impl Into<String>, reason: impl Into<String>) {
+    pub(crate) fn skip(&mut self, case: impl Into<String>, reason: impl Into<String>) {
         self.skipped.push(Skipped { stem: self.stem, case: case.into(), reason: reason.into() });
     }
 
     /// Adds a case.
-    pub fn add(&mut self, case: impl Into<String>, comparison: Comparison) {
+    pub(crate) fn add(&mut self, case: impl Into<String>, comparison: Comparison) {
         let result = CaseResult { stem: self.stem, case: case.into(), comparison };
         (self.progress)(&result);
         self.results.push(result);
@@ -53,6 +53,6 @@ impl Cases<'_> {
 }
 
 /// Whether `stem` is selected: `only` is its name or a part of it; `None` selects everything.
-pub fn selected(stem: &str, only: Option<&str>) -> bool {
+pub(crate) fn selected(stem: &str, only: Option<&str>) -> bool {
     only.is_none_or(|only| stem.contains(only))
 }

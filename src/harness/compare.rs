@@ -58,7 +58,7 @@ pub struct LeftOut {
 
 impl Comparison {
     /// A comparison that fails whatever the values.
-    pub fn failed(values: usize, fault: String) -> Self {
+    pub(crate) fn failed(values: usize, fault: String) -> Self {
         let (error, bound, unit) = (f64::INFINITY, 0.0, "none");
         Self { holds: false, values, error, bound, unit, spread: None, left_out: None, fault: Some(fault) }
     }
@@ -169,7 +169,7 @@ pub struct Judgement {
 /// Compares values that each have a bound of their own: every error must be within its bound, and of all values
 /// at most the fraction `may_touch`, but at least one, may prove little. `describe` describes a value by its
 /// index.
-pub fn each(
+pub(crate) fn each(
     judgements: &[Judgement],
     unit: &'static str,
     may_touch: f64,

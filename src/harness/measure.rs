@@ -42,22 +42,22 @@ enum Work<'a> {
 
 impl<'a> Contender<'a> {
     /// A prepared job.
-    pub fn job(backend: Backend, job: &'a Job) -> Self {
+    pub(crate) fn job(backend: Backend, job: &'a Job) -> Self {
         Self::recorded(backend, |encoder| job.record(encoder))
     }
 
     /// Work that is recorded in one submission.
-    pub fn recorded(backend: Backend, record: impl Fn(&mut wgpu::CommandEncoder) + 'a) -> Self {
+    pub(crate) fn recorded(backend: Backend, record: impl Fn(&mut wgpu::CommandEncoder) + 'a) -> Self {
         Self { backend, repeats: 1, work: Work::Device(Box::new(record)) }
     }
 
     /// Work on the host.
-    pub fn host(backend: Backend, work: impl FnMut() + 'a) -> Self {
+    pub(crate) fn host(backend: Backend, work: impl FnMut() + 'a) -> Self {
         Self { backend, repeats: 1, work: Work::Host(Box::new(work)) }
     }
 
     /// Work on host and device together, timed by the host's clock.
-    pub fn both(backend: Backend, work: impl FnMut() -> Result<(), Error> + 'a) -> Self {
+    pub(crate) fn both(backend: Backend, work: impl FnMut() -> Result<(), Error> + 'a) -> Self {
         Self { backend, repeats: 1, work: Work::Both(Box::new(work)) }
     }
 
@@ -120,7 +120,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn case(
+    pub(crate) fn case(
         &mut self,
         case: impl Into<String>,
         (items, item): (usize, &'static str),

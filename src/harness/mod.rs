@@ -8,7 +8,8 @@ pub mod poison;
 mod row;
 mod table;
 
-pub use cases::{CaseResult, Cases, Skipped, selected};
+pub(crate) use cases::selected;
+pub use cases::{CaseResult, Cases, Skipped};
 pub use measure::{Bench, Contender};
 pub use row::{Backend, Row};
 pub use table::table;

@@ -34,7 +34,7 @@ impl<T: bytemuck::Pod> Poisoned<T> {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn poison(&self, gpu: &Gpu) -> Result<(), GpuError> {
+    pub(crate) fn poison(&self, gpu: &Gpu) -> Result<(), GpuError> {
         let words = vec![POISON; (self.len + GUARD) * size_of::<T>() / 4];
         self.buffer.write(gpu, bytemuck::cast_slice(&words))
     }

@@ -8,7 +8,7 @@ use glam::Vec3;
 /// whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of the larger of the two.
 /// Beyond that range the result still lies on the triangle, so that a measured distance may be too large but is
 /// never too small.
-pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(crate) fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
     if to_b <= 0.0 && to_c <= 0.0 {

@@ -189,7 +189,7 @@ impl Simplified {
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub fn point(&self, vertex: u32) -> u32 {
+    pub(crate) fn point(&self, vertex: u32) -> u32 {
         self.points[vertex as usize]
     }
 

@@ -28,7 +28,7 @@ impl From<ColorTexture> for Albedo {
 }
 
 /// A function that uploads textures: [`ColorTexture::new`] or [`ColorTexture::linear`].
-pub type Upload = fn(&Gpu, &Mips, bool) -> Result<ColorTexture, GpuError>;
+pub(crate) type Upload = fn(&Gpu, &Mips, bool) -> Result<ColorTexture, GpuError>;
 
 impl Albedo {
     /// The base colours of a model's meshes, one per mesh, with each texture uploaded once. Meshes without a

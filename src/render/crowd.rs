@@ -5,6 +5,7 @@
 use glam::{Mat4, Vec3};
 
 use crate::animation::ModelMatrices;
+use crate::asset::Light;
 use crate::asset::Model;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -14,7 +15,6 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
-use crate::skinning::picture::Light;
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 

@@ -1,15 +1,15 @@
 //! Drawing: a camera, an off-screen target, and passes that draw into the caller's render pass.
 
-pub mod albedo;
-pub mod camera;
-pub mod color;
-pub mod crowd;
+mod albedo;
+mod camera;
+mod color;
+mod crowd;
 pub mod picture;
 mod pipeline;
 pub mod posed;
 pub mod relief;
 pub mod skinned;
-pub mod square;
+mod square;
 pub mod target;
 pub mod terrain;
 

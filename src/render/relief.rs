@@ -7,10 +7,10 @@ use crate::render::color::ColorTexture;
 use crate::render::pipeline::{Draws, bind};
 use crate::shared::render::relief::ReliefView;
 use crate::shared::surface::ray::SurfaceMarch;
-use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{March, Method};
+use crate::surface::{Green, Material, Shadow};
 use crate::{Error, InputError};
 
 /// Options that are fixed when a pipeline is compiled. [`Material`] has the parameters that may change without

@@ -4,6 +4,7 @@
 
 use glam::Mat4;
 
+use crate::asset::Light;
 use crate::asset::material::Alpha;
 use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
@@ -14,7 +15,7 @@ use crate::shared::render::skinned::SkinnedView;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{draws_at, list_stride};
-use crate::skinning::picture::{Light, is_mirrored};
+use crate::skinning::picture::is_mirrored;
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 

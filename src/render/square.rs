@@ -9,12 +9,12 @@ use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRende
 use crate::render::target::{LINEAR_FORMAT, Target};
 use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
-use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::view::SquareView;
+use crate::surface::{Green, Material, Shadow};
 
 /// How a square is drawn.
 #[derive(Debug, Clone)]
@@ -72,7 +72,7 @@ impl SquarePicture<'_> {
 }
 
 /// The camera of a parallel view of [`SurfaceMesh::square`].
-pub fn camera(view: &SquareView) -> ReliefCamera {
+pub(crate) fn camera(view: &SquareView) -> ReliefCamera {
     let world = |axis: [f64; 3]| DVec3::new(axis[0], -axis[1], axis[2]);
     let [right, up] = view.axes().map(world);
     let towards = world(view.towards());

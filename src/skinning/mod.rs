@@ -2,7 +2,7 @@
 //! and 9).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod bounding_sphere;
 #[cfg(feature = "gpu")]
 pub mod buffers;
@@ -25,7 +25,7 @@ pub mod posed;
 pub mod select;
 pub mod skin;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 pub mod vertex;
 
 pub use character_levels::{level_errors, own_levels};

@@ -14,7 +14,7 @@ use crate::skinning::vertex::Vertex;
 
 /// The sizes of a random mesh and of the skeleton that it follows.
 #[derive(Debug, Clone, Copy)]
-pub struct Shape {
+pub(crate) struct Shape {
     /// Bones of the skeleton; the skin has half of them, at least one.
     pub bones: usize,
     /// Vertices of the mesh.
@@ -29,7 +29,7 @@ pub struct Shape {
 
 /// Shapes with numbers of vertices around the boundaries of clusters and of bones around those of sets, one to
 /// eight influences, and no levels, some, and the largest number.
-pub const SHAPES: [Shape; 8] = [
+pub(crate) const SHAPES: [Shape; 8] = [
     Shape { bones: 1, vertices: 1, influences: 1, targets: 0, levels: 0 },
     Shape { bones: 9, vertices: 63, influences: 2, targets: 1, levels: 1 },
     Shape { bones: 32, vertices: 64, influences: 3, targets: 0, levels: 0 },
@@ -44,7 +44,7 @@ pub const SHAPES: [Shape; 8] = [
 ///
 /// # Errors
 /// None in practice: the model is checked like any other.
-pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
+pub(crate) fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
     let mut draw = Draw::new(case ^ 0x5c1);
     let skeleton = random_skeleton(case, shape.bones)?;
     let bones: Vec<u32> = (0..shape.bones as u32).rev().step_by(2).collect();
@@ -141,7 +141,7 @@ pub(crate) fn near_identity(draw: &mut Draw) -> Affine {
 
 /// Matrices that are close to each other within an instance, so that their means are as well conditioned as
 /// they are. Each instance has a rotation of its own, and some are mirrored.
-pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine> {
+pub(crate) fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine> {
     let mut draw = Draw::new(case ^ 0xba1e);
     let mut matrices = Vec::with_capacity(bones * instances);
     for instance in 0..instances {
@@ -156,7 +156,7 @@ pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine>
 
 /// Full, truncated, fading and unseen InstanceLods in turn, half of them at coarse levels, which the mesh may
 /// not have.
-pub fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceLod> {
+pub(crate) fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceLod> {
     let mut draw = Draw::new(case ^ 0xfade);
     let instance_lod = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
         0 => InstanceLod::FULL,

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::baseline::loads::LoadsPass;
 use crate::gpu::{Buffer, Gpu, Job};
-use crate::surface::material::Material;
+use crate::surface::Material;
 use crate::surface::relief::Ray;
 use crate::surface::relief::textures::SurfaceTextures;
 

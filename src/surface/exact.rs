@@ -16,7 +16,7 @@ pub struct Exact {
 
 impl Exact {
     /// The distance of a hit from the exact one, in texels.
-    pub fn error(&self, hit: &Hit, map: &HeightMap) -> f64 {
+    pub(crate) fn error(&self, hit: &Hit, map: &HeightMap) -> f64 {
         let du = (f64::from(hit.uv[0]) - self.uv[0]) * f64::from(map.width());
         let dv = (f64::from(hit.uv[1]) - self.uv[1]) * f64::from(map.height());
         du.hypot(dv)

@@ -1,7 +1,7 @@
 //! Height maps of one size on the device, one after another.
 
 use super::map::HeightMap;
-use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::gpu::{Buffer, Gpu};
 use crate::{Error, InputError};
 
 /// A batch of height maps of one size.
@@ -19,7 +19,7 @@ impl HeightBatch {
     /// Uploads maps of one size.
     ///
     /// # Errors
-    /// [`InputError`] for an empty list or different sizes; [`GpuError`].
+    /// [`InputError`] for an empty list or different sizes; [`GpuError`](crate::gpu::GpuError).
     pub fn new(gpu: &Gpu, maps: &[HeightMap]) -> Result<Self, Error> {
         let size_of = |map: &HeightMap| [map.width(), map.height()];
         let Some(size) = maps.first().map(size_of) else {
@@ -37,20 +37,12 @@ impl HeightBatch {
         let texels: usize = size.iter().map(|edge| *edge as usize).product();
         // Kernels load vectors of four.
         let heights = Buffer::new(gpu, "height maps", (texels * maps.len()).next_multiple_of(4))
-            .map_err(with_remedy)?;
+            .map_err(|error| error.with_remedy(REMEDY))?;
         let all: Vec<f32> = maps.iter().flat_map(HeightMap::heights).copied().collect();
         heights.write(gpu, &all)?;
         Ok(Self { heights, size, count: maps.len() as u32 })
     }
 }
 
-/// Adds advice for maps that are larger than a binding to an error of the device.
-pub(crate) fn with_remedy(error: GpuError) -> GpuError {
-    match error {
-        GpuError::Limit { pass, limit, needed, available, .. } => {
-            let remedy = "use smaller or fewer height maps, or compute on the CPU (--backend cpu)";
-            GpuError::Limit { pass, limit, needed, available, remedy }
-        }
-        other => other,
-    }
-}
+/// What helps where maps are larger than a binding.
+pub(crate) const REMEDY: &str = "use smaller or fewer height maps, or compute on the CPU (--backend cpu)";

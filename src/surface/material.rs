@@ -16,17 +16,6 @@ pub enum Shadow {
     Soft,
 }
 
-impl Shadow {
-    /// Its name in options and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Hard => "hard",
-            Self::Soft => "soft",
-        }
-    }
-}
-
 /// The direction to which the green channel of a normal map points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -39,7 +28,7 @@ pub enum Green {
 }
 
 /// The parameters of a relief, besides its maps, that may change without a new pipeline. Whether there are
-/// shadows and silhouettes is not among them (`render::ReliefOptions`, `reference::surface::picture::Scene`).
+/// shadows and silhouettes is not among them (`render::ReliefOptions`, `surface::picture::Scene`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].

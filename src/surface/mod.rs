@@ -2,16 +2,16 @@
 //! (B sections 3.1 and 4.2).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod cone_map;
 pub mod exact;
 #[cfg(feature = "gpu")]
-pub mod height_batch;
+pub(crate) mod height_batch;
 pub mod height_pyramid;
 pub mod linear_image;
 pub mod map;
-pub mod material;
-pub mod measure;
+mod material;
+mod measure;
 pub mod mesh;
 pub mod mips;
 pub mod picture;

@@ -1,17 +1,19 @@
 //! A picture of a square of relief: the CPU reference of `wgsl/render/relief.wgsl` under a parallel projection.
 
+use glam::Vec3;
 use rayon::prelude::*;
 
+use crate::asset::light::lambert;
 use crate::srgb::linear;
 use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
-use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mips::Mips;
 use crate::surface::relief::reference::Surface;
 use crate::surface::relief::reference::height::height;
 use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
 use crate::surface::relief::{Hit, March, Method, Ray};
 use crate::surface::view::SquareView;
+use crate::surface::{Green, Material, Shadow};
 
 /// The scene of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -69,10 +71,10 @@ impl Scene<'_> {
             }
         };
         let light = self.material.light;
-        let facing: f32 = facing.iter().zip(light).map(|(n, l)| n * l).sum();
+        let facing = Vec3::from(facing).dot(light.into());
         let direct = facing.max(0.0) * self.sunlit(&hit);
         let ambient = self.material.ambient;
-        Some([0, 1, 2].map(|i| color[i] * (ambient + (1.0 - ambient) * direct)))
+        Some([0, 1, 2].map(|i| color[i] * lambert(ambient, direct)))
     }
 
     fn sunlit(&self, hit: &Hit) -> f32 {

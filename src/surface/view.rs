@@ -51,19 +51,19 @@ impl SquareView {
     }
 
     /// The unit vector towards the eye, in tangent space.
-    pub fn towards(&self) -> [f64; 3] {
+    pub(crate) fn towards(&self) -> [f64; 3] {
         let ((sine, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         [sine * east, sine * south, cosine]
     }
 
     /// The unit vectors to the right and up in the picture, in tangent space.
-    pub fn axes(&self) -> [[f64; 3]; 2] {
+    pub(crate) fn axes(&self) -> [[f64; 3]; 2] {
         let ((sine, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         [[south, -east, 0.0], [-cosine * east, -cosine * south, sine]]
     }
 
     /// Pixels per edge length of the square.
-    pub fn zoom(&self) -> f64 {
+    pub(crate) fn zoom(&self) -> f64 {
         let [right, up] = self.axes();
         let extent = |axis: [f64; 3]| axis[0].abs() + axis[1].abs();
         let [width, height] = self.size.map(f64::from);
@@ -72,7 +72,7 @@ impl SquareView {
 
     /// The texture coordinates at which a point of the picture (pixels from the top left) sees the square;
     /// `None` beyond it.
-    pub fn uv(&self, x: f64, y: f64) -> Option<[f64; 2]> {
+    pub(crate) fn uv(&self, x: f64, y: f64) -> Option<[f64; 2]> {
         let zoom = self.zoom();
         let [width, height] = self.size.map(f64::from);
         let (across, up) = ((x - width / 2.0) / zoom, (height / 2.0 - y) / zoom);
@@ -83,7 +83,7 @@ impl SquareView {
     }
 
     /// The change of uv from one pixel to the next, along x and along y.
-    pub fn uv_steps(&self) -> [[f64; 2]; 2] {
+    pub(crate) fn uv_steps(&self) -> [[f64; 2]; 2] {
         let ((_, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         let step = self.tiles / self.zoom();
         [[south * step, -east * step], [east / cosine * step, south / cosine * step]]
@@ -91,7 +91,7 @@ impl SquareView {
 
     /// The ray through a point of the picture, if that sees the square. The relief has a depth of `scale` (uv
     /// units), and the square lies at height `plane` in it.
-    pub fn ray(&self, x: f64, y: f64, scale: f32, plane: f32) -> Option<Ray> {
+    pub(crate) fn ray(&self, x: f64, y: f64, scale: f32, plane: f32) -> Option<Ray> {
         let view = self.towards().map(|axis| axis as f32);
         self.uv(x, y).map(|uv| Ray::new(uv.map(|axis| axis as f32), view, scale, plane))
     }

@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::baseline::copy::CopyPass;
 use crate::gpu::{Buffer, Gpu, Job};
+use crate::terrain::fields::Fields;
 use crate::terrain::verify::random_heights;
 
 /// The device's own copy of `words` words, rounded up to a multiple of four, as a baseline.
@@ -19,4 +20,12 @@ pub(crate) fn some_heights(points: usize) -> Vec<i32> {
     // benchmark.
     let pattern = random_heights(1, 4096, 1 << 22);
     pattern.into_iter().cycle().take(points).collect()
+}
+
+/// Plausible windows of `width`² samples, on the host and on the device.
+pub(crate) fn some_windows(gpu: &Gpu, width: u32, count: u32) -> Result<(Vec<i32>, Fields), Error> {
+    let host = some_heights((width * width * count) as usize);
+    let windows = Fields::new(gpu, "windows", width, count)?;
+    windows.heights.write(gpu, &host)?;
+    Ok((host, windows))
 }

@@ -45,7 +45,7 @@ impl HeightRange {
     }
 
     /// The height of a PNG sample, in height units.
-    pub fn height(&self, sample: u16) -> f64 {
+    pub(crate) fn height(&self, sample: u16) -> f64 {
         self.low + (self.high - self.low) * f64::from(sample) / 65_535.0
     }
 }

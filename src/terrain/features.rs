@@ -151,7 +151,7 @@ impl Features {
     }
 
     /// The mode of injection, or `None` if there are no features.
-    pub fn injection(&self) -> Option<FeatureMode> {
+    pub(crate) fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
     }
 
@@ -167,7 +167,12 @@ impl Features {
     /// The injected points of a square lattice in the world coordinates of `world`, as (column, row, height),
     /// sorted by row and column. With `new_only`, points that also lie on the lattice of twice the spacing are
     /// left out.
-    pub fn on_lattice(&self, world: [i32; 2], lattice: Lattice, new_only: bool) -> Vec<(u32, u32, i32)> {
+    pub(crate) fn on_lattice(
+        &self,
+        world: [i32; 2],
+        lattice: Lattice,
+        new_only: bool,
+    ) -> Vec<(u32, u32, i32)> {
         let Some(points) = self.worlds.get(&world) else { return Vec::new() };
         let Lattice { origin, width, spacing } = lattice;
         let end = |start: i64| start + i64::from(width.max(1) - 1) * spacing;
@@ -187,7 +192,12 @@ impl Features {
     /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend`,
     /// the samples around a patch belong to other patches, or to the other side of the patch itself, and so do
     /// their features.
-    pub fn in_windows(&self, config: &Config, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
+    pub(crate) fn in_windows(
+        &self,
+        config: &Config,
+        patches: &[[i32; 2]],
+        apron: u32,
+    ) -> Vec<Vec<(u32, u32)>> {
         if config.border == Border::Seamless || self.is_empty() {
             let points = |patch: &[i32; 2]| {
                 let lattice = Window { patch: *patch, apron }.lattice(config);
@@ -219,7 +229,7 @@ impl Features {
     }
 
     /// The world in which a patch lies; see [`Features::on_lattice`].
-    pub fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
+    pub(crate) fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }
 }

@@ -40,6 +40,10 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
     Ok(places)
 }
 
+/// What helps where fields are larger than a binding.
+pub(crate) const REMEDY: &str = "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer \
+    iterations of erosion), or compute on the CPU (--backend cpu)";
+
 impl Fields {
     /// Allocates fields of zeros.
     ///
@@ -47,7 +51,8 @@ impl Fields {
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, label: &'static str, width: u32, count: u32) -> Result<Self, GpuError> {
         let points = width as usize * width as usize * count as usize;
-        Ok(Self { heights: Buffer::new(gpu, label, points)?, width, count })
+        let heights = Buffer::new(gpu, label, points).map_err(|error| error.with_remedy(REMEDY))?;
+        Ok(Self { heights, width, count })
     }
 
     /// The largest number of fields of `width` in one part: as many as fit a binding of WebGPU's default size,

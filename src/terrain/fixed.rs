@@ -30,7 +30,7 @@ impl Draw {
     }
 
     /// Adds to each `heights[i]` the offset of the point (x + i·step, y), in world coordinates.
-    pub fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
+    pub(crate) fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
         for (chunk, row) in heights.chunks_mut(LANES).enumerate() {
             let start = x.wrapping_add(step.wrapping_mul((chunk * LANES) as u32));
             let columns = std::array::from_fn(|lane| start.wrapping_add(step.wrapping_mul(lane as u32)));
@@ -70,7 +70,7 @@ pub enum FeatureMode {
 
 impl FeatureMode {
     /// The value of the shaders' `FEATURES` for this mode; 0 means that there are no features.
-    pub fn code(self) -> u32 {
+    pub(crate) fn code(self) -> u32 {
         match self {
             Self::Keep => features::FEATURES_KEEP,
             Self::Additive => features::FEATURES_ADDITIVE,
@@ -79,7 +79,7 @@ impl FeatureMode {
 }
 
 /// The height of a point after injection.
-pub fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
+pub(crate) fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
     match mode {
         FeatureMode::Keep => feature,
         FeatureMode::Additive => computed + feature,

@@ -11,7 +11,7 @@ use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::DespikePass;
 use crate::terrain::features::FeatureIndex;
-use crate::terrain::fields::Fields;
+use crate::terrain::fields::{Fields, REMEDY};
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
@@ -52,7 +52,7 @@ impl Generator {
     }
 
     /// The number of patches that one part of the result may hold.
-    pub fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
+    pub(crate) fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
         Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
     }
 
@@ -172,7 +172,8 @@ impl Generator {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         let count = patches.len() as u32;
         let fields = Fields::new(gpu, "terrain/wrap", config.patch_size, count)?;
-        let scratch = Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))?;
+        let scratch = Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))
+            .map_err(|error| error.with_remedy(REMEDY))?;
         let job = self.wrap.prepare(gpu, config, count, features.len(), &fields.heights, &scratch)?;
         job.set(gpu, patches, features)?;
         gpu.run("terrain/wrap", |encoder| job.record(encoder))?;

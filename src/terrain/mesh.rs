@@ -38,11 +38,6 @@ impl HeightField {
         (size >= 2 && heights.len() == size * size).then_some(Self { heights, size, spacing: terrain_scale })
     }
 
-    /// Samples along an edge.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
     /// The height of a sample, in height units; `None` outside the field.
     pub fn point(&self, x: usize, y: usize) -> Option<f64> {
         (x < self.size && y < self.size).then(|| f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE)
@@ -166,7 +161,7 @@ pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
 
 /// The indices of one triangle strip over a grid of `size`² points, in which degenerate triangles join the
 /// rows. Front faces look up.
-pub fn strip(size: usize) -> Vec<u32> {
+pub(crate) fn strip(size: usize) -> Vec<u32> {
     let mut indices = Vec::new();
     for row in 0..size - 1 {
         let first = (row * size) as u32;

@@ -1,7 +1,7 @@
 //! Seeded terrain: integer heights that are the same bits on every device (B section 3.3 and 4.4).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 pub mod blend;
 pub mod border;
 pub mod color_maps;

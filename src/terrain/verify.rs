@@ -30,7 +30,7 @@ pub const LIMIT: i32 = HEIGHT_LIMIT as i32;
 ///
 /// # Errors
 /// None, for a valid configuration.
-pub fn scattered(
+pub(crate) fn scattered(
     config: &Config,
     patch: [i32; 2],
     mode: FeatureMode,
@@ -57,6 +57,6 @@ pub fn scattered(
 ///
 /// # Errors
 /// None, for valid JSON.
-pub fn config(json: &serde_json::Value) -> Result<Config, Error> {
+pub(crate) fn config(json: &serde_json::Value) -> Result<Config, Error> {
     Ok(Config::from_json(&json.to_string())?)
 }

@@ -17,7 +17,7 @@ pub struct Window {
 
 /// Indices of lattice points along one axis, both ends included, in units of the lattice's spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
+pub(crate) struct Span {
     /// The first index.
     pub first: i64,
     /// The last index.
@@ -27,12 +27,12 @@ pub struct Span {
 impl Span {
     /// The span of the lattice with twice the spacing that is needed to compute this span: one cell of halo on
     /// each side.
-    pub fn coarser(self) -> Self {
+    pub(crate) fn coarser(self) -> Self {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
     /// The number of indices in the span.
-    pub fn width(self) -> usize {
+    pub(crate) fn width(self) -> usize {
         (self.last - self.first + 1) as usize
     }
 }
@@ -44,7 +44,7 @@ impl Window {
     }
 
     /// The columns and rows of the window, in units of samples.
-    pub fn spans(&self, config: &Config) -> [Span; 2] {
+    pub(crate) fn spans(&self, config: &Config) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
             let first = i64::from(patch) * edge - i64::from(self.apron);
@@ -53,7 +53,7 @@ impl Window {
     }
 
     /// The columns and rows of the window at every level, the base lattice first.
-    pub fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
+    pub(crate) fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
         let mut levels = vec![self.spans(config)];
         for _ in 0..config.levels() {
             let finer = levels[levels.len() - 1];
@@ -64,7 +64,7 @@ impl Window {
     }
 
     /// The lattice of the window's samples, in the world that holds its features.
-    pub fn lattice(&self, config: &Config) -> Lattice {
+    pub(crate) fn lattice(&self, config: &Config) -> Lattice {
         let spacing = config.sample_spacing();
         let origin = if config.border == Border::Seamless {
             self.spans(config).map(|span| span.first * spacing)
@@ -103,7 +103,7 @@ impl Window {
 
 /// A square lattice in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Lattice {
+pub(crate) struct Lattice {
     /// World coordinates (X, Y) of the first point; a multiple of `spacing`.
     pub origin: [i64; 2],
     /// Points along an edge.
@@ -114,7 +114,7 @@ pub struct Lattice {
 
 impl Lattice {
     /// The lattice with one more point on every side.
-    pub fn grown(self) -> Self {
+    pub(crate) fn grown(self) -> Self {
         Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
     }
 }

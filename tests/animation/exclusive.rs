@@ -12,6 +12,7 @@ use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::local_to_model::{LocalToModelPass, Walk};
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Choice, ClipSet, Gate, GateTable, ModelMatrices, Order};
+use relievo::asset::Light;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
@@ -23,7 +24,6 @@ use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::lod::NO_FADE;
 use relievo::skinning::palette::PalettePass;
-use relievo::skinning::picture::Light;
 use relievo::surface::Mips;
 
 use crate::harness::gpu;

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::assert_refused;
 use crate::harness::{Run, relievo};
 
 const SMALL: [&str; 10] = [
@@ -172,15 +173,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--pareto", "--tall", "0"], &["tall", "0"]),
     ] {
         let (run, folder) = run(&[&model[..], arguments].concat());
-        assert_eq!(
-            (run.code, run.stderr.trim().lines().count()),
-            (Some(2), 1),
-            "{arguments:?}: {}",
-            run.stderr
-        );
-        for word in words {
-            assert!(run.stderr.contains(word), "{arguments:?}: `{word}` is not in: {}", run.stderr);
-        }
+        assert_refused(&run, arguments, words);
         assert!(
             !folder.path().join("out").exists() && run.stdout.is_empty(),
             "{arguments:?} wrote something"

@@ -8,6 +8,7 @@ use serde_json::json;
 
 use crate::harness::{Run, relievo};
 use crate::scene::Scene;
+use crate::{assert_refused, push_raised_and_morphed};
 
 const SMALL: [&str; 8] = ["--model", "builtin", "--clip", "walk", "--instances", "4", "--frames", "11"];
 
@@ -148,19 +149,7 @@ fn growing() -> Vec<u8> {
         "targets": [{"POSITION": target}],
     }]}]);
     scene.push("nodes", json!({"skin": 0, "mesh": 0}));
-    let times = scene.floats("SCALAR", &[0.0, 2.0]);
-    let values = scene.floats("VEC3", &[0.0, 1.0, 0.0, 0.0, 1.5, 0.0]);
-    let shares = scene.floats("SCALAR", &[0.0, 1.0]);
-    scene.push(
-        "animations",
-        json!({
-            "samplers": [{"input": times, "output": values}, {"input": times, "output": shares}],
-            "channels": [
-                {"sampler": 0, "target": {"node": 1, "path": "translation"}},
-                {"sampler": 1, "target": {"node": 2, "path": "weights"}},
-            ],
-        }),
-    );
+    push_raised_and_morphed(&mut scene, 1.5);
     scene.gltf()
 }
 
@@ -223,15 +212,7 @@ fn bad_input_is_refused_and_nothing_written() {
         let out = folder.path().join("out");
         let to = ["crowd", "--model", "builtin", "--clip", "walk", "--out", out.to_str().expect("UTF-8")];
         let run = relievo(&[&to[..], gate, arguments].concat());
-        assert_eq!(
-            (run.code, run.stderr.trim().lines().count()),
-            (Some(2), 1),
-            "{arguments:?}: {}",
-            run.stderr
-        );
-        for word in words {
-            assert!(run.stderr.contains(word), "{arguments:?}: `{word}` is not in: {}", run.stderr);
-        }
+        assert_refused(&run, arguments, words);
         assert!(!out.exists() && run.stdout.is_empty(), "{arguments:?} wrote something");
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::harness::relievo;
+use crate::push_raised_and_morphed;
 use crate::scene::Scene;
 
 /// A folder with `model.gltf`: a triangle whose last corner follows the upper of two joints and a morph target, and a
@@ -25,19 +26,7 @@ impl Bench {
             "targets": [{"POSITION": target}],
         }]}]);
         scene.push("nodes", json!({"name": "my body", "skin": 0, "mesh": 0}));
-        let times = scene.floats("SCALAR", &[0.0, 2.0]);
-        let values = scene.floats("VEC3", &[0.0, 1.0, 0.0, 0.0, 5.0, 0.0]);
-        let shares = scene.floats("SCALAR", &[0.0, 1.0]);
-        scene.push(
-            "animations",
-            json!({
-                "samplers": [{"input": times, "output": values}, {"input": times, "output": shares}],
-                "channels": [
-                    {"sampler": 0, "target": {"node": 1, "path": "translation"}},
-                    {"sampler": 1, "target": {"node": 2, "path": "weights"}},
-                ],
-            }),
-        );
+        push_raised_and_morphed(&mut scene, 5.0);
         let bench = Self(tempfile::tempdir().expect("a temporary folder"));
         std::fs::write(bench.path("model.gltf"), scene.gltf()).expect("writable");
         let none = scene.floats("VEC4", &[0.0; 12]);

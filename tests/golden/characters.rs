@@ -5,6 +5,7 @@ use relievo::animation::ModelMatrices;
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::order::Order;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::Light;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
@@ -13,7 +14,6 @@ use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::samples::creature;
 use relievo::skinning::lod::placed;
-use relievo::skinning::picture::Light;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
 

@@ -4,6 +4,7 @@
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
 use relievo::animation::ModelMatrices;
+use relievo::asset::Light;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
 use relievo::asset::transform::Affine;
@@ -15,9 +16,8 @@ use relievo::render::{
 use relievo::skinning::lod::NO_FADE;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::picture::Light;
-use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
+use relievo::skinning::picture::{Part, Scene};
 use relievo::skinning::skin::reference::{skin, transformed};
 use relievo::skinning::{Blend, InstanceLod, Vertex};
 use relievo::surface::linear_image::LinearImage;

@@ -7,6 +7,8 @@ use relievo::surface::verify::bounds::{Judged, Source, judge};
 use relievo::surface::verify::{Shape, random_map, random_rays};
 use relievo::surface::{Address, HeightMap, March, Method, Ray};
 
+use crate::height;
+
 /// A map with rays, and what is known of them.
 struct Scene {
     map: HeightMap,
@@ -33,19 +35,6 @@ fn scenes(method: Method) -> Vec<Scene> {
 fn travel(ray: &Ray, map: &HeightMap) -> f64 {
     let [x, y] = [f64::from(map.width()), f64::from(map.height())];
     (f64::from(ray.slope[0]) * x).hypot(f64::from(ray.slope[1]) * y)
-}
-
-/// The bilinear height, in f64.
-fn height(map: &HeightMap, ray: &Ray, parameter: f64, address: Address) -> f64 {
-    let [x, y] = [0, 1].map(|i| {
-        let edge = f64::from([map.width(), map.height()][i]);
-        (f64::from(ray.origin[i]) + parameter * f64::from(ray.slope[i])) * edge - 0.5
-    });
-    let texel =
-        |dx: i32, dy: i32| f64::from(map.texel(x.floor() as i32 + dx, y.floor() as i32 + dy, address));
-    let (right, below) = (x - x.floor(), y - y.floor());
-    (texel(0, 0) * (1.0 - right) + texel(1, 0) * right) * (1.0 - below)
-        + (texel(0, 1) * (1.0 - right) + texel(1, 1) * right) * below
 }
 
 /// What a method finds in f64; none for rays from behind.

@@ -5,6 +5,8 @@ use proptest::test_runner::RngSeed;
 use relievo::surface::relief::reference::Surface;
 use relievo::surface::{Address, HeightMap, Hit, March, Method, Outcome, Ray};
 
+use crate::height;
+
 /// What heights may differ by: positions of up to 400 texels carry 2⁻²³ · 400 < 5e-5 texels of rounding, over slopes of
 /// up to 1 a texel, twice.
 const BOUND: f64 = 1e-4;
@@ -53,19 +55,6 @@ fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
 
 fn scenes() -> impl Strategy<Value = (HeightMap, Vec<Ray>)> {
     maps().prop_flat_map(|map| (Just(map.clone()), rays(&map)))
-}
-
-/// The height of the surface at a parameter, in f64.
-fn height(map: &HeightMap, ray: &Ray, parameter: f64, address: Address) -> f64 {
-    let [x, y] = [0, 1].map(|i| {
-        let edge = f64::from([map.width(), map.height()][i]);
-        (f64::from(ray.origin[i]) + parameter * f64::from(ray.slope[i])) * edge - 0.5
-    });
-    let texel =
-        |dx: i32, dy: i32| f64::from(map.texel(x.floor() as i32 + dx, y.floor() as i32 + dy, address));
-    let (right, below) = (x - x.floor(), y - y.floor());
-    (texel(0, 0) * (1.0 - right) + texel(1, 0) * right) * (1.0 - below)
-        + (texel(0, 1) * (1.0 - right) + texel(1, 1) * right) * below
 }
 
 /// A hit lies on the surface, and the ray is nowhere deeper than the bound before it.

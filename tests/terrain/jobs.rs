@@ -8,7 +8,8 @@ use relievo::terrain::config::{Border, Config, Offset};
 use relievo::terrain::despike::{Despike, DespikePass};
 use relievo::terrain::features::FeatureIndex;
 use relievo::terrain::fields::Fields;
-use relievo::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch};
+use relievo::terrain::fixed::FeatureMode;
+use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
 use relievo::terrain::normals::NormalsPass;
 use relievo::terrain::pad::PadPass;
 use relievo::terrain::thermal::{Thermal, ThermalPass};
@@ -182,8 +183,8 @@ fn pad() {
 fn generation() {
     let gpu = gpu();
     let config = Config::new(5, 1.0, "short").expect("valid");
-    let blocks = Blocks { cell_rows: 4, levels: 1 };
-    let height = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
+    // With features, each dispatch makes one level and needs scratch for the next on every adapter.
+    let height = HeightPass::new(&gpu, Offset::Signed, Some(FeatureMode::Keep)).expect("compiled");
     let scratch = HeightScratch::new(&gpu, &height, &config, 2, 1).expect("allocated");
     let points = HeightJob::output_points(&config, 2, 1);
     let prepare = |apron, output| {

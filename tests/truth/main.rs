@@ -7,15 +7,16 @@ use glam::Vec3;
 use relievo::animation::instance::Wrap;
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
+use relievo::asset::Light;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::picture::reference::{Part, Scene};
+use relievo::skinning::picture::framing;
 use relievo::skinning::picture::texture::Surface;
-use relievo::skinning::picture::{Light, framing};
+use relievo::skinning::picture::{Part, Scene};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, InstanceLod, Vertex, add_levels};
 

@@ -1,5 +1,6 @@
 // Draws meshes with relief (B section 3.1, tables 4.1 to 4.4) by any method, with self-shadow, silhouettes and
 // the depth of the relief. The method and the options are override constants; everything else is a uniform.
+import package::wgsl::light::lambert;
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
@@ -96,7 +97,7 @@ fn shaded(in: Vertex) -> Shaded {
     }
     let light = vec3<f32>(dot(tangent, view.light.xyz), dot(bitangent, view.light.xyz), dot(normal, view.light.xyz));
     let direct = max(dot(facing, light), 0.0) * sunlit(hit, light, settings);
-    let lit = color * (view.light.w + (1.0 - view.light.w) * direct);
+    let lit = lambert(color, view.light.w, direct);
     let distance = surface_distance(ray, hit, view.scale) * view.world;
     let depth = surface_depth(view.clip_from_world, in.world, towards, distance);
     let is_outside = SILHOUETTE && !surface_inside(hit.uv, view.range.xy, view.range.zw);

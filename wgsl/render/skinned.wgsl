@@ -1,5 +1,6 @@
 // Draws skinned instances of a mesh, textured and lit, each at its own placement. Surfaces are opaque, cut out,
 // or drawn through a screen-door pattern.
+import package::wgsl::light::lambert;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
@@ -79,7 +80,7 @@ fn lit(color: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
         normal = select(-normal, normal, is_front == (view.side > 0.0));
     }
     let direct = max(dot(normal, view.light.xyz), 0.0);
-    return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
+    return vec4<f32>(lambert(color, view.light.w, direct), 1.0);
 }
 
 // Ignores alpha. It is a separate entry point because shaders with a discard are tested for depth late.

@@ -1,4 +1,5 @@
 // A directional light over terrain, in linear light.
+import package::wgsl::light::lambert;
 
 // The sun: one direction for all of the terrain.
 struct Light {
@@ -11,6 +12,5 @@ struct Light {
 // The light that a surface with a linear albedo and a unit normal reflects, linear: Lambert's cosine and the
 // ambient part.
 fn lit(light: Light, normal: vec3<f32>, albedo: vec3<f32>) -> vec3<f32> {
-    let facing = max(0.0, dot(normal, light.direction));
-    return albedo * (light.ambient + (1.0 - light.ambient) * facing);
+    return lambert(albedo, light.ambient, max(0.0, dot(normal, light.direction)));
 }

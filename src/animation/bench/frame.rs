@@ -18,7 +18,7 @@ use crate::baseline::gather::Reads;
 use crate::gpu::{Gpu, Job};
 
 /// A frame computed by the kernels.
-pub struct DeviceFrame {
+pub(crate) struct DeviceFrame {
     cursor: KeyframeCursorJob,
     sample: Job,
     local_to_model: LocalToModelJob,
@@ -26,7 +26,7 @@ pub struct DeviceFrame {
 }
 
 impl DeviceFrame {
-    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
+    pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
         let cursor = KeyframeCursorPass::new(gpu)?.prepare(gpu, &scene.clips, &scene.crowd)?;
         cursor.set(gpu, ELAPSED)?;
         Ok(Self {
@@ -41,30 +41,30 @@ impl DeviceFrame {
         })
     }
 
-    pub fn set(&self, gpu: &Gpu) -> Result<(), Error> {
+    pub(crate) fn set(&self, gpu: &Gpu) -> Result<(), Error> {
         self.cursor.set(gpu, ELAPSED)
     }
 
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.cursor.record(encoder);
         self.sample.record(encoder);
         self.local_to_model.record(encoder);
     }
 
-    pub fn record_copies(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record_copies(&self, encoder: &mut wgpu::CommandEncoder) {
         self.copies.iter().for_each(|copy| copy.record(encoder));
     }
 }
 
 /// A frame computed by the references.
-pub struct ReferenceFrame {
+pub(crate) struct ReferenceFrame {
     cursors: Vec<KeyframeCursor>,
     locals: Vec<Transform>,
     model_matrices: Vec<Affine>,
 }
 
 impl ReferenceFrame {
-    pub fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &Scene) -> Self {
         Self {
             cursors: scene.cursors.clone(),
             locals: vec![Transform::IDENTITY; scene.skeleton.len()],
@@ -72,7 +72,7 @@ impl ReferenceFrame {
         }
     }
 
-    pub fn compute(&mut self, scene: &Scene) {
+    pub(crate) fn compute(&mut self, scene: &Scene) {
         let Self { cursors, locals, model_matrices } = self;
         cursors_into(&scene.set, &scene.instances, ELAPSED, cursors);
         let room = scene.set.timelines_a_clip();
@@ -87,7 +87,7 @@ impl ReferenceFrame {
 }
 
 /// A frame computed by plain structure-of-arrays code.
-pub struct PlainFrame {
+pub(crate) struct PlainFrame {
     plain: PlainSoa,
     cursors: Vec<KeyframeCursor>,
     locals: Vec<[f32; 8]>,
@@ -95,13 +95,13 @@ pub struct PlainFrame {
 }
 
 impl PlainFrame {
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, Error> {
         let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
         let (cursors, locals) = (scene.cursors.clone(), plain.locals());
         Ok(Self { plain, cursors, locals, model_matrices: vec![AFFINE_IDENTITY; scene.pairs()] })
     }
 
-    pub fn compute(&mut self, scene: &Scene) {
+    pub(crate) fn compute(&mut self, scene: &Scene) {
         let Self { plain, cursors, locals, model_matrices } = self;
         cursors_into(&scene.set, &scene.instances, ELAPSED, cursors);
         for (cursor, model_matrices) in

@@ -15,7 +15,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     upload(bench, scene)?;
     dispatch(bench, scene)?;
     readback(bench, scene)

@@ -44,7 +44,7 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    pub fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
+    pub(crate) fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
         let (skeleton, clip, set) = dense_creature()?;
         let instances = crowd(count);
         let cursors = cursors(&set, &instances, ELAPSED);
@@ -53,7 +53,7 @@ impl Scene {
         Ok(Self { skeleton, clip, set, instances, cursors, clips, crowd })
     }
 
-    pub fn pairs(&self) -> usize {
+    pub(crate) fn pairs(&self) -> usize {
         self.crowd.pairs()
     }
 
@@ -67,12 +67,12 @@ impl Scene {
     }
 
     /// A job that moves what sampling reads and writes.
-    pub fn gathered(&self, gpu: &Gpu, reads: Reads) -> Result<Job, Error> {
+    pub(crate) fn gathered(&self, gpu: &Gpu, reads: Reads) -> Result<Job, Error> {
         GatherPass::new(gpu, reads)?.prepare(gpu, &self.clips, &self.crowd)
     }
 
     /// A job that moves the words of concatenation: it reads 10 and writes 12 per bone.
-    pub fn copied(&self, gpu: &Gpu) -> Result<Job, Error> {
+    pub(crate) fn copied(&self, gpu: &Gpu) -> Result<Job, Error> {
         copy_of(gpu, 11 * self.pairs())
     }
 }

@@ -21,7 +21,7 @@ type Lanes = [f32; LANES];
 const NUMBERS: usize = 10;
 
 /// The keys of a clip, and the skeleton's data.
-pub struct PlainSoa {
+pub(crate) struct PlainSoa {
     /// Key by key and number by number, with bones in blocks.
     keys: Vec<Lanes>,
     parents: Vec<Option<u32>>,
@@ -32,7 +32,7 @@ impl PlainSoa {
     ///
     /// # Errors
     /// [`InputError`] for tracks that are not linear, or not all on the clip's first timeline.
-    pub fn new(skeleton: &Skeleton, set: &ClipSet) -> Result<Self, InputError> {
+    pub(crate) fn new(skeleton: &Skeleton, set: &ClipSet) -> Result<Self, InputError> {
         let tracks = &set.tracks()[..3 * set.bones()];
         let common = (Interpolation::Linear as u32) << 30;
         if let Some(index) = tracks.iter().position(|track| track.timeline_and_code != common) {
@@ -62,12 +62,12 @@ impl PlainSoa {
     }
 
     /// Allocates an instance's local transforms.
-    pub fn locals(&self) -> Vec<Lanes> {
+    pub(crate) fn locals(&self) -> Vec<Lanes> {
         vec![[0.0; LANES]; NUMBERS * self.blocks()]
     }
 
     /// Samples an instance's local transforms.
-    pub fn sample(&self, cursor: KeyframeCursor, locals: &mut [Lanes]) {
+    pub(crate) fn sample(&self, cursor: KeyframeCursor, locals: &mut [Lanes]) {
         let blocks = self.blocks();
         let of_key = |key: usize| &self.keys[key * NUMBERS * blocks..][..NUMBERS * blocks];
         let from = of_key(cursor.key as usize);
@@ -90,7 +90,7 @@ impl PlainSoa {
 
     /// Computes an instance's model matrices. Bones depend on their parents, so they are handled one after
     /// another.
-    pub fn local_to_model(&self, locals: &[Lanes], model_matrices: &mut [Affine]) {
+    pub(crate) fn local_to_model(&self, locals: &[Lanes], model_matrices: &mut [Affine]) {
         let blocks = self.blocks();
         for (bone, parent) in self.parents.iter().enumerate() {
             let of = |number: usize| locals[number * blocks + bone / LANES][bone % LANES];

@@ -11,12 +11,12 @@
 //! [`GateTable::of_expectations`]: super::gate_table::GateTable::of_expectations
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{BudgetJob, BudgetPass};

@@ -19,7 +19,7 @@ use crate::harness::{Cases, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = BudgetPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().chain([[5, 1000]]).enumerate() {

@@ -10,12 +10,12 @@ use crate::shared::animation::gate_state;
 pub use crate::shared::animation::gate_state::ClipClock;
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ClipClockJob, ClipClockPass};

@@ -20,7 +20,7 @@ use crate::harness::{Cases, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = ClipClockPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {

@@ -17,7 +17,7 @@ use crate::harness::poison::{POISON, Poisoned};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let sizes = SIZES.into_iter().chain([[33, 63], [31, 129], [5, 1000]]);
     for (case, [bones, count]) in sizes.enumerate() {
         let (skeleton, set, instances) = random_crowd(case as u32, bones, count)?;

@@ -16,7 +16,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for (skipped, omega) in [("nothing", OMEGA_ONE), ("everything", 0)] {
         for count in CROWDS {
             case(bench, &format!("{count} × 153, {skipped} skipped"), omega, count)?;

@@ -31,7 +31,7 @@ use crate::harness::poison::Poisoned;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
     for (case, [bones, count]) in SIZES.into_iter().chain([[5, 400]]).enumerate() {
         let case = case as u32;

@@ -18,7 +18,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for mode in [Gate::Uniform, Gate::Random, Gate::SkipPeriod { period: 65536 }, Gate::Bounded] {
         for count in CROWDS {
             case(bench, mode, count)?;

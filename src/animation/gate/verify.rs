@@ -25,7 +25,7 @@ use crate::harness::{Cases, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let case = case as u32;

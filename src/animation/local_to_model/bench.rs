@@ -19,7 +19,7 @@ use crate::harness::{Backend, Bench, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for count in CROWDS {
         let scene = Scene::new(bench.gpu, count)?;
         alone(bench, &scene)?;

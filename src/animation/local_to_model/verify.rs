@@ -21,7 +21,7 @@ use crate::harness::{Cases, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (skeleton, ..) = random_crowd(case as u32, bones, 1)?;
         add(cases, case as u32, "random", &skeleton, count)?;

@@ -5,12 +5,12 @@
 //! five terms keep the result within [`SLERP_BOUND`] of the true rotation for any two keys.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 pub use crate::shared::animation::rotation::{SLERP_U, SLERP_V};
 #[cfg(feature = "gpu")]

@@ -14,7 +14,7 @@ use crate::asset::skeleton::{Bone, Skeleton};
 use crate::asset::transform::Transform;
 
 /// The crowd, with the time of each instance in the first clip, or `None` if it plays the second.
-pub struct Edges {
+pub(crate) struct Edges {
     /// The clips.
     pub set: ClipSet,
     /// The instances.
@@ -37,7 +37,7 @@ fn turning(last: [f32; 4]) -> Option<Keys> {
 }
 
 /// The time at which the poses are those of [`Edges::poses`], in seconds since the starts of the instances.
-pub const ELAPSED: f32 = 0.25;
+pub(crate) const ELAPSED: f32 = 0.25;
 
 /// A clip of six bones that lasts a second and one that lasts 0 seconds; then both again with the keys of all
 /// rotations negated, which are the same rotations.
@@ -87,7 +87,7 @@ fn clips(skeleton: &Skeleton) -> Result<[Clip; 4], InputError> {
 ///
 /// # Errors
 /// None in practice: the clips are checked like any others.
-pub fn edges() -> Result<Edges, InputError> {
+pub(crate) fn edges() -> Result<Edges, InputError> {
     let bone = |at: u32| Bone { name: format!("bone {at}"), parent: at.checked_sub(1), rest: REST };
     let skeleton = Skeleton::of_joints((0..6).map(bone).collect())?;
     let clips = clips(&skeleton)?;
@@ -119,7 +119,7 @@ pub fn edges() -> Result<Edges, InputError> {
 
 impl Edges {
     /// The cursors of each instance, one per timeline of its clip.
-    pub fn cursors(&self) -> Vec<Vec<KeyframeCursor>> {
+    pub(crate) fn cursors(&self) -> Vec<Vec<KeyframeCursor>> {
         let cursor = |key, fraction| KeyframeCursor { key, fraction };
         let of = |time: &Option<f32>| match *time {
             // The timelines: the quarters, which are all tracks' times together; repeated, whole, and late
@@ -137,7 +137,7 @@ impl Edges {
     }
 
     /// The bones of each instance.
-    pub fn poses(&self) -> Vec<Transform> {
+    pub(crate) fn poses(&self) -> Vec<Transform> {
         let at = |x: f32| Transform { translation: [x, 0.0, 0.0], ..REST };
         let turned =
             |angle: f32| Transform { rotation: [0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()], ..REST };

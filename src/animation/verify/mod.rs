@@ -1,6 +1,6 @@
 //! What the parity cases of `kernels/animation/` share.
 
-pub mod edges;
+pub(crate) mod edges;
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
@@ -154,7 +154,7 @@ pub fn random_crowd(
 }
 
 /// Numbers of bones and instances around every workgroup boundary.
-pub const SIZES: [[usize; 2]; 16] = [
+pub(crate) const SIZES: [[usize; 2]; 16] = [
     [1, 1],
     [1, 64],
     [1, 65],

@@ -11,7 +11,7 @@ use crate::harness::{Backend, Bench, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = CopyPass::new(gpu)?;
     for mebibytes in [1, 16, 64, 128] {

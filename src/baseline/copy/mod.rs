@@ -1,10 +1,10 @@
 //! A copy of bytes (`kernels/baseline/copy.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
-pub mod reference;
+pub(crate) mod bench;
+pub(crate) mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use crate::gpu::bindings::baseline::copy as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
@@ -13,7 +13,7 @@ use crate::{Error, InputError};
 
 /// Copies one buffer to another.
 #[derive(Debug, Clone)]
-pub struct CopyPass {
+pub(crate) struct CopyPass {
     kernel: Kernel,
 }
 
@@ -22,7 +22,7 @@ impl CopyPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
@@ -30,7 +30,7 @@ impl CopyPass {
     ///
     /// # Errors
     /// [`InputError`] for a length that is not a multiple of four; [`GpuError`].
-    pub fn prepare(
+    pub(crate) fn prepare(
         &self,
         gpu: &Gpu,
         words: usize,

@@ -13,7 +13,7 @@ use crate::harness::poison::Poisoned;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = CopyPass::new(gpu)?;
     for len in [4, 8, 252, 256, 260, 65_536, 1_000_004] {

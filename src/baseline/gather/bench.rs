@@ -15,7 +15,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 1000)?;
     let pairs = scene.pairs();

@@ -1,10 +1,10 @@
 //! The memory traffic of sampling without its arithmetic (`kernels/baseline/gather.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
-pub mod reference;
+pub(crate) mod bench;
+pub(crate) mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::gpu::bindings::baseline::gather as bindings;
@@ -14,7 +14,7 @@ use crate::{Error, InputError};
 
 /// The data that the kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reads {
+pub(crate) enum Reads {
     /// Everything that sampling reads: 20 words of keys per bone, and the 9 words that locate them (the
     /// instance's clip, three tracks, a cursor).
     Everything,
@@ -25,7 +25,7 @@ pub enum Reads {
 /// Moves the bytes of sampling: for each bone of each instance it reads the two keys of three tracks around the
 /// instance's cursor, where instances share the tracks of a clip, and writes a local transform (12 words).
 #[derive(Debug, Clone)]
-pub struct GatherPass {
+pub(crate) struct GatherPass {
     kernel: Kernel,
     reads: Reads,
 }
@@ -35,7 +35,7 @@ impl GatherPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
         let constants = bindings::Constants { tables: reads == Reads::Everything };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, reads })
     }
@@ -46,7 +46,7 @@ impl GatherPass {
     /// # Errors
     /// [`InputError`] for a set with a clip that has more than one timeline, and for fewer values than
     /// [`Reads::Keys`] needs; [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
+    pub(crate) fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         if clips.timelines_a_clip != 1 {
             let bound = "must be 1: a place an instance";
             return Err(InputError::new("clips.timelines_a_clip", clips.timelines_a_clip, bound).into());

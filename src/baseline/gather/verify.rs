@@ -19,7 +19,7 @@ use crate::harness::poison::Poisoned;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, ([bones, count], keys)) in SIZES.into_iter().zip([2, 3, 60].into_iter().cycle()).enumerate() {
         let mut draw = Draw::new(case as u32);
@@ -54,7 +54,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 ///
 /// # Errors
 /// None in practice: the clips are valid.
-pub fn evenly_keyed(draw: &mut Draw, bones: usize, keys: u32) -> Result<ClipSet, Error> {
+pub(crate) fn evenly_keyed(draw: &mut Draw, bones: usize, keys: u32) -> Result<ClipSet, Error> {
     let skeleton = random_skeleton(0, bones)?;
     let mut track = || {
         let values = (0..keys).map(|_| draw.rotation()).collect();

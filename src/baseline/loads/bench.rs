@@ -15,7 +15,7 @@ use crate::surface::verify::{Shape, random_map};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let map = random_map(1, [1024, 1024], Shape::Noise)?;
     let textures = SurfaceTextures::new(gpu, &map, Method::Plain, Address::Wrap)?;

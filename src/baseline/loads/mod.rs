@@ -1,10 +1,10 @@
 //! Texel loads (`kernels/baseline/loads.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
-pub mod reference;
+pub(crate) mod bench;
+pub(crate) mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use glam::UVec2;
 
@@ -15,7 +15,7 @@ use crate::{Error, InputError};
 
 /// Loads texels along rows and adds them up.
 #[derive(Debug, Clone)]
-pub struct LoadsPass {
+pub(crate) struct LoadsPass {
     kernel: Kernel,
 }
 
@@ -24,7 +24,7 @@ impl LoadsPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
@@ -32,7 +32,7 @@ impl LoadsPass {
     ///
     /// # Errors
     /// [`InputError`] for a buffer with too few sums; [`GpuError`].
-    pub fn prepare(
+    pub(crate) fn prepare(
         &self,
         gpu: &Gpu,
         texture: &wgpu::Texture,

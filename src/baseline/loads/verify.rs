@@ -15,7 +15,7 @@ use crate::surface::verify::{Shape, random_map};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = LoadsPass::new(gpu)?;
     for (case, (size, threads, count)) in

@@ -11,7 +11,7 @@ use crate::harness::{Backend, Bench, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let size = [1024_u32, 4096];
     let count = (size[0] * size[1]) as usize;

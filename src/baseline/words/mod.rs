@@ -1,10 +1,10 @@
 //! Random words, drawn and stored (`kernels/baseline/words.wgsl`).
 
 #[cfg(feature = "verify")]
-pub mod bench;
-pub mod reference;
+pub(crate) mod bench;
+pub(crate) mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use glam::UVec2;
 
@@ -15,7 +15,7 @@ use crate::{Error, InputError};
 
 /// Draws the random words of counters (x, y), row by row.
 #[derive(Debug, Clone)]
-pub struct WordsPass {
+pub(crate) struct WordsPass {
     kernel: Kernel,
 }
 
@@ -24,7 +24,7 @@ impl WordsPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
@@ -32,7 +32,7 @@ impl WordsPass {
     ///
     /// # Errors
     /// [`InputError`] for sizes that do not fit; [`GpuError`].
-    pub fn prepare(
+    pub(crate) fn prepare(
         &self,
         gpu: &Gpu,
         key: [u32; 2],

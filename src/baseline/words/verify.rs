@@ -11,7 +11,7 @@ use crate::harness::poison::Poisoned;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = WordsPass::new(gpu)?;
     let keys = [[0, 0], [u32::MAX; 2], [0x1319_8a2e, 0x0370_7344]];

@@ -10,7 +10,7 @@ use super::turned::normal;
 /// For each vertex, the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
 /// the attribute, k its accumulated constant difference, and d and s are the differences in position and
 /// attribute from the vertex.
-pub struct Attributes<'a> {
+pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
     /// The part without s, and the sums of weights.
@@ -21,7 +21,7 @@ pub struct Attributes<'a> {
 
 impl<'a> Attributes<'a> {
     /// Sums over the first `triangles` triangles; `place` gives the position of each point.
-    pub fn new(
+    pub(crate) fn new(
         topology: &Topology,
         triangles: u32,
         place: impl Fn(u32) -> DVec3,
@@ -64,12 +64,12 @@ impl<'a> Attributes<'a> {
         vertices.iter().for_each(|vertex| self.quadrics[*vertex as usize].add(&quadric));
     }
 
-    pub fn weight(&self, vertex: u32) -> f64 {
+    pub(crate) fn weight(&self, vertex: u32) -> f64 {
         self.quadrics[vertex as usize].weight
     }
 
     /// The cost of replacing `vertex` by `target`, which is `d` away.
-    pub fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
+    pub(crate) fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
         let quadric = &self.quadrics[vertex as usize];
         let mut cost = quadric.at(d);
         for attribute in 0..self.stride {
@@ -81,7 +81,7 @@ impl<'a> Attributes<'a> {
     }
 
     /// Replaces `vertex` by `target`, which is `d` away.
-    pub fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
+    pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
         let cost = self.cost(vertex, target, d);
         let [from, to] = [vertex, target].map(|vertex| vertex as usize * self.stride);
         let weight = self.weight(vertex);

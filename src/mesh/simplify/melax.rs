@@ -8,7 +8,12 @@ use super::turned::normal;
 
 /// The square of the cost, so that costs are ordered and rooted as those of quadrics are; the largest over the
 /// poses. `None` if it is not below `most`.
-pub fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
+pub(crate) fn cost(
+    topology: &Topology,
+    points: &Points,
+    [point, neighbor]: [u32; 2],
+    most: f64,
+) -> Option<f64> {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
         let unit = |ring: &RingTriangle| unit_normal(topology, points, ring.triangle, pose);
@@ -32,7 +37,7 @@ pub fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], m
 
 /// Whether the normals of two points, each the sum of the normals of its triangles, are more than 90° apart in
 /// the first pose.
-pub fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
+pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     let sum = |point| -> DVec3 {
         topology.one_ring(point).map(|ring| unit_normal(topology, points, ring.triangle, 0)).sum()
     };

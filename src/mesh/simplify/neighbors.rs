@@ -4,7 +4,7 @@ use super::topology::{Kind, Marks, Topology};
 
 /// The vertices that may replace a wedge: none, one or two.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Remap {
+pub(crate) struct Remap {
     vertices: [u32; 2],
     count: usize,
 }
@@ -32,7 +32,7 @@ impl IntoIterator for Remap {
 
 /// A neighbour of a point, with the triangles at the edge between them.
 #[derive(Debug, Clone, Copy)]
-pub struct Neighbor {
+pub(crate) struct Neighbor {
     pub point: u32,
     /// Number of these triangles, and the wedges of the first two of them.
     triangles: u32,
@@ -54,7 +54,7 @@ struct Meet {
 
 /// A vertex of a point that belongs to a triangle.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Wedge {
+pub(crate) struct Wedge {
     pub vertex: u32,
     /// Number of its sheet: wedges that are split at this point only, and adjacent, are in one sheet.
     sheet: u32,
@@ -62,7 +62,7 @@ pub struct Wedge {
 
 /// The neighbours and wedges of a point.
 #[derive(Default)]
-pub struct Neighbors {
+pub(crate) struct Neighbors {
     all: Vec<Neighbor>,
     wedges: Vec<Wedge>,
     sheets: usize,
@@ -70,7 +70,7 @@ pub struct Neighbors {
 
 impl Neighbors {
     /// Collects the neighbours and wedges of a point that is not locked.
-    pub fn look(&mut self, topology: &Topology, point: u32, marks: &mut [Marks; 2]) {
+    pub(crate) fn look(&mut self, topology: &Topology, point: u32, marks: &mut [Marks; 2]) {
         self.all.clear();
         self.wedges.clear();
         let [points, vertices] = marks;
@@ -146,17 +146,17 @@ impl Neighbors {
         });
     }
 
-    pub fn all(&self) -> &[Neighbor] {
+    pub(crate) fn all(&self) -> &[Neighbor] {
         &self.all
     }
 
-    pub fn wedges(&self) -> &[Wedge] {
+    pub(crate) fn wedges(&self) -> &[Wedge] {
         &self.wedges
     }
 
     /// The vertices that may replace a wedge: those with which it shares an edge, or else those with which the
     /// other wedges of its sheet do.
-    pub fn remap(&self, neighbor: &Neighbor, wedge: &Wedge) -> Remap {
+    pub(crate) fn remap(&self, neighbor: &Neighbor, wedge: &Wedge) -> Remap {
         let mut remap = Remap::default();
         let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);
         own.for_each(|meet| remap.add(meet.other));

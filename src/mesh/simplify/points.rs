@@ -5,11 +5,8 @@ use std::collections::hash_map::Entry;
 
 use glam::DVec3;
 
-/// No vertex: the end of a chain.
-const NONE: u32 = u32::MAX;
-
 /// Vertices grouped by their positions in all poses. Points are numbered in the order of their first vertices.
-pub struct Points {
+pub(crate) struct Points {
     of: Vec<u32>,
     starts: Vec<u32>,
     wedges: Vec<u32>,
@@ -19,7 +16,7 @@ pub struct Points {
 }
 
 impl Points {
-    pub fn new(poses: &[Vec<[f32; 3]>]) -> Self {
+    pub(crate) fn new(poses: &[Vec<[f32; 3]>]) -> Self {
         let of = weld(poses);
         let count = of.iter().max().map_or(0, |last| *last as usize + 1);
         let mut starts = vec![0_u32; count + 1];
@@ -39,30 +36,30 @@ impl Points {
     }
 
     /// Number of points.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
-    pub fn poses(&self) -> usize {
+    pub(crate) fn poses(&self) -> usize {
         self.poses
     }
 
     /// The point of a vertex.
-    pub fn of(&self, vertex: u32) -> u32 {
+    pub(crate) fn of(&self, vertex: u32) -> u32 {
         self.of[vertex as usize]
     }
 
     /// The vertices of a point, in ascending order.
-    pub fn wedges(&self, point: u32) -> &[u32] {
+    pub(crate) fn wedges(&self, point: u32) -> &[u32] {
         &self.wedges[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
     }
 
-    pub fn place(&self, point: u32, pose: usize) -> DVec3 {
+    pub(crate) fn place(&self, point: u32, pose: usize) -> DVec3 {
         glam::Vec3::from(self.places[point as usize * self.poses + pose]).as_dvec3()
     }
 
     /// The point of each vertex.
-    pub fn into_of(self) -> Vec<u32> {
+    pub(crate) fn into_of(self) -> Vec<u32> {
         self.of
     }
 }
@@ -76,7 +73,7 @@ fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     // Maps a position in the first pose to its first vertex. From each such vertex a chain leads to the next
     // one that differs in another pose.
     let mut firsts: HashMap<[u32; 3], u32> = HashMap::with_capacity(vertices);
-    let mut others = vec![NONE; vertices];
+    let mut others = vec![None; vertices];
     let mut of = Vec::with_capacity(vertices);
     let mut count = 0;
     for vertex in 0..vertices {
@@ -85,10 +82,7 @@ fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
             Entry::Vacant(first) => *first.insert(vertex as u32) as usize,
         };
         while at != vertex && !same(at, vertex) {
-            if others[at] == NONE {
-                others[at] = vertex as u32;
-            }
-            at = others[at] as usize;
+            at = *others[at].get_or_insert(vertex as u32) as usize;
         }
         of.push(if at == vertex { count } else { of[at] });
         count += u32::from(at == vertex);

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// squares: a rounding error of 2⁻⁵² is 10⁻⁸ of an edge, where f32 would leave 2 · 10⁻⁴ and would find a cost
 /// on flat ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Quadric {
+pub(crate) struct Quadric {
     /// The upper triangle of A: xx, xy, xz, yy, yz, zz.
     a: [f64; 6],
     b: DVec3,
@@ -21,13 +21,13 @@ pub struct Quadric {
 impl Quadric {
     /// The quadric `weight × (gradient · d)²`: the squared distance from a plane through the origin if
     /// `gradient` is a unit vector.
-    pub fn linear(gradient: DVec3, weight: f64) -> Self {
+    pub(crate) fn linear(gradient: DVec3, weight: f64) -> Self {
         let DVec3 { x, y, z } = gradient;
         let a = [x * x, x * y, x * z, y * y, y * z, z * z].map(|product| product * weight);
         Self { a, b: DVec3::ZERO, c: 0.0, weight }
     }
 
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         for (sum, value) in self.a.iter_mut().zip(other.a) {
             *sum += value;
         }
@@ -37,7 +37,7 @@ impl Quadric {
     }
 
     /// As [`Self::add`], but leaves the weight as it is.
-    pub fn add_unweighted(&mut self, other: &Self) {
+    pub(crate) fn add_unweighted(&mut self, other: &Self) {
         let weight = self.weight;
         self.add(other);
         self.weight = weight;
@@ -55,18 +55,18 @@ impl Quadric {
     }
 
     /// The value at the offset d, clamped to 0 from below.
-    pub fn at(&self, d: DVec3) -> f64 {
+    pub(crate) fn at(&self, d: DVec3) -> f64 {
         ((self.slope(d) + self.b).dot(d) + self.c).max(0.0)
     }
 
     /// The same quadric about another origin, at the offset d.
-    pub fn moved(&self, d: DVec3) -> Self {
+    pub(crate) fn moved(&self, d: DVec3) -> Self {
         Self { a: self.a, b: self.slope(d), c: self.at(d), weight: self.weight }
     }
 
     /// As [`Self::moved`], for functions that also change by a constant at the new origin: `gradients`, the sum
     /// of these constants times the gradients, is subtracted from b, and `c` replaces c.
-    pub fn moved_by(&self, d: DVec3, gradients: DVec3, c: f64) -> Self {
+    pub(crate) fn moved_by(&self, d: DVec3, gradients: DVec3, c: f64) -> Self {
         Self { a: self.a, b: self.slope(d) - gradients, c, weight: self.weight }
     }
 }

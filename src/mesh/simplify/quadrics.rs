@@ -9,14 +9,14 @@ use super::topology::{Corner, Topology};
 use super::turned::normal;
 
 /// The quadrics of a mesh.
-pub struct Quadrics<'a> {
+pub(crate) struct Quadrics<'a> {
     /// Quadrics of positions, point by point, each in all poses.
     shape: Vec<Quadric>,
     attributes: Option<Attributes<'a>>,
 }
 
 impl<'a> Quadrics<'a> {
-    pub fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
+    pub(crate) fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
         let mut shape = vec![Quadric::default(); points.len() * points.poses()];
         let triangles = (surface.indices.len() / 3) as u32;
         for triangle in 0..triangles {
@@ -29,13 +29,13 @@ impl<'a> Quadrics<'a> {
         Self { shape, attributes }
     }
 
-    pub fn has_attributes(&self) -> bool {
+    pub(crate) fn has_attributes(&self) -> bool {
         self.attributes.is_some()
     }
 
     /// The mean squared distance of a point's planes from its neighbour, in the worst pose. `None` if it is not
     /// below `most`.
-    pub fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
+    pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
             let quadric = &self.shape[point as usize * points.poses() + pose];
@@ -52,7 +52,7 @@ impl<'a> Quadrics<'a> {
 
     /// The mean squared difference in attributes if a point collapses and each of its wedges is replaced by the
     /// cheapest vertex allowed.
-    pub fn attribute_cost(
+    pub(crate) fn attribute_cost(
         &self,
         points: &Points,
         neighbors: &Neighbors,
@@ -70,7 +70,7 @@ impl<'a> Quadrics<'a> {
     }
 
     /// The cheapest replacement of a wedge, and its cost in attributes.
-    pub fn target(
+    pub(crate) fn target(
         &self,
         points: &Points,
         neighbors: &Neighbors,
@@ -85,7 +85,7 @@ impl<'a> Quadrics<'a> {
     }
 
     /// Merges a point into its neighbour, and its wedges into the vertices that `moved` names.
-    pub fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
+    pub(crate) fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for pose in 0..points.poses() {
             let d = points.place(neighbor, pose) - points.place(point, pose);
             let [from, to] = [point, neighbor].map(|point| point as usize * points.poses() + pose);

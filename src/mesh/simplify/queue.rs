@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 /// The best collapse of a point: the neighbour, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Best {
+pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
     pub cost: f64,
@@ -18,7 +18,7 @@ type Entry = Reverse<(u64, u32, u32)>;
 
 /// The best collapse of each point, cheapest first. Stale entries are dropped when they reach the top, or when
 /// they are in the majority.
-pub struct Queue {
+pub(crate) struct Queue {
     heap: BinaryHeap<Entry>,
     best: Vec<Option<Best>>,
     changes: Vec<u32>,
@@ -27,18 +27,18 @@ pub struct Queue {
 }
 
 impl Queue {
-    pub fn new(best: Vec<Option<Best>>) -> Self {
+    pub(crate) fn new(best: Vec<Option<Best>>) -> Self {
         let entries = (0_u32..).zip(&best).filter_map(|(point, best)| Some(entry(point, best.as_ref()?, 0)));
         let heap: BinaryHeap<_> = entries.collect();
         Self { waiting: heap.len(), heap, changes: vec![0; best.len()], best }
     }
 
-    pub fn best(&self, point: u32) -> Option<&Best> {
+    pub(crate) fn best(&self, point: u32) -> Option<&Best> {
         self.best[point as usize].as_ref()
     }
 
     /// Replaces the best collapse of a point.
-    pub fn set(&mut self, point: u32, best: Option<Best>) {
+    pub(crate) fn set(&mut self, point: u32, best: Option<Best>) {
         let before = &mut self.best[point as usize];
         self.waiting = self.waiting + usize::from(best.is_some()) - usize::from(before.is_some());
         *before = best;
@@ -55,7 +55,7 @@ impl Queue {
 
     /// The cheapest collapse; of equal ones, that of the lower point. The point keeps it as its best, and the
     /// caller must set it again.
-    pub fn pop(&mut self) -> Option<(u32, Best)> {
+    pub(crate) fn pop(&mut self) -> Option<(u32, Best)> {
         while let Some(entry) = self.heap.pop() {
             let Reverse((_, point, _)) = entry;
             if holds(&entry, &self.best, &self.changes)

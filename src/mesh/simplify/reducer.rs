@@ -27,7 +27,7 @@ struct Reducer<'a> {
 }
 
 /// Collapses until a limit of `options` is reached, within one distance after the other.
-pub fn reduce(
+pub(crate) fn reduce(
     surface: &Surface<'_>,
     points: Points,
     topology: Topology,

@@ -3,19 +3,19 @@
 use super::points::Points;
 
 /// A sparse map from indices to numbers that can be cleared in constant time.
-pub struct Marks {
+pub(crate) struct Marks {
     current: u32,
     stamps: Vec<u32>,
     values: Vec<u32>,
 }
 
 impl Marks {
-    pub fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self { current: 0, stamps: vec![0; count], values: vec![0; count] }
     }
 
     /// Removes all entries.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         if self.current == u32::MAX {
             self.stamps.fill(0);
             self.current = 0;
@@ -23,17 +23,17 @@ impl Marks {
         self.current += 1;
     }
 
-    pub fn get(&self, at: u32) -> Option<u32> {
+    pub(crate) fn get(&self, at: u32) -> Option<u32> {
         (self.stamps[at as usize] == self.current).then(|| self.values[at as usize])
     }
 
-    pub fn set(&mut self, at: u32, value: u32) {
+    pub(crate) fn set(&mut self, at: u32, value: u32) {
         self.stamps[at as usize] = self.current;
         self.values[at as usize] = value;
     }
 
     /// Marks an index. Returns whether it had no mark.
-    pub fn insert(&mut self, at: u32) -> bool {
+    pub(crate) fn insert(&mut self, at: u32) -> bool {
         let is_new = self.get(at).is_none();
         self.set(at, 0);
         is_new
@@ -42,14 +42,14 @@ impl Marks {
 
 /// A corner of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Corner {
+pub(crate) struct Corner {
     pub vertex: u32,
     pub point: u32,
 }
 
 /// A triangle seen from one of its points: the vertex there, and the other two corners in the triangle's order.
 #[derive(Debug, Clone, Copy)]
-pub struct RingTriangle {
+pub(crate) struct RingTriangle {
     pub triangle: u32,
     pub vertex: u32,
     pub next: Corner,
@@ -58,7 +58,7 @@ pub struct RingTriangle {
 
 /// The kind of a point's neighbourhood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// Triangles surround the point.
     Interior,
     /// Triangles form a fan from one border edge to another.
@@ -68,7 +68,7 @@ pub enum Kind {
 }
 
 /// The triangles that have three different points. All others count as removed.
-pub struct Topology {
+pub(crate) struct Topology {
     corners: Vec<[Corner; 3]>,
     around: Vec<Vec<u32>>,
     kinds: Vec<Kind>,
@@ -76,7 +76,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    pub fn new(points: &Points, indices: &[u32]) -> Self {
+    pub(crate) fn new(points: &Points, indices: &[u32]) -> Self {
         let corners: Vec<[Corner; 3]> = (indices.chunks_exact(3))
             .map(|triangle| [triangle[0], triangle[1], triangle[2]])
             .map(|triangle| triangle.map(|vertex| Corner { vertex, point: points.of(vertex) }))
@@ -133,24 +133,24 @@ impl Topology {
     }
 
     /// Number of remaining triangles.
-    pub fn triangles(&self) -> usize {
+    pub(crate) fn triangles(&self) -> usize {
         self.triangles
     }
 
-    pub fn kind(&self, point: u32) -> Kind {
+    pub(crate) fn kind(&self, point: u32) -> Kind {
         self.kinds[point as usize]
     }
 
-    pub fn corners(&self, triangle: u32) -> &[Corner; 3] {
+    pub(crate) fn corners(&self, triangle: u32) -> &[Corner; 3] {
         &self.corners[triangle as usize]
     }
 
     /// The triangles of a point.
-    pub fn around(&self, point: u32) -> &[u32] {
+    pub(crate) fn around(&self, point: u32) -> &[u32] {
         &self.around[point as usize]
     }
 
-    pub fn one_ring(&self, point: u32) -> impl Iterator<Item = RingTriangle> + '_ {
+    pub(crate) fn one_ring(&self, point: u32) -> impl Iterator<Item = RingTriangle> + '_ {
         self.around(point).iter().map(move |&triangle| {
             let [a, b, c] = self.corners[triangle as usize];
             let [own, next, last] = match point {
@@ -165,9 +165,9 @@ impl Topology {
     /// Whether a collapse keeps the topology (the link condition): every common neighbour of the two points
     /// lies across a triangle that both share, and no two of these common neighbours share a triangle with each
     /// of the two points.
-    pub fn keeps_topology(&self, point: u32, neighbor: u32, marks: &mut Marks) -> bool {
+    pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32, marks: &mut Marks) -> bool {
         marks.clear();
-        let mut across = [u32::MAX; 2];
+        let mut across = [None; 2];
         let mut shared = 0;
         for ring in self.one_ring(neighbor) {
             marks.insert(ring.next.point);
@@ -175,15 +175,16 @@ impl Topology {
             let has_point = [ring.next.point, ring.last.point].iter().position(|other| *other == point);
             if let Some(at) = has_point {
                 let other = [ring.last.point, ring.next.point][at];
-                if shared == 2 || across[..shared].contains(&other) {
+                if shared == 2 || across.contains(&Some(other)) {
                     return false;
                 }
-                across[shared] = other;
+                across[shared] = Some(other);
                 shared += 1;
             }
         }
-        let both_across =
-            |ring: RingTriangle| across.contains(&ring.next.point) && across.contains(&ring.last.point);
+        let both_across = |ring: RingTriangle| {
+            [ring.next, ring.last].iter().all(|corner| across.contains(&Some(corner.point)))
+        };
         if shared == 1 && self.around(point).len() == 1 && self.around(neighbor).len() == 1
             || shared == 2
                 && self.one_ring(point).any(both_across)
@@ -205,7 +206,7 @@ impl Topology {
     }
 
     /// Merges a point into its neighbour; `moved` has the replacement of each of its vertices.
-    pub fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
+    pub(crate) fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for triangle in std::mem::take(&mut self.around[point as usize]) {
             let corners = &mut self.corners[triangle as usize];
             if corners.iter().any(|corner| corner.point == neighbor) {

@@ -8,7 +8,7 @@ use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
 /// Samples of the mesh, each assigned to a remaining triangle that is within the limit of it in every pose.
-pub struct TrackedSamples {
+pub(crate) struct TrackedSamples {
     /// For each triangle, the samples assigned to it: numbers of removed points, and beyond those, numbers of
     /// midpoints.
     collapsed: Vec<Vec<u32>>,
@@ -37,7 +37,7 @@ struct Middles {
 }
 
 impl TrackedSamples {
-    pub fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
+    pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
         let mut collapsed = vec![Vec::new(); triangles];
         let mut middles = Middles { places: Vec::new(), triangles: Vec::new() };
         for point in 0..points.len() as u32 {
@@ -59,14 +59,20 @@ impl TrackedSamples {
     }
 
     /// Sets the largest distance that is allowed from now on.
-    pub fn set_most(&mut self, distance: f32) {
+    pub(crate) fn set_most(&mut self, distance: f32) {
         self.most = distance * distance;
     }
 
     /// Tests the collapse of a point into its neighbour. It passes if the point and all samples on the
     /// triangles that change find a triangle within the limit among those that the two points have afterwards,
     /// and if the midpoints of the changed triangles and of their edges lie within the limit of the mesh.
-    pub fn keeps_near(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
+    pub(crate) fn keeps_near(
+        &mut self,
+        topology: &Topology,
+        points: &Points,
+        point: u32,
+        neighbor: u32,
+    ) -> bool {
         self.looked_at = None;
         self.triangles.clear();
         self.found.clear();
@@ -136,7 +142,7 @@ impl TrackedSamples {
     }
 
     /// Records a collapse that keeps within the limit. Call it before the collapse happens.
-    pub fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
+    pub(crate) fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         // Other collapses may have been tested in between.
         if self.looked_at.take() != Some([point, neighbor]) {
             self.keeps_near(topology, points, point, neighbor);

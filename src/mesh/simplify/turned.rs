@@ -11,11 +11,11 @@ const NO_AREA: f64 = 1e-12;
 
 /// A triangle without area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Flat;
+pub(crate) struct Flat;
 
 /// The normal of a triangle: its length is twice the area, and the corners are counter-clockwise seen from the
 /// side to which it points.
-pub fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
+pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     let (first, second) = (b - a, c - a);
     let normal = first.cross(second);
     let least = NO_AREA * first.length_squared() * second.length_squared();
@@ -24,7 +24,7 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
 
 /// Whether a collapse turns a triangle of the point by 90° or more, or takes its area away, in any pose.
 /// Triangles that have no area before may turn.
-pub fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
+pub(crate) fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
     let stays = |pose: usize, [from, to]: [DVec3; 2], others: [u32; 2]| {
         let [next, last] = others.map(|other| points.place(other, pose));
         match (normal([from, next, last]), normal([to, next, last])) {

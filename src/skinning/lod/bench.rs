@@ -15,7 +15,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = LodPass::new(gpu)?;
     let look: Mat4 = camera::rh::view::look_at_mat4(Vec3::Y, Vec3::new(0.0, 1.0, 1.0), Vec3::Y);

@@ -14,12 +14,12 @@ use crate::asset::transform::Affine;
 use crate::skinning::instance_lod::InstanceLod;
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{LodJob, LodPass};

@@ -45,7 +45,7 @@ const MIRROR: &str = "aside, mirrored";
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = LodPass::new(gpu)?;
     for (case, count) in (0..).zip([1, 63, 64, 65, 1000]) {

@@ -21,7 +21,7 @@ use crate::skinning::vertex::{Blend, Vertex};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = MorphPass::new(cases.gpu)?;
     for (case, shape) in (0..).zip(SHAPES).filter(|(_, shape)| shape.targets > 0) {
         for instances in [1, 5] {

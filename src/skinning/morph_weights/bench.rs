@@ -23,7 +23,7 @@ const KEYS: usize = 30;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = MorphWeightsPass::new(gpu)?;
     let times: Vec<f32> = (0..KEYS).map(|key| key as f32 / 30.0).collect();

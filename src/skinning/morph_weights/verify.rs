@@ -37,7 +37,7 @@ const ELAPSED: [f32; 3] = [0.0, 2.71, -1.3];
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = MorphWeightsPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES).filter(|(_, shape)| shape.targets > 0) {

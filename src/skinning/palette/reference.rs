@@ -1,5 +1,7 @@
 //! Palettes: the CPU reference of `kernels/skinning/palette.wgsl`.
 
+use glam::Vec3;
+
 use crate::animation::local_to_model::reference::product;
 use crate::asset::skeleton::Skin;
 use crate::asset::transform::Affine;
@@ -27,41 +29,39 @@ pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Pale
 
 /// Decomposes a matrix into a stretch and a rigid motion after it.
 pub fn dual(matrix: &Affine) -> DualBone {
-    let column = |at: usize| [matrix[0][at], matrix[1][at], matrix[2][at]];
+    let column = |at: usize| Vec3::new(matrix[0][at], matrix[1][at], matrix[2][at]);
     let [a, b, c] = [0, 1, 2].map(column);
     // A column without direction is replaced by one that leaves the others unchanged.
-    let x = unit_or(a, [1.0, 0.0, 0.0]);
-    let along = dot(x, b);
-    let rest = [b[0] - along * x[0], b[1] - along * x[1], b[2] - along * x[2]];
-    let y = unit_or(rest, upright(x));
-    let z = cross(x, y);
-    let real = quaternion(x, y, z);
-    let translation = column(3);
+    let x = unit_or(a, Vec3::X);
+    let along = x.dot(b);
+    let y = unit_or(b - along * x, upright(x));
+    let z = x.cross(y);
+    let real = quaternion(x.to_array(), y.to_array(), z.to_array());
     DualBone {
         real,
-        dual: half_product(translation, real),
-        diagonal: [dot(x, a), dot(y, b), dot(z, c), 0.0],
-        above: [along, dot(x, c), dot(y, c), 0.0],
+        dual: half_product(column(3).to_array(), real),
+        diagonal: [x.dot(a), y.dot(b), z.dot(c), 0.0],
+        above: [along, x.dot(c), y.dot(c), 0.0],
     }
 }
 
 /// The vector scaled to length 1, or `other` if it has no direction.
-pub fn unit_or(vector: [f32; 3], other: [f32; 3]) -> [f32; 3] {
-    let size = vector[0].abs().max(vector[1].abs()).max(vector[2].abs());
+pub(crate) fn unit_or(vector: Vec3, other: Vec3) -> Vec3 {
+    let size = vector.abs().max_element();
     // Devices may flush values smaller than this to zero.
     if size < 1e-30 {
         return other;
     }
-    let scaled = vector.map(|component| component / size);
-    let inverse = 1.0 / dot(scaled, scaled).sqrt();
-    scaled.map(|component| component * inverse)
+    let scaled = vector / size;
+    (1.0 / scaled.length_squared().sqrt()) * scaled
 }
 
 /// A unit vector at a right angle to a unit vector (Duff et al. 2017).
-fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
+fn upright(unit: Vec3) -> Vec3 {
+    let [x, y, z] = unit.to_array();
     let side = if z < 0.0 { -1.0 } else { 1.0 };
     let a = -1.0 / (side + z);
-    [1.0 + side * x * x * a, side * x * y * a, -side * x]
+    Vec3::new(1.0 + side * x * x * a, side * x * y * a, -side * x)
 }
 
 /// The unit quaternion, of either sign, of a rotation given by its columns. Its largest component is at least ½
@@ -96,12 +96,4 @@ fn half_product([x, y, z]: [f32; 3], q: [f32; 4]) -> [f32; 4] {
         0.5 * (z * q[3] + x * q[1] - y * q[0]),
         -0.5 * (x * q[0] + y * q[1] + z * q[2]),
     ]
-}
-
-pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

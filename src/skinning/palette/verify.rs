@@ -18,7 +18,7 @@ use crate::skinning::vertex::Blend;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = PalettePass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {

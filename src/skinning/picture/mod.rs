@@ -1,44 +1,13 @@
-//! Lighting and framing of pictures of skinned meshes.
+//! A picture of skinned meshes without a GPU, and how it is framed.
 
-pub mod reference;
+mod scene;
 pub mod texture;
+
+pub use scene::{Part, Scene};
 
 use glam::{DVec3, Mat4, Vec2, Vec3, camera};
 
-use crate::InputError;
 use crate::skinning::vertex::Vertex;
-
-/// A directional light, in linear light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Light {
-    /// The direction towards the light, of any length but 0.
-    pub direction: Vec3,
-    /// Light that surfaces facing away still receive, 0 to 1.
-    pub ambient: f32,
-}
-
-impl Default for Light {
-    fn default() -> Self {
-        Self { direction: Vec3::new(-0.4, 0.8, 0.6), ambient: 0.12 }
-    }
-}
-
-impl Light {
-    /// Checks the ranges.
-    ///
-    /// # Errors
-    /// [`InputError`] that names the field.
-    pub fn validate(&self) -> Result<(), InputError> {
-        if self.direction.try_normalize().is_none() {
-            let value = self.direction.to_string();
-            return Err(InputError::new("light.direction", value, "must be finite and not 0"));
-        }
-        if !(0.0..=1.0).contains(&self.ambient) {
-            return Err(InputError::new("light.ambient", self.ambient, "must be in 0..=1"));
-        }
-        Ok(())
-    }
-}
 
 /// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space,
 /// seen from outside, then run clockwise on the screen. For a parallel view, whose depth must grow with

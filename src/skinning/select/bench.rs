@@ -12,7 +12,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = SelectPass::new(gpu)?;
     for (instances, seen) in CROWDS.map(|count| (count, 1)).into_iter().chain([(CROWDS[2], 4)]) {

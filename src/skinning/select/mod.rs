@@ -8,12 +8,12 @@
 //! moved. Clusters beyond its level keep their vertices likewise, and are skinned when the level becomes finer.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SKINNED_WORDS, SelectBuffers, SelectPass};

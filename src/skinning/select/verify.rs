@@ -75,7 +75,7 @@ impl Frame {
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = SelectPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {

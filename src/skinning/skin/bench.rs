@@ -20,7 +20,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = SkinPass::new(gpu, Blend::Linear)?;
     let vertices = RING * RING;

@@ -6,12 +6,12 @@
 //! rigid motions instead, so that twisted limbs keep their volume; see [`super::palette`].
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SkinPass, keep_last};

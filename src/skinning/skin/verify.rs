@@ -30,7 +30,7 @@ const INSTANCES: usize = 9;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for blend in [Blend::Linear, Blend::DualQuaternion] {
         let pass = SkinPass::new(cases.gpu, blend)?;
         for (case, shape) in (0..).zip(SHAPES) {

@@ -3,9 +3,9 @@
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
+use crate::surface::HeightBatch;
 use crate::surface::cone_map::ConeMapPass;
 use crate::surface::cone_map::reference::cone_map;
-use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
@@ -15,7 +15,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (pyramid_pass, pass) = (HeightPyramidPass::new(gpu)?, ConeMapPass::new(gpu)?);
     for edge in [256, 1024] {

@@ -5,7 +5,7 @@ use glam::UVec2;
 use crate::gpu::bindings::surface::cone_map as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::cone_map::ConeParams;
-use crate::surface::height_batch::{HeightBatch, with_remedy};
+use crate::surface::height_batch::{HeightBatch, REMEDY};
 use crate::surface::height_pyramid::Pyramids;
 use crate::{Error, InputError};
 
@@ -46,7 +46,7 @@ impl ConeMapPass {
         // Rows of a texture copy start at multiples of 256 bytes.
         let pitch = cells[0].next_multiple_of(32);
         let cones = Buffer::new(gpu, "cones", (pitch * cells[1]) as usize * pyramids.count as usize)
-            .map_err(with_remedy)?;
+            .map_err(|error| error.with_remedy(REMEDY))?;
         Ok(Cones { cones, cells, pitch, count: pyramids.count })
     }
 

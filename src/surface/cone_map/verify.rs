@@ -4,9 +4,9 @@ use crate::Error;
 use crate::harness::poison::POISON;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
+use crate::surface::HeightBatch;
 use crate::surface::cone_map::reference::cone_map;
 use crate::surface::cone_map::{ConeMapPass, RADIUS_BOUND};
-use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
@@ -16,7 +16,7 @@ use crate::surface::verify::{Shape, random_map};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let (pyramid_pass, pass) = (HeightPyramidPass::new(gpu)?, ConeMapPass::new(gpu)?);
     for (case, size) in

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
-use crate::surface::height_batch::HeightBatch;
+use crate::surface::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
@@ -13,7 +13,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = HeightPyramidPass::new(gpu)?;
     for (edge, count) in [(256, 64), (512, 64), (1024, 1)] {

@@ -2,12 +2,12 @@
 //! node the highest of its four children. `quadtree` traverses them, and cone maps are computed from them.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{HeightPyramidPass, Pyramids};

@@ -6,7 +6,7 @@ use super::PyramidLayout;
 use crate::gpu::bindings::surface::height_pyramid as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::height_pyramid::PyramidParams;
-use crate::surface::height_batch::{HeightBatch, with_remedy};
+use crate::surface::height_batch::{HeightBatch, REMEDY};
 use crate::surface::map::Address;
 use crate::{Error, InputError};
 
@@ -30,7 +30,8 @@ impl Pyramids {
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, maps: &HeightBatch, address: Address) -> Result<Self, GpuError> {
         let layout = PyramidLayout::new(maps.size, address);
-        let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize).map_err(with_remedy)?;
+        let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize)
+            .map_err(|error| error.with_remedy(REMEDY))?;
         Ok(Self { nodes, layout, address, count: maps.count })
     }
 

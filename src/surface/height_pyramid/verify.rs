@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
-use crate::surface::height_batch::HeightBatch;
+use crate::surface::HeightBatch;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids};
 use crate::surface::map::{Address, HeightMap};
@@ -14,7 +14,7 @@ use crate::surface::verify::{Shape, random_map};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = HeightPyramidPass::new(gpu)?;
     let sizes = [

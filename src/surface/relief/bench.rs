@@ -9,9 +9,9 @@ use crate::harness::{Backend, Bench, Contender};
 use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
 use crate::samples::BuiltInMap;
+use crate::surface::Material;
 use crate::surface::bench::{bare_loads, rays};
 use crate::surface::map::{Address, HeightMap};
-use crate::surface::material::Material;
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::reference::Surface;
@@ -37,7 +37,7 @@ const ANGLE: f32 = 60.0;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let map = BuiltInMap::Cobbles.height_map(TEXELS)?;
     for method in Method::ALL {
         listed(bench, &map, method)?;

@@ -4,7 +4,7 @@
 //! kernel of this folder runs them on lists of rays.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
@@ -116,7 +116,7 @@ impl Ray {
     }
 
     /// uv at a parameter.
-    pub fn at(&self, parameter: f32) -> [f32; 2] {
+    pub(crate) fn at(&self, parameter: f32) -> [f32; 2] {
         [self.origin[0] + parameter * self.slope[0], self.origin[1] + parameter * self.slope[1]]
     }
 }
@@ -181,7 +181,7 @@ impl Default for Hit {
 
 impl Hit {
     /// The result at a point of the ray.
-    pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
+    pub(crate) fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self {
             uv: ray.at(parameter),
             height: 1.0 - parameter,

@@ -1,8 +1,8 @@
 //! Height maps on the device: batches in buffers, which kernels read, and textures, over which shaders march.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::surface::HeightBatch;
 use crate::surface::cone_map::ConeMapPass;
-use crate::surface::height_batch::HeightBatch;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{March, Method};

@@ -14,14 +14,14 @@ use crate::surface::verify::{Shape, random_map, random_rays};
 
 /// The largest fraction of a case's rays that may touch the surface within rounding ([`Judged::touches`]).
 /// Which rays do follows from the rays alone. No ray may exceed its bound.
-pub const TOUCHING: f64 = 0.2;
+pub(crate) const TOUCHING: f64 = 0.2;
 
 /// The cases cover every method on every shape, with odd sizes, both address modes, and numbers of rays around
 /// the workgroup's.
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for method in Method::ALL {
         let pass = ReliefPass::new(gpu, method)?;

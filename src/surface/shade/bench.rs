@@ -5,9 +5,9 @@ use crate::Error;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
+use crate::surface::Material;
 use crate::surface::bench::{bare_loads, rays};
 use crate::surface::map::Address;
-use crate::surface::material::Material;
 use crate::surface::relief::reference::Surface;
 use crate::surface::relief::reference::height::BILINEAR;
 use crate::surface::relief::reference::shadow::light_ray;
@@ -25,7 +25,7 @@ const EDGE: u32 = 512;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let map = BuiltInMap::Cobbles.height_map(512)?;
     let (march, view) = (March::default(), ShadeView::default());

@@ -5,7 +5,7 @@
 //! kernel of this folder runs them on lists of points.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;

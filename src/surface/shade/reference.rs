@@ -10,13 +10,13 @@ use crate::surface::shade::{Shade, ShadePoint, ShadeView};
 
 /// The distance of a hit behind the polygon along the eye's ray, in uv units. `scale` is the relief's depth in
 /// uv units.
-pub fn distance(ray: &Ray, hit: &Hit, scale: f32) -> f32 {
+pub(crate) fn distance(ray: &Ray, hit: &Hit, scale: f32) -> f32 {
     (hit.parameter - ray.polygon) * scale / ray.cosine.max(LEAST_COSINE)
 }
 
 /// The unit vector from a point of the polygon towards the eye. `eye` is its position (w = 1), or the direction
 /// towards it (w = 0).
-pub fn towards(eye: [f32; 4], position: [f32; 3]) -> [f32; 3] {
+pub(crate) fn towards(eye: [f32; 4], position: [f32; 3]) -> [f32; 3] {
     let way = [0, 1, 2].map(|i| eye[i] - eye[3] * position[i]);
     let length = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]).sqrt();
     way.map(|axis| axis / length)
@@ -24,7 +24,12 @@ pub fn towards(eye: [f32; 4], position: [f32; 3]) -> [f32; 3] {
 
 /// The depth, 0 (near) to 1 (far), of the point that lies `distance` behind a point of the polygon along the
 /// eye's ray, all in world units. `clip_from_world` is given by columns.
-pub fn depth(clip_from_world: [[f32; 4]; 4], position: [f32; 3], towards: [f32; 3], distance: f32) -> f32 {
+pub(crate) fn depth(
+    clip_from_world: [[f32; 4]; 4],
+    position: [f32; 3],
+    towards: [f32; 3],
+    distance: f32,
+) -> f32 {
     let world = [0, 1, 2].map(|i| position[i] - towards[i] * distance);
     let clip = |row: usize| {
         let [x, y, z, w] = clip_from_world.map(|column| column[row]);

@@ -21,21 +21,21 @@ use crate::terrain::verify::random_words;
 use crate::{Error, InputError};
 
 /// The largest fraction of points that may be so close to the edge of a hard shadow that rounding decides.
-pub const AT_EDGES: f64 = 0.04;
+pub(crate) const AT_EDGES: f64 = 0.04;
 
 /// The largest fraction of points whose light is known no better than to [`BLUNT`]; they lie at the foot of
 /// walls that are one texel thick.
-pub const BLURRED: f64 = 0.1;
+pub(crate) const BLURRED: f64 = 0.1;
 
 /// The largest fraction of points whose depth is known no better than that; they lie in the plane of the eye.
-pub const AT_EYE: f64 = 0.01;
+pub(crate) const AT_EYE: f64 = 0.01;
 
 /// The cases cover every method on every shape, in both address modes, in parallel and in perspective views,
 /// with numbers of points around the workgroup's.
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for method in Method::ALL {
         let pass = ShadePass::new(gpu, method)?;
@@ -81,7 +81,7 @@ pub fn perspective() -> ShadeView {
 }
 
 /// The same view in parallel projection.
-pub fn parallel() -> ShadeView {
+pub(crate) fn parallel() -> ShadeView {
     let towards = Vec3::new(0.48, -0.6, 0.64);
     let depth = -0.1 * towards;
     let rows = [Vec4::X, Vec4::Y, depth.extend(0.5), Vec4::W];

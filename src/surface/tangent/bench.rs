@@ -13,7 +13,7 @@ use crate::terrain::bench::copy_of;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let torus = torus(512, 512);
     let vertices = torus.positions.len();

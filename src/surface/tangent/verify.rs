@@ -11,7 +11,7 @@ use crate::terrain::verify::random_words;
 
 /// A mesh that owns its data.
 #[derive(Debug, Clone, Default)]
-pub struct Owned {
+pub(crate) struct Owned {
     /// See [`Mesh`].
     pub positions: Vec<[f32; 3]>,
     /// See [`Mesh`].
@@ -24,7 +24,7 @@ pub struct Owned {
 
 impl Owned {
     /// The mesh in the form that the pass and the reference take.
-    pub fn mesh(&self) -> Mesh<'_> {
+    pub(crate) fn mesh(&self) -> Mesh<'_> {
         Mesh { positions: &self.positions, normals: &self.normals, uv: &self.uv, indices: &self.indices }
     }
 }
@@ -34,7 +34,7 @@ impl Owned {
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = TangentPass::new(cases.gpu)?;
     for (name, mesh, expected) in literals() {
         let expected = expected.map(|tangent| Frame { tangent, sensitivity: 1.0 });
@@ -238,7 +238,7 @@ fn soup(vertices: usize) -> Owned {
 }
 
 /// A torus of `around` × `across` quads, closed except for the seams of uv.
-pub fn torus(around: u32, across: u32) -> Owned {
+pub(crate) fn torus(around: u32, across: u32) -> Owned {
     let mut torus = Owned::default();
     for j in 0..=across {
         for i in 0..=around {

@@ -13,10 +13,10 @@ use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
 
 /// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
 /// result.
-pub const ULP: f64 = 1.0 / 8_388_608.0;
+pub(crate) const ULP: f64 = 1.0 / 8_388_608.0;
 
 /// Rays with a bound wider than this, in texels, prove little and count as touching.
-pub const BLUNT: f64 = 1.0 / 32.0;
+pub(crate) const BLUNT: f64 = 1.0 / 32.0;
 
 /// The relative error of a step over a cone: that of the radius, and that of the step's own arithmetic.
 const CONE_STEP: f64 = RADIUS_BOUND as f64 + 12.0 * ULP;
@@ -130,7 +130,7 @@ fn felt(ray: &Ray, map: &HeightMap, address: Address, positions: [f64; 2]) -> f6
 }
 
 /// For each texel, the largest change in height per texel along x, and along y, in the cells around it.
-pub fn steepness(map: &HeightMap, address: Address) -> Vec<[f64; 2]> {
+pub(crate) fn steepness(map: &HeightMap, address: Address) -> Vec<[f64; 2]> {
     let (width, height) = (map.width() as i32, map.height() as i32);
     let rise = |x: i32, y: i32, [dx, dy]: [i32; 2]| {
         f64::from((map.texel(x + dx, y + dy, address) - map.texel(x, y, address)).abs())
@@ -165,7 +165,7 @@ fn moved(
 
 /// The possible error of a height that changes by `steepness` per texel at a point that may be off by
 /// `position` texels.
-pub fn off(steepness: f64, position: f64) -> f64 {
+pub(crate) fn off(steepness: f64, position: f64) -> f64 {
     position / (1.0 - 2.0 * position.min(0.25)) * steepness + ULP * (12.0 + 40.0 * steepness)
 }
 

@@ -10,7 +10,7 @@ use crate::surface::shade::{ShadePoint, ShadeView};
 /// Sums, differences and products are within one unit in the last place and quotients within 2.5; a square
 /// root, computed as the reciprocal of an inverse square root, is within 4.5. Both sides round, hence the
 /// factor of two.
-pub fn depth_off(view: &ShadeView, point: &ShadePoint) -> f64 {
+pub(crate) fn depth_off(view: &ShadeView, point: &ShadePoint) -> f64 {
     let position = point.position.map(f64::from);
     let eye = view.eye.to_array().map(f64::from);
     let way = [0, 1, 2].map(|i| eye[i] - eye[3] * position[i]);

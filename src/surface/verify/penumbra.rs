@@ -44,7 +44,7 @@ impl Terrain<'_> {
 }
 
 /// The least and the most light that may reach a point, 0 to 1.
-pub fn penumbra(terrain: &Terrain<'_>, view: &ShadeView, point: &ShadePoint) -> [f64; 2] {
+pub(crate) fn penumbra(terrain: &Terrain<'_>, view: &ShadeView, point: &ShadePoint) -> [f64; 2] {
     let [light_x, light_y, light_z] = point.light.map(f64::from);
     if light_z <= 0.0 {
         return [0.0; 2];

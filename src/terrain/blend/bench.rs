@@ -3,21 +3,18 @@
 use crate::Error;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
-use crate::terrain::bench::{copy_of, some_heights};
+use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::blend::reference::blend;
 use crate::terrain::blend::{BlendPass, MapZone, Shading};
-use crate::terrain::fields::Fields;
 
 /// Measures a batch of 64 patches with four zones.
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
-    let host = some_heights((width * width * count) as usize);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &host)?;
+    let (host, windows) = some_windows(gpu, width, count)?;
     let points = (width as usize - 2).pow(2) * count as usize;
     let pixels = Buffer::new(gpu, "pixels", points)?;
     let zone = |i: i16| MapZone {

@@ -1,12 +1,12 @@
 //! Height zones and the top-down colour map of a patch (B section 3.3.1, equations 3.6 and 3.7).
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 use crate::InputError;
 pub use crate::shared::terrain::blend::MapZone;
@@ -29,7 +29,7 @@ pub enum WeightMode {
 
 impl WeightMode {
     /// The value of the shaders' `additive` for this mode: 0 or 1.
-    pub fn code(self) -> u32 {
+    pub(crate) fn code(self) -> u32 {
         u32::from(self == Self::Additive)
     }
 }
@@ -72,7 +72,7 @@ impl Shading {
 ///
 /// # Errors
 /// [`InputError`] that names the zone.
-pub fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
+pub(crate) fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
     if zones.is_empty() || zones.len() > MAX_ZONES {
         let bound = format!("must hold 1 to {MAX_ZONES} zones");
         return Err(InputError::new("zones", format!("[{} zones]", zones.len()), bound));

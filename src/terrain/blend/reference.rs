@@ -1,13 +1,16 @@
 //! Zone weights and the top-down colour map: the CPU reference of `kernels/terrain/blend.wgsl` and
 //! `wgsl/terrain/zones.wgsl`.
 
+use glam::Vec3;
+
+use crate::asset::light::lambert;
 use crate::srgb;
 use crate::terrain::blend::{MapZone, Shading, WeightMode};
 use crate::terrain::normals::reference::unit_normal;
 
 /// The weight of a zone at `height` (B equation 3.6): 1 at `max`, falling linearly to 0 at `max` ± (`max` −
 /// `min`).
-pub fn zone_weight(zone: &MapZone, height: f32) -> f32 {
+pub(crate) fn zone_weight(zone: &MapZone, height: f32) -> f32 {
     let range = zone.max - zone.min;
     ((range - (height - zone.max).abs()) / range).max(0.0)
 }
@@ -44,8 +47,8 @@ pub fn blend(
         for x in 1..width - 1 {
             let gradient = [at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)];
             let normal = unit_normal(gradient, terrain_scale);
-            let facing: f32 = normal.iter().zip(shading.light).map(|(n, l)| n * l).sum::<f32>().max(0.0);
-            let light = shading.ambient + (1.0 - shading.ambient) * facing;
+            let facing = Vec3::from(normal).dot(shading.light.into()).max(0.0);
+            let light = lambert(shading.ambient, facing);
             let mut color = [0.0; 3];
             for (fraction, zone) in
                 zone_fractions(zones, at(x, y) as f32 / 65_536.0, shading.weights).iter().zip(zones)

@@ -13,7 +13,7 @@ use crate::terrain::verify::random_heights;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = BlendPass::new(gpu)?;
     for weights in [WeightMode::Normalized, WeightMode::Additive] {

@@ -12,7 +12,7 @@ use crate::terrain::fields::Fields;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (size, width) = (257_u32, 16);
     let patches: Vec<_> = (0..64).map(|i| [i % 8, i / 8]).collect();

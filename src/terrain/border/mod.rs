@@ -8,12 +8,12 @@
 use crate::InputError;
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 #[cfg(feature = "gpu")]
 mod visits;
 

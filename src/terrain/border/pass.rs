@@ -5,7 +5,7 @@ use super::Neighbours;
 use super::visits::{Visit, visits};
 use crate::gpu::bindings::terrain::border as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::terrain::border::BorderParams;
+use crate::shared::terrain::border::{BorderParams, NONE};
 use crate::terrain::fields::{Fields, places};
 use crate::{Error, InputError};
 
@@ -92,7 +92,9 @@ struct Entries {
 impl Entries {
     fn new(gpu: &Gpu, part: usize, visits: &[Visit]) -> Result<Self, GpuError> {
         let entries = visits.iter().filter(|visit| visit.part == part).flat_map(|visit| &visit.entries);
-        let (order, neighbours): (Vec<u32>, Vec<[u32; 4]>) = entries.copied().unzip();
+        let words = |around: [Option<u32>; 4]| around.map(|neighbour| neighbour.unwrap_or(NONE));
+        let (order, neighbours): (Vec<u32>, Vec<[u32; 4]>) =
+            entries.map(|(index, around)| (*index, words(*around))).unzip();
         Ok(Self {
             neighbours: Buffer::from_slice(gpu, "neighbours", &neighbours)?,
             order: Buffer::from_slice(gpu, "blend order", &order)?,

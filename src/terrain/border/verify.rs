@@ -14,7 +14,7 @@ use crate::terrain::verify::{LIMIT, random_heights};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = BorderPass::new(cases.gpu)?;
     let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3 - 1, i / 3]).collect();
     let surrounded = vec![[1, 0], [0, 1], [2, 1], [1, 2], [1, 1]];

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::{Neighbours, waves};
 use crate::InputError;
-use crate::shared::terrain::border::NONE;
 use crate::terrain::fields::Place;
 
 /// One dispatch: patches of one part that move towards neighbours that all lie in one part.
@@ -15,7 +14,7 @@ pub(super) struct Visit {
     /// Index of the part that holds their neighbours.
     pub source: usize,
     /// The index of each patch in its part, with the indices of its neighbours in theirs.
-    pub entries: Vec<(u32, [u32; 4])>,
+    pub entries: Vec<(u32, [Option<u32>; 4])>,
 }
 
 /// The dispatches in order, given where each patch lies. A patch whose neighbours all lie in its own part takes
@@ -32,7 +31,7 @@ pub(super) fn visits(neighbours: &[Neighbours], places: &[Place]) -> Result<Vec<
             let Place { part, index } = places[patch as usize];
             let around = neighbours[patch as usize].map(|neighbour| neighbour.map(|at| places[at]));
             let mut visit = |turn: usize, source: usize, around: [Option<Place>; 4]| {
-                let around = around.map(|place| place.map_or(NONE, |place| place.index));
+                let around = around.map(|place| place.map(|place| place.index));
                 dispatches.entry((part, turn, source)).or_default().push((index, around));
             };
             if around.iter().flatten().all(|place| place.part == part) {
@@ -69,10 +68,10 @@ mod tests {
     #[test]
     fn one_part_is_visited_wave_by_wave() {
         let visits = visits(&surrounded(), &places(&[5])).expect("in order");
-        let first = (0..4).map(|index| (index, [NONE; 4])).collect();
+        let first = (0..4).map(|index| (index, [None; 4])).collect();
         let expected = [
             Visit { part: 0, source: 0, entries: first },
-            Visit { part: 0, source: 0, entries: vec![(4, [2, 0, 3, 1])] },
+            Visit { part: 0, source: 0, entries: vec![(4, [2, 0, 3, 1].map(Some))] },
         ];
         assert_eq!(visits, expected);
     }
@@ -81,14 +80,14 @@ mod tests {
     fn sides_keep_their_order_across_parts() {
         let visits = visits(&surrounded(), &places(&[2, 3])).expect("in order");
         let last: Vec<_> = (visits.iter())
-            .filter(|visit| visit.entries[0].1 != [NONE; 4])
+            .filter(|visit| visit.entries[0].1 != [None; 4])
             .map(|visit| (visit.part, visit.source, visit.entries.as_slice()))
             .collect();
         let expected: [(_, _, &[_]); 4] = [
-            (1, 1, &[(2, [0, NONE, NONE, NONE])]),
-            (1, 0, &[(2, [NONE, 0, NONE, NONE])]),
-            (1, 1, &[(2, [NONE, NONE, 1, NONE])]),
-            (1, 0, &[(2, [NONE, NONE, NONE, 1])]),
+            (1, 1, &[(2, [Some(0), None, None, None])]),
+            (1, 0, &[(2, [None, Some(0), None, None])]),
+            (1, 1, &[(2, [None, None, Some(1), None])]),
+            (1, 0, &[(2, [None, None, None, Some(1)])]),
         ];
         assert_eq!(last, expected);
     }

@@ -43,7 +43,7 @@ pub enum Offset {
 
 impl Offset {
     /// The value of the shaders' `DISTRIBUTION` for this distribution.
-    pub fn code(self) -> u32 {
+    pub(crate) fn code(self) -> u32 {
         match self {
             Self::Signed => offset::OFFSET_SIGNED,
             Self::Positive => offset::OFFSET_POSITIVE,
@@ -197,7 +197,7 @@ impl Config {
     ///
     /// # Errors
     /// [`InputError`] that names `scaleFactor`.
-    pub fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
+    pub(crate) fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
         let corner =
             self.corners.iter().map(|height| (height.abs() * HEIGHT_ONE).round()).fold(0.0, f64::max);
         let feature = largest_feature as f64;
@@ -220,7 +220,7 @@ impl Config {
     }
 
     /// n, where `patch_size` = 2^n + 1.
-    pub fn exponent(&self) -> u32 {
+    pub(crate) fn exponent(&self) -> u32 {
         (self.patch_size - 1).ilog2()
     }
 
@@ -230,7 +230,7 @@ impl Config {
     }
 
     /// Length of a patch's edge in world units.
-    pub fn edge_length(&self) -> f64 {
+    pub(crate) fn edge_length(&self) -> f64 {
         f64::from(self.patch_size - 1) * self.terrain_scale
     }
 
@@ -240,7 +240,7 @@ impl Config {
     }
 
     /// Distance between neighbouring samples in world coordinates.
-    pub fn sample_spacing(&self) -> i64 {
+    pub(crate) fn sample_spacing(&self) -> i64 {
         PATCH_EDGE >> self.exponent()
     }
 
@@ -255,7 +255,7 @@ impl Config {
     }
 
     /// The key of the hash: the first eight bytes of the seed's SHA-256, as two little-endian words.
-    pub fn key(&self) -> [u32; 2] {
+    pub(crate) fn key(&self) -> [u32; 2] {
         let digest = Sha256::digest(self.seed.as_bytes());
         let word =
             |at: usize| u32::from_le_bytes([digest[at], digest[at + 1], digest[at + 2], digest[at + 3]]);
@@ -263,7 +263,7 @@ impl Config {
     }
 
     /// Corner heights in 1/65536 units.
-    pub fn fixed_corners(&self) -> [i32; 4] {
+    pub(crate) fn fixed_corners(&self) -> [i32; 4] {
         self.corners.map(|height| (height * HEIGHT_ONE).round_ties_even() as i32)
     }
 }

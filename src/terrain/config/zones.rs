@@ -37,7 +37,7 @@ impl BuiltIn {
     pub const ALL: [Self; 4] = [Self::Sand, Self::Grass, Self::Hill, Self::Snow];
 
     /// The name of the texture in JSON.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Sand => "sand",
             Self::Grass => "grass",
@@ -71,7 +71,7 @@ fn texture<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<Z
 impl Zone {
     /// The four default zones, at fixed fractions of `scale_factor`. With `positive` offsets the terrain lies
     /// three halves of `scale_factor` higher on average, so the zones do too.
-    pub fn defaults(scale_factor: f64, offset: Offset) -> Vec<Self> {
+    pub(crate) fn defaults(scale_factor: f64, offset: Offset) -> Vec<Self> {
         // With a range below the resolution of heights the terrain is flat.
         let unit = if scale_factor >= 1.0 / HEIGHT_ONE { scale_factor } else { 1.0 };
         let lift = if offset == Offset::Positive { 1.5 } else { 0.0 };
@@ -95,7 +95,7 @@ impl Zone {
     }
 
     /// The texture of the zone, which stands at `index` in its list.
-    pub fn texture_at(&self, index: usize) -> ZoneTexture {
+    pub(crate) fn texture_at(&self, index: usize) -> ZoneTexture {
         self.texture.clone().unwrap_or(ZoneTexture::BuiltIn(BuiltIn::ALL[index.min(3)]))
     }
 

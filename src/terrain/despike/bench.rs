@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
-use crate::terrain::bench::{copy_of, some_heights};
+use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::despike::reference::despike;
 use crate::terrain::despike::{Despike, DespikePass};
 use crate::terrain::features::FeatureIndex;
@@ -12,12 +12,10 @@ use crate::terrain::fields::Fields;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
-    let host = some_heights((width * width * count) as usize);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &host)?;
+    let (host, windows) = some_windows(gpu, width, count)?;
     let cropped = Fields::new(gpu, "cropped", width - 2, count)?;
     let features = FeatureIndex::new(gpu, &[width], count, 0)?;
     let params = Despike { threshold: 1.0 };

@@ -14,7 +14,7 @@ use crate::terrain::verify::{LIMIT, random_heights, random_words};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for with_features in [false, true] {
         let pass = DespikePass::new(cases.gpu, with_features)?;
         for (case, (width, count)) in

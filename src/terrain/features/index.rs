@@ -92,7 +92,7 @@ impl FeatureIndex {
     }
 
     /// The grid at `index`, in the order of the widths, or a grid without points if there is none.
-    pub fn grid(&self, index: usize) -> FeatureGrid {
+    pub(crate) fn grid(&self, index: usize) -> FeatureGrid {
         let none = FeatureGrid { width: 0, words_per_row: 0, words_per_window: 0, start: 0 };
         self.grids.get(index).copied().unwrap_or(none)
     }

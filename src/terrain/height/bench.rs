@@ -19,7 +19,7 @@ use crate::terrain::window::Window;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for size in [129, 257, 513, 1025] {
         for count in [1, 64] {
             case(bench, size, count, false)?;

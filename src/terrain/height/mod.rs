@@ -2,12 +2,15 @@
 //! terrain. All arithmetic is on integers: every device computes the same bits.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{Blocks, HeightBatch, HeightJob, HeightPass, HeightScratch};
+#[cfg(feature = "verify")]
+pub(crate) use pass::Blocks;
+#[cfg(feature = "gpu")]
+pub use pass::{HeightBatch, HeightJob, HeightPass, HeightScratch};

@@ -3,11 +3,11 @@
 use crate::Error;
 use crate::InputError;
 use crate::gpu::bindings::terrain::height as bindings;
-use crate::gpu::{AdapterSummary, Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Tuning, Uniform};
 use crate::shared::terrain::height::Level;
 use crate::terrain::config::{Border, Config, Offset};
 use crate::terrain::features::{FeatureIndex, Features};
-use crate::terrain::fields::Fields;
+use crate::terrain::fields::{Fields, REMEDY};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
@@ -22,7 +22,7 @@ const CELL_ROWS_TWO_LEVELS: u32 = 33;
 
 /// How a dispatch is cut into threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Blocks {
+pub(crate) struct Blocks {
     /// Rows of coarse cells per thread, at least one.
     pub cell_rows: u32,
     /// Levels per dispatch: one, or two where no features are injected. If the number of levels is odd, the
@@ -31,11 +31,10 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    // Only lavapipe makes two levels per dispatch, because its memory operations cost most. SwiftShader's
-    // compiler takes too much memory for shaders of that length.
-    fn of(adapter: &AdapterSummary, features: bool) -> Self {
-        let cell_rows = if adapter.is_software() { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
-        let two = adapter.name.contains("llvmpipe") && !features;
+    // Two levels per dispatch need a long shader.
+    fn of(tuning: Tuning, features: bool) -> Self {
+        let cell_rows = if tuning.wants_long_threads() { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
+        let two = tuning.wants_long_shaders() && !features;
         if two { Self { cell_rows: CELL_ROWS_TWO_LEVELS, levels: 2 } } else { Self { cell_rows, levels: 1 } }
     }
 }
@@ -63,14 +62,14 @@ impl HeightPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, Error> {
-        Self::with_blocks(gpu, offset, features, Blocks::of(gpu.adapter(), features.is_some()))
+        Self::with_blocks(gpu, offset, features, Blocks::of(gpu.tuning(), features.is_some()))
     }
 
     /// As [`HeightPass::new`], with the given blocks.
     ///
     /// # Errors
     /// [`InputError`] for blocks out of bounds; what the driver's compiler reports.
-    pub fn with_blocks(
+    pub(crate) fn with_blocks(
         gpu: &Gpu,
         offset: Offset,
         features: Option<FeatureMode>,
@@ -306,7 +305,8 @@ impl HeightScratch {
         apron: u32,
     ) -> Result<Self, GpuError> {
         let [first, second] = Self::points(pass, &level_widths(config, apron), count);
-        let buffer = |points| Buffer::new(gpu, "terrain scratch", points);
+        let buffer =
+            |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
@@ -431,7 +431,7 @@ mod tests {
         assert_eq!(points(257, 0, 0, 1), [3 * 131 * 131, 3 * 68 * 68]);
         assert_eq!(points(3, 0, 0, 1), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0, 1), [3 * 5 * 5, 0], "two");
-        if !gpu.adapter().name.contains("SwiftShader") {
+        if gpu.tuning().compiles_long_shaders() {
             assert_eq!(points(257, 0, 0, 2), [3 * 68 * 68, 3 * 20 * 20]);
             assert_eq!(points(5, 0, 0, 2), [0, 0], "one dispatch");
             assert_eq!(points(9, 0, 0, 2), [3 * 6 * 6, 0], "one level, then two");

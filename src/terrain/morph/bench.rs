@@ -11,7 +11,7 @@ use crate::terrain::morph::{Morph, MorphPass};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let points = 64 * 257 * 257;
     let (from, to) = (some_heights(points), some_heights(points));

@@ -13,7 +13,7 @@ use crate::terrain::verify::{LIMIT, random_heights};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = MorphPass::new(gpu)?;
     for len in [1, 63, 64, 65, 5000, 300_000] {

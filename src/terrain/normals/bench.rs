@@ -3,8 +3,7 @@
 use crate::Error;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
-use crate::terrain::bench::{copy_of, some_heights};
-use crate::terrain::fields::Fields;
+use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::normals::NormalsPass;
 use crate::terrain::normals::reference::normals;
 
@@ -12,12 +11,10 @@ use crate::terrain::normals::reference::normals;
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
-    let host = some_heights((width * width * count) as usize);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &host)?;
+    let (host, windows) = some_windows(gpu, width, count)?;
     let points = (width as usize - 2).pow(2) * count as usize;
     let (slopes, units) = (Buffer::new(gpu, "slopes", points)?, Buffer::new(gpu, "normals", 3 * points)?);
     let job = NormalsPass::new(gpu)?.prepare(gpu, 1.0, &windows, &slopes, &units)?;

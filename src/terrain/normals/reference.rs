@@ -17,7 +17,7 @@ pub fn normals(window: &[i32], width: usize, terrain_scale: f64) -> (Vec<[i32; 2
 }
 
 /// The unit normal of a pair of central differences, computed in f64 and rounded once.
-pub fn unit_normal(gradient: [i32; 2], terrain_scale: f64) -> [f32; 3] {
+pub(crate) fn unit_normal(gradient: [i32; 2], terrain_scale: f64) -> [f32; 3] {
     // The kernel receives this value as an f32.
     let run = f64::from((2.0 * terrain_scale * HEIGHT_ONE) as f32);
     let [dx, dy] = gradient.map(f64::from);

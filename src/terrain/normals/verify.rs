@@ -12,7 +12,7 @@ use crate::terrain::verify::{LIMIT, random_heights};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = NormalsPass::new(gpu)?;
     for (width, count) in [(3, 1), (65, 3), (66, 2), (67, 2), (131, 4)] {

@@ -13,7 +13,7 @@ use crate::terrain::pad::{PadPass, surrounds};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (size, apron) = (257_u32, 8);
     let config = Config { border: Border::Blend(8), ..Config::new(size, 1.0, "")? };

@@ -17,7 +17,7 @@ use crate::terrain::verify::{LIMIT, config, random_heights};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = PadPass::new(cases.gpu)?;
     let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3, i / 3 - 2]).collect();
     let holes = vec![[0, 0], [1, 0], [2, 1], [0, 2], [1, 1]];

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
-use crate::terrain::bench::{copy_of, some_heights};
+use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::fields::Fields;
 use crate::terrain::thermal::reference::thermal;
 use crate::terrain::thermal::{Thermal, ThermalPass};
@@ -11,16 +11,14 @@ use crate::terrain::thermal::{Thermal, ThermalPass};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     case(bench, "257x257 batch 64, 1 iteration", [259, 64], 1)?;
     case(bench, "513x513, 50 iterations", [613, 1], 50)
 }
 
 fn case(bench: &mut Bench<'_>, name: &str, [width, count]: [u32; 2], iterations: u32) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let host = some_heights((width * width * count) as usize);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &host)?;
+    let (host, windows) = some_windows(gpu, width, count)?;
     let other = Fields::new(gpu, "other", width, count)?;
     let params = Thermal { iterations, ..Thermal::default() };
     let job = ThermalPass::new(gpu)?.prepare(gpu, params, 1.0, &windows, &other)?;

@@ -4,12 +4,12 @@ use crate::InputError;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::ThermalPass;

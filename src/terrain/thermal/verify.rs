@@ -15,7 +15,7 @@ use crate::terrain::verify::{LIMIT, random_heights};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = ThermalPass::new(gpu)?;
     for (width, count) in [(3, 2), (23, 3), (66, 5), (130, 2)] {

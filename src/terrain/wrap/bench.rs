@@ -15,7 +15,7 @@ use crate::terrain::wrap::{WrapJob, WrapPass};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (size, count) = (257_u32, 64_u32);
     let config = Config { border: Border::Wrap, ..Config::new(size, 40.0, "bench")? };

@@ -2,12 +2,12 @@
 //! border mode `wrap`. A patch with equal corners tiles with itself bit for bit.
 
 #[cfg(feature = "verify")]
-pub mod bench;
+pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "verify")]
-pub mod verify;
+pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{WrapJob, WrapPass};

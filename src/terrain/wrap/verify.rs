@@ -18,7 +18,7 @@ use crate::terrain::wrap::{WrapJob, WrapPass};
 ///
 /// # Errors
 /// What the device reports.
-pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for offset in ["signed", "positive", "gaussian"] {
         let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
         let pass = WrapPass::new(cases.gpu, code, None)?;

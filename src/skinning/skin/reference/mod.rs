@@ -2,11 +2,13 @@
 
 pub mod weights;
 
+use glam::Vec3;
+
 use crate::asset::influences::{Influence, Influences};
 use crate::asset::transform::Affine;
 use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::instance_lod::InstanceLod;
-use crate::skinning::palette::reference::{cross, dot, unit_or};
+use crate::skinning::palette::reference::unit_or;
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::vertex::Vertex;
@@ -121,17 +123,18 @@ fn matrix_of(sum: &DualBone) -> Affine {
 pub fn transformed(vertex: &Vertex, [x, y, z]: &Affine) -> Vertex {
     let linear = |row: &[f32; 4], v: [f32; 3]| row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
     let position = [x, y, z].map(|row| linear(row, vertex.position) + row[3]);
-    let [a, b, c] = [x, y, z].map(|row| [row[0], row[1], row[2]]);
+    let [a, b, c] = [x, y, z].map(|row| Vec3::new(row[0], row[1], row[2]));
     // The rows of the cofactor matrix.
-    let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
-    let side = if dot(a, cofactors[0]) < 0.0 { -1.0 } else { 1.0 };
-    let normal = cofactors.map(|row| side * dot(row, vertex.normal));
+    let cofactors = [b.cross(c), c.cross(a), a.cross(b)];
+    let side = if a.dot(cofactors[0]) < 0.0 { -1.0 } else { 1.0 };
+    let unmoved = Vec3::from(vertex.normal);
+    let normal = Vec3::from(cofactors.map(|row| side * row.dot(unmoved)));
     let [tx, ty, tz, handedness] = vertex.tangent;
     let along = [tx, ty, tz];
-    let tangent = unit_or([x, y, z].map(|row| linear(row, along)), along);
+    let tangent = unit_or([x, y, z].map(|row| linear(row, along)).into(), along.into());
     Vertex {
         position,
-        normal: unit_or(normal, vertex.normal),
-        tangent: [tangent[0], tangent[1], tangent[2], side * handedness],
+        normal: unit_or(normal, unmoved).into(),
+        tangent: tangent.extend(side * handedness).into(),
     }
 }

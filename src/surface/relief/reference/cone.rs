@@ -7,7 +7,7 @@ use crate::surface::relief::{Hit, March, Outcome, Ray};
 
 /// Cone stepping over the map's cones (highest corner and radius, row by row of cells), which must have been
 /// computed for the march's address mode.
-pub fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hit {
+pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hit {
     let grid = Grid::new(map, ray, march.address);
     let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();
     let (mut cell, mut parameter, mut above, mut samples) = ([0, 0], 0.0, 0.0, 0);

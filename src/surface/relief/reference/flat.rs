@@ -5,17 +5,17 @@ use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, March, Outcome, Ray};
 
 /// The polygon's own texture coordinates.
-pub fn plain(ray: &Ray) -> Hit {
+pub(crate) fn plain(ray: &Ray) -> Hit {
     Hit::of(ray, ray.polygon, 0, Outcome::Hit)
 }
 
 /// Kaneko's parallax mapping.
-pub fn parallax(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn parallax(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     shifted(map, ray, march, 1.0)
 }
 
 /// Parallax mapping with Welsh's offset limiting.
-pub fn parallax_limited(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn parallax_limited(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     shifted(map, ray, march, ray.cosine)
 }
 

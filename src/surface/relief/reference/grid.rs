@@ -26,7 +26,7 @@ pub(crate) struct Node {
 }
 
 impl Grid {
-    pub fn new(map: &HeightMap, ray: &Ray, address: Address) -> Self {
+    pub(crate) fn new(map: &HeightMap, ray: &Ray, address: Address) -> Self {
         let size = [map.width(), map.height()];
         let texel = [0, 1].map(|i| ray.origin[i] * size[i] as f32 - 0.5);
         let travel = [0, 1].map(|i| ray.slope[i] * size[i] as f32);
@@ -40,12 +40,12 @@ impl Grid {
         Self { size, cells, base, start: texel.map(|at| at - at.floor()), travel, inverse, address }
     }
 
-    pub fn bound(&self, levels: u32) -> u32 {
+    pub(crate) fn bound(&self, levels: u32) -> u32 {
         let crossed = (self.travel[0].abs() + self.travel[1].abs()).min(16384.0);
         2 * (crossed as u32 + 3) + levels
     }
 
-    pub fn node(&self, cell: [i32; 2], level: u32) -> Node {
+    pub(crate) fn node(&self, cell: [i32; 2], level: u32) -> Node {
         let axis = |axis: usize| {
             let absolute = self.base[axis] + cell[axis];
             let (inside, tile) = match self.address {
@@ -67,7 +67,7 @@ impl Grid {
         Node { index: [x.0, y.0], low: [x.1, y.1], high: [x.2, y.2] }
     }
 
-    pub fn exits(&self, node: &Node) -> [f32; 2] {
+    pub(crate) fn exits(&self, node: &Node) -> [f32; 2] {
         [0, 1].map(|axis| {
             let edge = if self.travel[axis] >= 0.0 { node.high[axis] } else { node.low[axis] };
             let exit = (edge as f32 - self.start[axis]) * self.inverse[axis];
@@ -75,17 +75,17 @@ impl Grid {
         })
     }
 
-    pub fn cell(&self, node: &Node, parameter: f32) -> [i32; 2] {
+    pub(crate) fn cell(&self, node: &Node, parameter: f32) -> [i32; 2] {
         let at = self.at(parameter);
         [0, 1].map(|axis| at[axis].clamp(node.low[axis], node.high[axis] - 1))
     }
 
     /// The cell in which the ray is at a parameter.
-    pub fn at(&self, parameter: f32) -> [i32; 2] {
+    pub(crate) fn at(&self, parameter: f32) -> [i32; 2] {
         [0, 1].map(|axis| (self.start[axis] + parameter * self.travel[axis]).floor() as i32)
     }
 
-    pub fn beyond(&self, node: &Node, exits: [f32; 2], parameter: f32) -> [i32; 2] {
+    pub(crate) fn beyond(&self, node: &Node, exits: [f32; 2], parameter: f32) -> [i32; 2] {
         let mut next = self.cell(node, parameter);
         let axis = usize::from(exits[0] > exits[1]);
         next[axis] = if self.travel[axis] >= 0.0 { node.high[axis] } else { node.low[axis] - 1 };
@@ -93,13 +93,13 @@ impl Grid {
     }
 
     /// The four heights of a cell: (0,0), (1,0), (0,1), (1,1).
-    pub fn corners(&self, map: &HeightMap, index: [i32; 2]) -> [f32; 4] {
+    pub(crate) fn corners(&self, map: &HeightMap, index: [i32; 2]) -> [f32; 4] {
         let first = if self.address == Address::Wrap { index } else { index.map(|at| at - 1) };
         [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| map.texel(first[0] + dx, first[1] + dy, self.address))
     }
 
     /// The first parameter in enter..=leave at which the ray is on or below a cell's bilinear patch, or -1.
-    pub fn patch(&self, corners: [f32; 4], low: [i32; 2], enter: f32, leave: f32) -> f32 {
+    pub(crate) fn patch(&self, corners: [f32; 4], low: [i32; 2], enter: f32, leave: f32) -> f32 {
         let [h00, h10, h01, h11] = corners;
         let at = [0, 1].map(|i| (self.start[i] - low[i] as f32) + enter * self.travel[i]);
         let slope = [h10 - h00, h01 - h00];
@@ -129,7 +129,7 @@ impl Grid {
 
 impl Node {
     /// The corner from which a leaf's patch is counted.
-    pub fn corner(&self) -> [i32; 2] {
+    pub(crate) fn corner(&self) -> [i32; 2] {
         [0, 1].map(|axis| if self.low[axis] == -FAR { self.high[axis] - 1 } else { self.low[axis] })
     }
 }

@@ -39,7 +39,7 @@ fn search(map: &HeightMap, ray: &Ray, march: &March) -> Bracket {
 }
 
 /// Linear search, then binary search.
-pub fn relief(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn relief(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     let bracket = search(map, ray, march);
     narrowed(map, ray, march, [bracket.above, bracket.under], bracket.samples)
 }
@@ -65,7 +65,7 @@ pub(crate) fn narrowed(
 }
 
 /// Linear search, then the intersection with the segment between the last two samples.
-pub fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     let mut bracket = search(map, ray, march);
     if bracket.above == 0.0 {
         bracket.height_above = height(map, ray.origin, march.address);

@@ -6,7 +6,7 @@ use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, March, Outcome, Ray};
 
 /// Max-mip traversal over the map's pyramid, which must have been computed for the march's address mode.
-pub fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &March) -> Hit {
+pub(crate) fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &March) -> Hit {
     let layout = PyramidLayout::new([map.width(), map.height()], march.address);
     let grid = Grid::new(map, ray, march.address);
     let top = layout.levels - 1;

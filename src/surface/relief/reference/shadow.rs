@@ -7,7 +7,7 @@ use crate::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
 /// The ray from the light to a point of the surface. `light` is the unit vector towards the light, in tangent
 /// space.
-pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
+pub(crate) fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     let steepness = -scale / light[2].max(LEAST_COSINE);
     let slope = [light[0] * steepness, light[1] * steepness];
     let rise = 1.0 - hit.height;
@@ -16,12 +16,12 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
 }
 
 /// Whether the light's ray ended above the point at which it was aimed.
-pub fn shaded(first: &Hit, hit: &Hit) -> bool {
+pub(crate) fn shaded(first: &Hit, hit: &Hit) -> bool {
     first.parameter < 1.0 - hit.height - BIAS
 }
 
 /// The light that reaches a point, 0 in full shadow to 1 in full light.
-pub fn soft_shadow(
+pub(crate) fn soft_shadow(
     map: &HeightMap,
     hit: &Hit,
     light: [f32; 3],

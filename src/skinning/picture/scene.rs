@@ -2,10 +2,11 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
+use super::is_mirrored;
 use super::texture::Surface;
 use crate::asset::Mesh;
 use crate::asset::material::{Alpha, dithered};
-use crate::skinning::picture::{Light, is_mirrored};
+use crate::asset::{Light, light::lambert};
 use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
 
@@ -146,7 +147,7 @@ impl Canvas<'_> {
         let side = if triangle.is_front { 1.0 } else { -1.0 };
         let Light { direction, ambient } = self.scene.light;
         let facing = side * normals.sum::<Vec3>().normalize_or_zero().dot(direction.normalize());
-        self.pixels[pixel] = [r, g, b].map(|color| color * (ambient + (1.0 - ambient) * facing.max(0.0)));
+        self.pixels[pixel] = [r, g, b].map(|color| color * lambert(ambient, facing.max(0.0)));
     }
 }
 

@@ -1,0 +1,43 @@
+//! A directional light, and what a matt surface makes of it (`wgsl/light.wgsl`).
+
+use glam::Vec3;
+
+use crate::InputError;
+
+/// A directional light, in linear light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// The direction towards the light, of any length but 0.
+    pub direction: Vec3,
+    /// Light that surfaces facing away still receive, 0 to 1.
+    pub ambient: f32,
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self { direction: Vec3::new(-0.4, 0.8, 0.6), ambient: 0.12 }
+    }
+}
+
+impl Light {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if self.direction.try_normalize().is_none() {
+            let value = self.direction.to_string();
+            return Err(InputError::new("light.direction", value, "must be finite and not 0"));
+        }
+        if !(0.0..=1.0).contains(&self.ambient) {
+            return Err(InputError::new("light.ambient", self.ambient, "must be in 0..=1"));
+        }
+        Ok(())
+    }
+}
+
+/// The fraction of its albedo that a matt surface sends to the eye, after Lambert: `direct`, 0 to 1, is the cosine at
+/// which the light falls on it, less where it lies in shadow; `ambient`, 0 to 1, is what it gets without.
+pub(crate) fn lambert(ambient: f32, direct: f32) -> f32 {
+    ambient + (1.0 - ambient) * direct
+}
