@@ -27,6 +27,7 @@ pub mod verify;
 pub mod vertex;
 
 pub use character_levels::{level_errors, own_levels};
+pub use collapse::collapse_bones;
 pub use extent::Extent;
 pub use levels::{MeshLevels, add_levels};
 pub use pose::poses_of;

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod bench;
+mod collapse;
 mod crowd;
 #[cfg(feature = "gpu")]
 mod demo;

@@ -24,6 +24,7 @@ use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
+use crate::collapse::CollapseArgs;
 use crate::output::{json, write_file};
 
 /// Writes where every bone of a model is at a moment of a clip, or at rest, as JSON.
@@ -41,6 +42,8 @@ pub struct Pose {
     model: PathBuf,
     #[command(flatten)]
     moment: MomentArgs,
+    #[command(flatten)]
+    collapse: CollapseArgs,
     /// What computes; both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
@@ -123,7 +126,7 @@ struct BoneReport<'a> {
 impl Pose {
     #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let mut model = open_bare(&self.model)?;
+        let mut model = self.collapse.apply(open_bare(&self.model)?)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
         let clip = &model.clips[clip];
         let (locals, models) = match self.backend {
