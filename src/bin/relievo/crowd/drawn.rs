@@ -4,7 +4,7 @@
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
 use relievo::animation::Choice;
-use relievo::animation::{GateTable, Lod, ModelMatrices};
+use relievo::animation::{GateTable, Lod};
 use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
 use relievo::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
@@ -350,7 +350,7 @@ impl<'a> World<'a> {
         let (model, count) = (stage.model(triangles), stage.instances.len());
         let levels = LevelRanges::new(&level_begins(stage, triangles, index))?;
         let matrices = match by {
-            By::All => &ModelMatrices::new(&device.full.crowd.models),
+            By::All => device.full.crowd.model_matrices(),
             By::Gate => device.gated.frame.model_matrices(),
         };
         let skin = SkinFrame::new(gpu, model, index, matrices, count, Blend::Linear)?;
