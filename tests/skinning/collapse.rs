@@ -251,7 +251,7 @@ fn models_without_clips_lose_what_reaches_least() {
     let first = collapse_bones(&model, &CollapseOptions { bones: KeptBones::Count(17), ..free });
     let first = first.expect("valid");
     let rests = at_rest(&model.skeleton);
-    let mut reaches = vec![0.0_f64; rests.len()];
+    let mut bone_radii = vec![0.0_f64; rests.len()];
     for mesh in &model.meshes {
         let skin = &model.skins[mesh.skin];
         for (vertex, position) in mesh.positions.iter().enumerate() {
@@ -260,11 +260,11 @@ fn models_without_clips_lose_what_reaches_least() {
                 let bone = skin.bones[one.bone as usize] as usize;
                 let place = glam::DMat4::from_cols_array(&bind)
                     .transform_point3(DVec3::from(position.map(f64::from)));
-                reaches[bone] = reaches[bone].max(f64::from(one.weight) * place.length());
+                bone_radii[bone] = bone_radii[bone].max(f64::from(one.weight) * place.length());
             }
         }
     }
-    let least = (1..18).min_by(|a, b| reaches[*a].total_cmp(&reaches[*b])).expect("bones");
+    let least = (1..18).min_by(|a, b| bone_radii[*a].total_cmp(&bone_radii[*b])).expect("bones");
     assert!(kept(&model, &first).iter().all(|(old, _)| *old != least), "{least}");
 }
 
@@ -335,10 +335,10 @@ fn requests_are_checked() {
 #[cfg(feature = "verify")]
 #[test]
 fn a_crowd_of_it_is_skinned_on_the_device() {
-    use relievo::animation::concat::reference::concat;
-    use relievo::animation::concat::{ConcatPass, Walk};
     use relievo::animation::crowd::{ClipBuffers, Crowd};
-    use relievo::animation::place::PlacePass;
+    use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+    use relievo::animation::local_to_model::reference::local_to_model;
+    use relievo::animation::local_to_model::{LocalToModelPass, Walk};
     use relievo::animation::sample::SamplePass;
     use relievo::animation::sample::reference::sample;
     use relievo::animation::{ClipSet, Instance, ModelMatrices, RotationPath, Wrap};
@@ -346,7 +346,7 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
     use relievo::skinning::morph::reference::morph;
     use relievo::skinning::palette::reference::palette_for;
     use relievo::skinning::skin::reference::skin;
-    use relievo::skinning::{Blend, Reduction};
+    use relievo::skinning::{Blend, InstanceLod};
 
     let gpu = crate::harness::gpu();
     let creature = shapes::model();
@@ -357,14 +357,14 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
     let instances = plays.map(|(clip, time)| Instance::new(clip, Wrap::Clamp, time, 0.0));
     let clips = ClipBuffers::new(&gpu, &set).expect("uploaded");
     let crowd = Crowd::new(&gpu, &set, &instances).expect("fits");
-    let place = PlacePass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("fits");
+    let place = KeyframeCursorPass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("fits");
     let pass = SamplePass::new(&gpu, RotationPath::Slerp).expect("compiled");
     let sampled = pass.prepare(&gpu, &clips, &crowd).expect("fits");
-    let pass = ConcatPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
+    let pass = LocalToModelPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
     let concatenated = pass.prepare(&gpu, &model.skeleton, &crowd).expect("fits");
-    let matrices = ModelMatrices::new(&crowd.models);
+    let matrices = ModelMatrices::new(&crowd.model_matrices);
     let frame = SkinFrame::new(&gpu, &model, 0, &matrices, 3, Blend::Linear).expect("fits");
-    frame.crowd.reductions.write(&gpu, &[Reduction::FULL; 3]).expect("written");
+    frame.crowd.instance_lods.write(&gpu, &[InstanceLod::FULL; 3]).expect("written");
     gpu.run("test", |encoder| {
         place.record(encoder);
         sampled.record(encoder);
@@ -372,14 +372,14 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
         frame.record_all(encoder);
     })
     .expect("run");
-    let models = crowd.models.read_blocking(&gpu).expect("read");
+    let models = crowd.model_matrices.read_blocking(&gpu).expect("read");
     assert_eq!(models.len(), 3 * 80);
     for (instance, (clip, time)) in plays.into_iter().enumerate() {
         let clip = &model.clips[clip as usize];
-        let bones = concat(&model.skeleton, &sample(clip, time, RotationPath::Slerp));
+        let bones = local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp));
         let palette = palette_for(&model.skins[0], &bones, Blend::Linear);
         let mesh = &model.meshes[0];
-        let expected = skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL);
+        let expected = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
         let found = frame.read(&gpu, instance).expect("read");
         let off = found
             .iter()

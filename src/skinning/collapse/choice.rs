@@ -7,7 +7,7 @@ use super::CollapseOptions;
 use super::compose::{is_constant, signs};
 use super::rest::{Follower, Rest};
 use crate::InputError;
-use crate::animation::concat::reference::concat;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample;
 use crate::asset::clip::{Clip, Part};
 use crate::asset::keyframe::RotationPath;
@@ -191,12 +191,12 @@ impl<'a> Choice<'a> {
         };
         let stray = self.poses.par_iter().map(stray).reduce(|| 0.0, f64::max).sqrt();
         let origin = self.rest.models[bone].translation;
-        let reach = moved.iter().map(|(place, follower)| {
+        let bone_radius = moved.iter().map(|(place, follower)| {
             let at_rest = self.rest.models[group[*place]].transform_point3(follower.local);
             follower.weight * at_rest.distance(origin)
         });
-        let reach = reach.fold(0.0, f64::max);
-        [if stray > UNSEEN * self.rest.size { stray } else { 0.0 }, reach]
+        let bone_radius = bone_radius.fold(0.0, f64::max);
+        [if stray > UNSEEN * self.rest.size { stray } else { 0.0 }, bone_radius]
     }
 
     /// Where a bone is at rest in the space of one above it.
@@ -217,7 +217,7 @@ fn looked_at(skeleton: &Skeleton, clip: &Clip) -> Result<Vec<Vec<DAffine3>>, Inp
     let poses = poses_of(clip)?.min(POSES);
     let pose = |at: usize| {
         let time = clip.duration() * (at as f32 / (poses - 1) as f32);
-        let models = concat(skeleton, &sample(clip, time, RotationPath::Slerp));
+        let models = local_to_model(skeleton, &sample(clip, time, RotationPath::Slerp));
         models.iter().map(|model| super::rest::bind(&column_major(model))).collect()
     };
     Ok((0..poses).into_par_iter().map(pose).collect())

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::CollapseError;
 use super::choice::Remap;
 use crate::InputError;
-use crate::animation::concat::reference::concat;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::{Affine, Mesh, Model, Transform};
@@ -70,7 +70,7 @@ fn posed(model: &Model, moment: Option<(usize, f32)>) -> Vec<Affine> {
         None => model.skeleton.rest(),
         Some((clip, time)) => sample(&model.clips[clip], time, RotationPath::Slerp),
     };
-    concat(&model.skeleton, &locals)
+    local_to_model(&model.skeleton, &locals)
 }
 
 fn origin(model: &Affine) -> Vec3 {

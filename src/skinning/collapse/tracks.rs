@@ -8,7 +8,7 @@ use super::rest::Rest;
 use crate::InputError;
 use crate::animation::sample::reference::{rotation_at, slerp, vector_at};
 use crate::asset::clip::{Clip, Interpolation, Keys, Part};
-use crate::asset::keyframe::{Place, RotationPath, place};
+use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::finite;
 use crate::asset::{Model, Skeleton, Transform};
 
@@ -220,7 +220,7 @@ fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
         let (times, interpolation) = (clip.times_of(track), track.interpolation());
         let place = match side {
             Side::Before => place_before(times, interpolation, time),
-            Side::After => place(times, time),
+            Side::After => keyframe_cursor(times, time),
         };
         (&clip.values()[track.first_value as usize..], interpolation, place)
     };
@@ -235,13 +235,13 @@ fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
 }
 
 /// Where a moment lies among key times, as seen from before it: at a key, a jump to it has not happened.
-fn place_before(times: &[f32], interpolation: Interpolation, time: f32) -> Place {
+fn place_before(times: &[f32], interpolation: Interpolation, time: f32) -> KeyframeCursor {
     let first = times.partition_point(|other| *other < time);
     if times.get(first) != Some(&time) {
-        return place(times, time);
+        return keyframe_cursor(times, time);
     }
     let key = if interpolation == Interpolation::Step { first.saturating_sub(1) } else { first };
-    Place { key: key as u32, fraction: 0.0 }
+    KeyframeCursor { key: key as u32, fraction: 0.0 }
 }
 
 fn between(part: Part, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4] {

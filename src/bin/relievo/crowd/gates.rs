@@ -61,24 +61,24 @@ pub struct Source<'a> {
     pub order: &'a Order,
     pub set: &'a ClipSet,
     /// For each bone, how far points that follow it lie from its origin.
-    pub reaches: &'a [f32],
+    pub bone_radii: &'a [f32],
     pub weights: &'a Weights,
 }
 
 impl Source<'_> {
     /// What a gate decides by.
     pub fn table(&self, mode: Mode) -> Result<GateTable, InputError> {
-        let Self { skeleton, clip, order, set, reaches, weights } = self;
+        let Self { skeleton, clip, order, set, bone_radii, weights } = self;
         let clips = [*clip];
         match mode {
-            Mode::Off | Mode::Uniform | Mode::Random => GateTable::of_movers(order, set, &clips),
+            Mode::Off | Mode::Uniform | Mode::Random => GateTable::of_animated_bones(order, set, &clips),
             Mode::SkipPeriod => {
                 let user = vec![USER_DEFAULT; skeleton.len()];
                 let priorities = priority::Priorities::new(skeleton, clip, true, weights, &user)?;
                 GateTable::of_priorities(order, set, &clips, &[priorities])
             }
-            Mode::Budget => GateTable::of_expectations(skeleton, set, &clips, reaches, PATH),
-            Mode::Bounded => GateTable::of_bounds(skeleton, set, &clips, reaches, PATH),
+            Mode::Budget => GateTable::of_expectations(skeleton, set, &clips, bone_radii, PATH),
+            Mode::Bounded => GateTable::of_bounds(skeleton, set, &clips, bone_radii, PATH),
         }
     }
 }

@@ -13,9 +13,9 @@ use super::errors::{Errors, Jump};
 use super::gates::Mode;
 use super::plan::Plan;
 use super::play::run as play;
+use super::reference::References;
 use super::report::{self, picture};
 use super::stage::{Scene, Stage, moving_bones};
-use super::twin::Twins;
 use super::verdict::{Verdicts, table as verdict_table};
 use crate::output::{Staged, json, say};
 use crate::plot::{Chart, Series};
@@ -40,7 +40,7 @@ pub struct Point {
     /// Bones interpolated, of all that move.
     pub cost: f64,
     /// Bones whose matrices were computed, of all.
-    pub concatenated_share: f64,
+    pub concatenated_fraction: f64,
     #[serde(flatten)]
     pub error: Errors,
     pub jump: Jump,
@@ -116,7 +116,7 @@ fn parameters(mode: Mode) -> Vec<f64> {
 }
 
 fn points(stage: &Stage<'_>) -> Result<Vec<Point>, Error> {
-    let movers = stage.table(Mode::Off)?;
+    let animated_bones = stage.table(Mode::Off)?;
     let scene = stage.line_up();
     let tables = MODES.map(|mode| stage.table(mode));
     let mut settings = Vec::new();
@@ -126,7 +126,7 @@ fn points(stage: &Stage<'_>) -> Result<Vec<Point>, Error> {
     }
     let progress = bar(settings.len() as u64, "comparing");
     let points = settings.par_iter().map(|(mode, parameter, table)| {
-        let point = point(stage, &scene, *mode, *parameter, table, &movers);
+        let point = point(stage, &scene, *mode, *parameter, table, &animated_bones);
         progress.inc(1);
         point
     });
@@ -141,10 +141,10 @@ fn point(
     mode: Mode,
     parameter: f64,
     table: &GateTable,
-    movers: &GateTable,
+    animated_bones: &GateTable,
 ) -> Result<Point, Error> {
     let plan = stage.plan;
-    let moving = stage.instances.len() * moving_bones(movers);
+    let moving = stage.instances.len() * moving_bones(animated_bones);
     let choice = mode.choice(plan.period, (parameter * moving as f64).round() as u32);
     let pixels = if mode == Mode::Bounded { parameter as f32 } else { 0.0 };
     let mut lods = stage.lods(scene, table, pixels);
@@ -153,13 +153,14 @@ fn point(
         let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
         lods.iter_mut().for_each(|lod| lod.omega = omega);
     }
-    let found = play(&mut Twins::new(stage, table, movers, choice, lods)?, stage, scene, false, || {})?;
+    let found =
+        play(&mut References::new(stage, table, animated_bones, choice, lods)?, stage, scene, false, || {})?;
     let frames = f64::from(plan.frames);
     Ok(Point {
         gate: mode,
         parameter,
         cost: found.interpolated as f64 / (moving.max(1) as f64 * frames),
-        concatenated_share: found.concatenated as f64 / (stage.pairs() as f64 * frames),
+        concatenated_fraction: found.concatenated as f64 / (stage.pairs() as f64 * frames),
         error: found.errors,
         jump: found.jump,
     })
@@ -189,10 +190,10 @@ fn table(points: &[Point]) -> String {
     let mut text = "| gate | parameter | cost | rms px | p99 px | max px | jump px | concatenated |\n\
                     |---|---:|---:|---:|---:|---:|---:|---:|\n"
         .to_owned();
-    for Point { gate, parameter, cost, concatenated_share, error, jump } in points {
+    for Point { gate, parameter, cost, concatenated_fraction, error, jump } in points {
         writeln!(
             text,
-            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_share:.3} |",
+            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_fraction:.3} |",
             gate.name(),
             error.rms_pixels,
             error.p99_pixels,

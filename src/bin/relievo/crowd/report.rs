@@ -11,8 +11,8 @@ use super::errors::{Errors, Jump};
 use super::gates::Mode;
 use super::plan::Plan;
 use super::play::{Found, Stages, gate_of, run as play};
+use super::reference::References;
 use super::stage::{Stage, mean_omega, moving_bones};
-use super::twin::Twins;
 use super::{Layout, pareto};
 use crate::Context;
 use crate::output::{Staged, json, say};
@@ -104,9 +104,9 @@ struct Row {
     mean_omega: f64,
     interpolated: u64,
     skipped: u64,
-    share: f64,
+    fraction: f64,
     concatenated: u64,
-    concatenated_share: f64,
+    concatenated_fraction: f64,
     nanoseconds_per_bone: Stages,
     full_nanoseconds_per_bone: Stages,
     error: Errors,
@@ -197,7 +197,7 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
     let stage = Stage::new(plan)?;
     let on = On::new(plan, context)?;
     let (mode, budget) = gate_of(plan);
-    let (table, movers) = (stage.table(mode)?, stage.table(Mode::Off)?);
+    let (table, animated_bones) = (stage.table(mode)?, stage.table(Mode::Off)?);
     let choice = mode.choice(plan.period, budget);
     let progress = bar(plan.distances.len() as u64 * u64::from(plan.frames + 1), mode.name());
     let mut rows = Vec::with_capacity(plan.distances.len());
@@ -213,11 +213,11 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
                 play(&mut device, &stage, &scene, true, step)?
             }
             On::Cpu => {
-                let mut twins = Twins::new(&stage, &table, &movers, choice, lods)?;
-                play(&mut twins, &stage, &scene, true, step)?
+                let mut references = References::new(&stage, &table, &animated_bones, choice, lods)?;
+                play(&mut references, &stage, &scene, true, step)?
             }
         };
-        rows.push(row(&stage, *distance, omega, moving_bones(&movers), &found));
+        rows.push(row(&stage, *distance, omega, moving_bones(&animated_bones), &found));
     }
     progress.finish_and_clear();
     #[cfg(feature = "gpu")]
@@ -238,14 +238,14 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
         layout: plan.layout,
         seed: plan.seed,
         bones: stage.set.bones(),
-        moving_bones: moving_bones(&movers),
+        moving_bones: moving_bones(&animated_bones),
         size: plan.size,
         metres_a_unit: stage.metres_a_unit,
         spacing: plan.spacing,
         range: [plan.range.min, plan.range.max],
         frames: plan.frames,
         rate: plan.rate,
-        focal_pixels: stage.lens.focal_pixels,
+        focal_pixels: stage.projection.focal_pixels,
         skinning: plan.drawn.map(|_| plan.skinning.to_string()),
         mesh: plan.drawn.map(|_| plan.triangles.to_string()),
         distances: rows,
@@ -263,9 +263,9 @@ fn row(stage: &Stage<'_>, distance: f32, mean_omega: f64, moving_bones: usize, f
         mean_omega,
         interpolated: found.interpolated,
         skipped: moving.saturating_sub(found.interpolated),
-        share: found.interpolated as f64 / moving.max(1) as f64,
+        fraction: found.interpolated as f64 / moving.max(1) as f64,
         concatenated: found.concatenated,
-        concatenated_share: found.concatenated as f64 / (pairs as u64 * frames) as f64,
+        concatenated_fraction: found.concatenated as f64 / (pairs as u64 * frames) as f64,
         nanoseconds_per_bone: found.gated.a_bone(pairs),
         full_nanoseconds_per_bone: found.full.a_bone(pairs),
         error: found.errors,
@@ -327,9 +327,9 @@ fn table(report: &Report<'_>) -> String {
     );
     for row in &report.distances {
         let times = &row.nanoseconds_per_bone;
-        let parts = match (times.gate, times.sample, times.concat) {
-            (Some(gate), Some(sample), Some(concat)) => {
-                format!("{gate:.2} + {sample:.2} + {concat:.2}, {:.2}", times.total)
+        let parts = match (times.gate, times.sample, times.local_to_model) {
+            (Some(gate), Some(sample), Some(local_to_model)) => {
+                format!("{gate:.2} + {sample:.2} + {local_to_model:.2}, {:.2}", times.total)
             }
             _ => format!("{:.2}", times.total),
         };
@@ -340,8 +340,8 @@ fn table(report: &Report<'_>) -> String {
              | {max_metres:.4} | {:.3} |",
             row.distance,
             row.mean_omega,
-            100.0 * row.share,
-            100.0 * row.concatenated_share,
+            100.0 * row.fraction,
+            100.0 * row.concatenated_fraction,
             row.full_nanoseconds_per_bone.total,
             row.jump.max_pixels,
         )
@@ -372,11 +372,11 @@ fn charts(report: &Report<'_>) -> [(&'static str, Chart); 3] {
         series("with the gate", &|row| Some(row.nanoseconds_per_bone.total)),
         series("gate", &|row| row.nanoseconds_per_bone.gate),
         series("sample", &|row| row.nanoseconds_per_bone.sample),
-        series("concat", &|row| row.nanoseconds_per_bone.concat),
+        series("local_to_model", &|row| row.nanoseconds_per_bone.local_to_model),
     ];
-    let share = vec![
-        series("interpolated, of moving bones", &|row| Some(row.share)),
-        series("concatenated, of all bones", &|row| Some(row.concatenated_share)),
+    let fraction = vec![
+        series("interpolated, of moving bones", &|row| Some(row.fraction)),
+        series("concatenated, of all bones", &|row| Some(row.concatenated_fraction)),
         series("mean Ω", &|row| Some(row.mean_omega)),
     ];
     let error = vec![
@@ -386,7 +386,7 @@ fn charts(report: &Report<'_>) -> [(&'static str, Chart); 3] {
     ];
     [
         ("cost.png", chart("Cost", "nanoseconds a bone", false, cost)),
-        ("interpolations.png", chart("Work", "share", false, share)),
+        ("interpolations.png", chart("Work", "fraction", false, fraction)),
         ("error.png", chart("Error", "pixels", true, error)),
     ]
 }

@@ -13,30 +13,30 @@ use super::play::{Play, Played, Taken, Times, Timing};
 use super::stage::Stage;
 
 /// Both crowds.
-pub struct Twins<'a> {
+pub struct References<'a> {
     gated: Crowd<'a>,
     full: Crowd<'a>,
     choice: Choice,
     rate: f64,
 }
 
-impl<'a> Twins<'a> {
-    /// `table` is the choice's, `movers` that of [`Mode::Off`].
+impl<'a> References<'a> {
+    /// `table` is the choice's, `animated_bones` that of [`Mode::Off`].
     pub fn new(
         stage: &'a Stage<'_>,
         table: &'a GateTable,
-        movers: &'a GateTable,
+        animated_bones: &'a GateTable,
         choice: Choice,
         lods: Vec<Lod>,
     ) -> Result<Self, InputError> {
         let crowd = |table| Crowd::new(&stage.order, &stage.set, table, PATH, stage.instances.clone());
         let mut gated = crowd(table)?;
         gated.lods = lods;
-        Ok(Self { gated, full: crowd(movers)?, choice, rate: stage.plan.rate })
+        Ok(Self { gated, full: crowd(animated_bones)?, choice, rate: stage.plan.rate })
     }
 }
 
-impl Play for Twins<'_> {
+impl Play for References<'_> {
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         let (frame, elapsed) = frame(number, self.rate);
         let start = Instant::now();
@@ -48,16 +48,16 @@ impl Play for Twins<'_> {
             [gated, full].map(|time| Taken { whole: Some(time.as_nanos() as f64), ..Taken::default() });
         Ok(Played {
             interpolated: work.pairs.len(),
-            concatenated: work.dirty.iter().map(|word| word.count_ones() as usize).sum(),
+            concatenated: work.updated_bones.iter().map(|word| word.count_ones() as usize).sum(),
             times: (timing != Timing::None).then_some(Times { gated, full }),
         })
     }
 
     fn stale(&self) -> &[Affine] {
-        &self.gated.models
+        &self.gated.model_matrices
     }
 
     fn fresh(&self) -> &[Affine] {
-        &self.full.models
+        &self.full.model_matrices
     }
 }
