@@ -1,4 +1,4 @@
-//! What is drawn of crowds.
+//! Benchmark cases of `skinning/lod`: what is drawn of crowds.
 
 use glam::{Mat4, Vec3, camera};
 
@@ -11,7 +11,7 @@ use crate::skinning::lod::reference::lod;
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use crate::terrain::bench::copy_of;
 
-/// A field of instances, a quarter of them seen.
+/// Measures a field of instances, a quarter of them seen.
 ///
 /// # Errors
 /// What the device reports.

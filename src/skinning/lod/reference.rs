@@ -1,4 +1,4 @@
-//! What is drawn: reference of `kernels/skinning/lod.wgsl`.
+//! Culling and level of detail of instances: the CPU reference of `kernels/skinning/lod.wgsl`.
 
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 

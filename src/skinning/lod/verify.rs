@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/lod.wgsl`.
+//! Parity cases of `kernels/skinning/lod.wgsl`.
 
 use glam::{Mat4, Vec3, camera};
 
@@ -37,7 +37,7 @@ const DIRECTIONS: [(&str, Vec3, &[f32]); 4] = [
 
 const MIRROR: &str = "aside, mirrored";
 
-/// Instances everywhere around several cameras, every third mirrored; nobody in sight, and all; without levels, with one more, and with as many
+/// The cases cover instances everywhere around several cameras, every third mirrored; nobody in sight, and all; without levels, with one more, and with as many
 /// as there may be, some of them empty. Of those at the very edge of the view, of a step of the fade and of a level it is
 /// left out what was decided, and they are counted. What is not listed stays as it was.
 ///

@@ -1,4 +1,4 @@
-//! Morph targets of crowds.
+//! Benchmark cases of `skinning/morph`: morph targets of crowds.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -7,7 +7,7 @@ use crate::skinning::morph::MorphPass;
 use crate::skinning::morph::reference::morph;
 use crate::terrain::bench::copy_of;
 
-/// Four targets that move a quarter of the vertices.
+/// Measures four targets that move a quarter of the vertices.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Weights of morph targets of crowds.
+//! Benchmark cases of `skinning/morph_weights`: weights of morph targets of crowds.
 
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
@@ -19,7 +19,7 @@ use crate::terrain::bench::copy_of;
 const TARGETS: usize = 4;
 const KEYS: usize = 30;
 
-/// Four targets on straight lines between 30 keys.
+/// Measures four targets on straight lines between 30 keys.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Weights of morph targets: reference of `kernels/skinning/morph_weights.wgsl`.
+//! Weights of morph targets: the CPU reference of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;

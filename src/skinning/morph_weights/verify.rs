@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/morph_weights.wgsl`.
+//! Parity cases of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
@@ -29,7 +29,7 @@ const STEP: u32 = Interpolation::Step as u32;
 /// Seconds since the starts.
 const ELAPSED: [f32; 3] = [0.0, 2.71, -1.3];
 
-/// Steps, lines and splines of one key to nine, and clips that move no target; loops and clamps, forwards and backwards,
+/// The cases cover steps, lines and splines of one key to nine, and clips that move no target; loops and clamps, forwards and backwards,
 /// inside and outside the clip. Every fifth instance is not seen: its weights stay. Steps at their very keys and loops at
 /// their very ends are left out, and counted.
 ///

@@ -1,4 +1,4 @@
-//! Palettes of crowds.
+//! Benchmark cases of `skinning/palette`: palettes of crowds.
 
 use crate::Error;
 use crate::animation::ModelMatrices;
@@ -10,7 +10,7 @@ use crate::skinning::palette::reference::palette;
 use crate::skinning::verify::random_matrices;
 use crate::terrain::bench::copy_of;
 
-/// For linear blending.
+/// Measures for linear blending.
 ///
 /// # Errors
 /// What the device reports.

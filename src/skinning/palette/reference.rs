@@ -1,4 +1,4 @@
-//! Palettes: reference of `kernels/skinning/palette.wgsl`.
+//! Palettes: the CPU reference of `kernels/skinning/palette.wgsl`.
 
 use crate::animation::local_to_model::reference::product;
 use crate::asset::skeleton::Skin;

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/palette.wgsl`.
+//! Parity cases of `kernels/skinning/palette.wgsl`.
 
 use crate::Error;
 use crate::animation::ModelMatrices;
@@ -12,7 +12,7 @@ use crate::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
 use crate::skinning::verify::{SHAPES, poisoned, random_matrices, random_model};
 use crate::skinning::vertex::Blend;
 
-/// Random skins of some of a skeleton's bones, mirrored and stretched, for both kinds of blending. A quaternion may be
+/// The cases cover random skins of some of a skeleton's bones, mirrored and stretched, for both kinds of blending. A quaternion may be
 /// the other one of the same rotation, its dual part with it. The second instance is not seen: its palette stays.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! A picture of skinned meshes without a GPU: reference of `wgsl/render/skinned.wgsl`, for one instance.
+//! Pictures of skinned meshes without a GPU: the CPU reference of `wgsl/render/skinned.wgsl`, for one instance.
 
 use glam::{Mat4, Vec3, Vec4};
 

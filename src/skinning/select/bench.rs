@@ -1,4 +1,4 @@
-//! Selection of clusters.
+//! Benchmark cases of `skinning/select`: selection of clusters.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -8,7 +8,7 @@ use crate::skinning::select::reference::{Now, Skinned, select};
 use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
 use crate::terrain::bench::copy_of;
 
-/// One bone in eight moves; of all instances, or of a quarter that is seen.
+/// Measures one bone in eight moves; of all instances, or of a quarter that is seen.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Which clusters are skinned: reference of `kernels/skinning/select.wgsl`.
+//! Selection of the clusters that are skinned: the CPU reference of `kernels/skinning/select.wgsl`.
 
 use crate::skinning::clusters::Clusters;
 use crate::skinning::instance_lod::InstanceLod;

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/select.wgsl`.
+//! Parity cases of `kernels/skinning/select.wgsl`.
 
 use crate::animation::verify::Draw;
 use crate::asset::Model;
@@ -68,7 +68,7 @@ impl Frame {
     }
 }
 
-/// No bone, some and all; reductions that change and such as do not; instances that leave the view and come back; levels
+/// The cases cover no bone, some and all; reductions that change and such as do not; instances that leave the view and come back; levels
 /// that get coarser and finer; weights of targets that move some of the clusters. Lists are compared sorted, with what is
 /// behind them, which stays untouched, their number, the workgroups for them, and what is remembered.
 ///

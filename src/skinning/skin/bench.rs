@@ -1,4 +1,4 @@
-//! Skinning of crowds.
+//! Benchmark cases of `skinning/skin`: skinning of crowds.
 
 use crate::Error;
 use crate::asset::mesh::MeshLevel;
@@ -16,7 +16,7 @@ use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::terrain::bench::copy_of;
 
-/// Eight, four, two influences and one.
+/// Measures eight, four, two influences and one.
 ///
 /// # Errors
 /// What the device reports.

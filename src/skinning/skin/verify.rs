@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/skin.wgsl`.
+//! Parity cases of `kernels/skinning/skin.wgsl`.
 
 use crate::Error;
 use crate::asset::Model;
@@ -24,7 +24,7 @@ use crate::skinning::vertex::{Blend, Vertex};
 /// Instances of a case: full, truncated, fading and unseen ones.
 const INSTANCES: usize = 9;
 
-/// One influence to eight, linear and by dual quaternions, morphed or not; all instances, some, and lists of clusters,
+/// The cases cover one influence to eight, linear and by dual quaternions, morphed or not; all instances, some, and lists of clusters,
 /// where the others stay untouched, as those of unseen instances do and those beyond an instance's level. Errors are shares of each value's own bound.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Skinning: reference of `kernels/skinning/skin.wgsl`.
+//! Skinning: the CPU reference of `kernels/skinning/skin.wgsl`.
 
 pub mod weights;
 
