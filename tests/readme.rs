@@ -332,8 +332,7 @@ fn the_creature_moves_as_many_bones_in_its_walk() {
 #[test]
 fn the_creature_does_with_80_bones() -> Result<(), InputError> {
     let model = creature()?;
-    let free = CollapseOptions { keep_end_effectors: false, ..CollapseOptions::new(KeptBones::Count(80)) };
-    let collapsed = collapse_bones(&model, &free)?;
+    let collapsed = collapse_bones(&model, &CollapseOptions::new(KeptBones::Count(80)))?;
     let [all, left] = [&model, &collapsed.model].map(|model| model.skeleton.len());
     println!("{all} to {left} bones: {:?}", collapsed.error);
     assert!(README.contains(&format!("{all} to {left} for less than 2 cm")));

@@ -5,9 +5,9 @@
 //! # What becomes of a collapsed bone
 //!
 //! - **Its motion** is folded into the tracks of the kept bones below it. These are where they were: at all key times
-//!   within rounding; between keys within [`BETWEEN_KEYS`] of the model's size a bone of the chain, since keys are added
-//!   where linear interpolation would be further off. Where the collapsed bone does not move in a clip, the tracks keep
-//!   their keys, their interpolation and their tangents.
+//!   within rounding; between keys within about a thousandth of the model's size (half of the diagonal of a box around it),
+//!   since keys are added where linear interpolation would be further off. Where the collapsed bone does not move in a
+//!   clip, the tracks keep their keys, their interpolation and their tangents.
 //! - **Its vertices** follow the kept bone, as they do at rest. Influences of bones that take a vertex to the same place
 //!   are added up, so skins get fewer joints; where a skin was not bound at rest, joints stay apart.
 //!
@@ -26,8 +26,6 @@ use crate::InputError;
 use crate::asset::{Bone, Model, Skeleton};
 use choice::{Choice, Remap};
 use rest::Rest;
-
-pub use tracks::BETWEEN_KEYS;
 
 /// How many bones [`collapse_bones`] leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,7 +15,7 @@ use crate::asset::{Model, Skeleton, Transform};
 /// How far the composed keys of a bone may move points that follow it, or bones below it, off between two keys, as each
 /// of translation, rotation and scale counts at a quarter, half and three quarters of the way; as a part of the model's
 /// size at rest, half of the diagonal of a box around it. Where it would be more, keys are added, up to 63 between two.
-pub const BETWEEN_KEYS: f64 = 1e-3;
+const BETWEEN_KEYS: f64 = 1e-3;
 
 /// How often a stretch between two keys is halved at most.
 const HALVINGS: u32 = 6;
