@@ -21,14 +21,7 @@ pub const VANISHING: f32 = 1.0 / 64.0;
 /// The largest difference allowed between a component of a tangent and the reference, on any device, for a
 /// vertex of sensitivity 1 ([`Frame`]).
 ///
-/// With ε = 2⁻²³ (`+ − ×` round to either neighbour, division 2.5ε, `inverseSqrt` 2ε, `sqrt` 4.5ε; fusing only
-/// helps): scaled edges of positions and uv carry 3.5ε of at most 1; a product 8ε; the tangent and the face
-/// normal, differences of two products, 18ε a component and 32ε as a vector, which normalising divides by their
-/// length and adds 5ε to. Unit edges carry 8.5ε, their chord c 17ε + 8ε·c. So a contribution carries
-/// 17ε + c·(15ε + 32ε / length), one to the handedness 17ε + c·(27ε + 32ε / length): both less than
-/// 32ε·(1 + c·(1 + 1 / length)). Adding n of them costs n·ε of the weights, taking off the normal's part (the
-/// unit normal carries 8ε) 20ε. Divided by what is left, that is 52ε·sensitivity; normalising and the second
-/// Gram–Schmidt step add 20ε: 72ε < 1e-5. Duff's basis from a normal that carries 8ε stays below 40ε.
+/// `docs/rounding-bounds.md` has the derivation.
 pub const TANGENT_BOUND: f32 = 1e-5;
 
 /// A triangle mesh with normals and texture coordinates.

@@ -19,7 +19,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         scene.crowd.weights.write(gpu, &vec![0.5; 4 * instances])?;
         let job = pass.prepare(gpu, &scene.mesh, &scene.crowd)?;
         let all = RING * RING * instances;
-        // A vertex and two offsets in, one delta of 12 words and its weight, a vertex out.
+        // The kernel reads a vertex, two offsets, a delta of 12 words and its weight, and writes a vertex.
         let words = 10 + 2 + 13 + 10;
         let copied = copy_of(gpu, words * all / 2)?;
         let reference = || {
