@@ -29,6 +29,7 @@ mod replaced;
 use super::skeleton::Skeleton;
 use super::transform::{finite, unit};
 use crate::InputError;
+use crate::shared::animation::interpolation;
 
 /// The largest key time, in seconds: about 12 days.
 pub const LONGEST: f32 = 1_048_576.0;
@@ -41,20 +42,20 @@ const LEAST_TIME: f32 = 7.888_609e-31;
 #[repr(u32)]
 pub enum Interpolation {
     /// The value of the previous key.
-    Step = 0,
+    Step = interpolation::INTERPOLATION_STEP,
     /// Linear interpolation; for rotations, along the shortest arc.
-    Linear = 1,
+    Linear = interpolation::INTERPOLATION_LINEAR,
     /// A cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized
     /// afterwards.
-    CubicSpline = 2,
+    CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 
 impl Interpolation {
     /// The interpolation that a track's `code` stands for.
     pub fn of_code(code: u32) -> Self {
         match code {
-            0 => Self::Step,
-            1 => Self::Linear,
+            interpolation::INTERPOLATION_STEP => Self::Step,
+            interpolation::INTERPOLATION_LINEAR => Self::Linear,
             _ => Self::CubicSpline,
         }
     }
@@ -422,7 +423,7 @@ mod tests {
         let refused = |translation, rotation| {
             let bones = [BoneKeys::default(), BoneKeys { translation, rotation, scale: None }];
             let error = Clip::new("a", &skeleton(), &bones, 0.0).expect_err("refused");
-            (error.field, error.value)
+            (error.path, error.value)
         };
         let linear = Interpolation::Linear;
         for (times, values, field, value) in [
@@ -444,8 +445,8 @@ mod tests {
         let spline = keys(&[0.0], &[[0.0; 4]; 3], Interpolation::CubicSpline);
         assert_eq!(refused(None, spline).0, "clip.bones[1].rotation.values[1]");
         let few = Clip::new("a", &skeleton(), &[], 0.0).expect_err("refused");
-        assert_eq!(few.field, "clip.bones.len");
+        assert_eq!(few.path, "clip.bones.len");
         let long = Clip::new("a", &skeleton(), &[BoneKeys::default(), BoneKeys::default()], f32::NAN);
-        assert_eq!(long.expect_err("refused").field, "clip.duration");
+        assert_eq!(long.expect_err("refused").path, "clip.duration");
     }
 }

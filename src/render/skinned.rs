@@ -2,32 +2,21 @@
 //! two indirect draws, the second for those that are mirrored. A mesh has one material: a model with several is
 //! drawn mesh by mesh.
 
-use encase::ShaderType;
-use glam::{Mat4, Vec4};
+use glam::Mat4;
 
 use crate::asset::material::Alpha;
 use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, shaders};
 use crate::render::albedo::Albedo;
-use crate::render::pipeline::Draws;
+use crate::render::pipeline::{Draws, bind};
+use crate::shared::render::skinned::SkinnedView;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{draws_at, list_stride};
 use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
-
-/// The shader's `SkinnedView`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SkinnedView {
-    pub clip_from_world: Mat4,
-    pub light: Vec4,
-    pub color: Vec4,
-    pub vertices: u32,
-    pub cutoff: f32,
-    pub side: f32,
-}
 
 /// Draws meshes on targets of one format.
 #[derive(Debug, Clone)]
@@ -88,8 +77,7 @@ impl SkinnedRenderer {
             },
             vertices: &[],
         };
-        let key = format!("{} {:?} {sides:?} {}", draws.shader.name, self.color, draws.fragment);
-        gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
+        draws.pipeline(gpu, self.color)
     }
 
     /// Binds instances. Until [`SkinnedScene::arguments`] is written, the first list is drawn with as many
@@ -198,10 +186,11 @@ fn list(drawn: &Buffer<u32>, at: usize, words: usize) -> wgpu::BindingResource<'
 /// Instances of a mesh: set the camera, then draw in any render pass.
 #[derive(Debug, Clone)]
 pub struct SkinnedScene {
-    /// Of each level that `drawn` has a list of two indirect draws, five words each: indices, instances, the first index,
-    /// and two zeros. The first draw leaves out the instances that are mirrored, and the second draws no others; each goes
-    /// through so many of the list as its second word says. Where both sides are seen, the first draws all. The caller or
-    /// a kernel may change both numbers; the second draw's need not go beyond the last mirrored instance.
+    /// Two indirect draws, of five words each, for every level that has a list in `drawn`: number of indices, number
+    /// of instances, first index, and two zeros. The first draw omits mirrored instances, and the second omits all
+    /// others; each runs through as many entries of the list as its second word says. For double-sided meshes, the
+    /// first draws all instances. The caller or a kernel may change the two numbers of instances; the second draw
+    /// need not go beyond the last mirrored instance.
     pub arguments: Buffer<u32>,
     pipelines: Vec<wgpu::RenderPipeline>,
     view: SkinnedView,
@@ -237,16 +226,13 @@ impl SkinnedScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::layout::layout_test;
 
     #[test]
     fn lists_are_whole() {
         assert_eq!((lists(0, 9), lists(9, 9), lists(64, 64)), (Ok([1, 0]), Ok([1, 9]), Ok([1, 64])));
         assert_eq!((lists(192, 64), lists(256, 65)), (Ok([3, 64]), Ok([2, 128])));
         for (words, places) in [(64, 63), (10, 9), (129, 64), (17 * 64, 64)] {
-            assert_eq!(lists(words, places).expect_err("refused").field, "drawn.len");
+            assert_eq!(lists(words, places).expect_err("refused").path, "drawn.len");
         }
     }
-
-    layout_test!(skinned_view_layout: SkinnedView = RENDER_SKINNED "SkinnedView");
 }

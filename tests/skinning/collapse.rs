@@ -327,7 +327,7 @@ fn requests_are_checked() {
     let refused = |options: CollapseOptions, model: &Model| {
         let error = collapse_bones(model, &options).expect_err("refused");
         assert!(!error.bound.is_empty());
-        (error.field, error.value)
+        (error.path, error.value)
     };
     let of = |bones| refused(CollapseOptions::new(bones), &model);
     let text = |field: &str, value: &str| (field.to_owned(), value.to_owned());

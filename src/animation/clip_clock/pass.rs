@@ -1,4 +1,4 @@
-//! `kernels/animation/clip_clock.wgsl`.
+//! The GPU pass of `kernels/animation/clip_clock.wgsl`.
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
@@ -8,7 +8,7 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
-/// Finds phases.
+/// Computes clip clocks.
 #[derive(Debug, Clone)]
 pub struct ClipClockPass {
     kernel: Kernel,
@@ -23,7 +23,7 @@ impl ClipClockPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the phases of a crowd.
+    /// Prepares the clip clocks of a crowd.
     ///
     /// # Errors
     /// [`InputError`] for a table of other clips; [`GpuError`].
@@ -35,19 +35,9 @@ impl ClipClockPass {
         gate_state: &GateState,
     ) -> Result<ClipClockJob, Error> {
         let time = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
-        let group = bindings::Group {
-            clip_clock_params: &time.uniform,
-            instances: crowd.instances.slice(),
-            clips: clips.clips.slice(),
-            timelines: clips.timelines.slice().cast(),
-            times: clips.times.slice(),
-            lods: gate_state.lods.slice(),
-            layer_weights: crowd.layer_weights.slice(),
-            history: gate_state.history.slice(),
-            clip_clocks: gate_state.clip_clocks.slice(),
-        };
+        let group = group(&time, clips, crowd, gate_state).bind(gpu, &self.kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.params.instances),
             kernel: self.kernel.clone(),
         };
@@ -55,11 +45,31 @@ impl ClipClockPass {
     }
 }
 
+/// What phases are found from, and where they are written.
+pub(crate) fn group<'a>(
+    time: &'a ClipClockTime,
+    clips: &'a ClipBuffers,
+    crowd: &'a Crowd,
+    gate_state: &'a GateState,
+) -> bindings::Group<'a> {
+    bindings::Group {
+        clip_clock_params: &time.uniform,
+        instances: crowd.instances.slice(),
+        clips: clips.clips.slice(),
+        timelines: clips.timelines.slice().cast(),
+        times: clips.times.slice(),
+        lods: gate_state.lods.slice(),
+        layer_weights: crowd.layer_weights.slice(),
+        history: gate_state.history.slice(),
+        clip_clocks: gate_state.clip_clocks.slice(),
+    }
+}
+
 /// The time of the next submission.
 #[derive(Debug, Clone)]
 pub(crate) struct ClipClockTime {
     params: ClipClockParams,
-    pub(crate) uniform: Uniform<ClipClockParams>,
+    uniform: Uniform<ClipClockParams>,
 }
 
 impl ClipClockTime {
@@ -86,7 +96,7 @@ impl ClipClockTime {
     }
 }
 
-/// Prepared phases: set the time, then record.
+/// Prepared clip clocks: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct ClipClockJob {
     time: ClipClockTime,
@@ -94,8 +104,9 @@ pub struct ClipClockJob {
 }
 
 impl ClipClockJob {
-    /// Chooses the time of the next submission, as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`], and by how many seconds bones
-    /// may be sampled ahead of it, as [`Frame::ahead`](crate::animation::gate::Frame::ahead).
+    /// Sets the time of the next submission, as [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does,
+    /// and the seconds by which bones may be sampled ahead of it
+    /// ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors
     /// [`InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].

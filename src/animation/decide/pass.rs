@@ -1,32 +1,33 @@
-//! `kernels/animation/decide.wgsl`, and the kernels that it stands for.
+//! The GPU pass of `kernels/animation/decide.wgsl`, and of the separate kernels that it replaces.
 
 use super::Choice;
 use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
-use crate::animation::clip_clock::pass::ClipClockTime;
+use crate::animation::clip_clock::pass::{self as clip_clock, ClipClockTime};
 use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
+use crate::animation::compact::pass as compact;
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
-use crate::gpu::bindings::animation::decide as bindings;
+use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::CompactParams;
 use crate::{Error, InputError};
 
-/// How many dispatches share the work.
+/// How many dispatches divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dispatches {
     /// One workgroup does all of it.
     One,
-    /// A dispatch for each step, or more.
+    /// At least one dispatch for each step.
     Each,
 }
 
 impl Dispatches {
-    /// The faster way for a crowd on this device.
+    /// The faster choice for a crowd on this device.
     pub fn of(gpu: &Gpu, choice: Choice, active: &Active) -> Self {
         let is_gate = matches!(choice, Choice::Gate(_));
         let is_small = Stages::of(gpu, active) == Stages::One;
@@ -34,18 +35,18 @@ impl Dispatches {
     }
 }
 
-/// Storage buffers that one dispatch needs.
+/// The number of storage buffers that the single dispatch needs.
 fn needed() -> u32 {
     let is_storage = |kind| matches!(kind, BindingKind::StorageRead | BindingKind::StorageReadWrite);
     shaders::ANIMATION_DECIDE.bindings.iter().filter(|binding| is_storage(binding.kind)).count() as u32
 }
 
-/// Storage buffers that the device lets a shader bind.
+/// The number of storage buffers that the device permits in a shader.
 fn available(gpu: &Gpu) -> u32 {
     gpu.device().limits().max_storage_buffers_per_shader_stage
 }
 
-/// Decides what is sampled, and lists it.
+/// Decides which bones are sampled, and lists them.
 #[derive(Debug, Clone)]
 pub struct DecidePass {
     choice: Choice,
@@ -72,11 +73,11 @@ enum Decider {
 }
 
 impl DecidePass {
-    /// Compiles the pipelines. A budget takes a dispatch for each step in any case.
+    /// Compiles the pipelines. A budget always takes one dispatch for each step.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] for one dispatch on a device that does not let a shader bind enough buffers; what the
-    /// driver's compiler reports.
+    /// [`GpuError::Limit`] for a single dispatch on a device that does not permit enough buffers in a shader;
+    /// errors of the driver's compiler.
     pub fn new(gpu: &Gpu, choice: Choice, dispatches: Dispatches) -> Result<Self, GpuError> {
         let steps = |decider| {
             let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
@@ -93,7 +94,7 @@ impl DecidePass {
     /// Prepares the decision for a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of other clips, or of another kind than the choice needs, and as
+    /// [`InputError`] for a table of other clips or of a kind that the choice cannot use, and as
     /// [`GatePass::prepare`]; [`GpuError`].
     pub fn prepare(
         &self,
@@ -115,7 +116,7 @@ impl DecidePass {
     }
 }
 
-/// The kernel of all steps.
+/// The kernel that performs all steps.
 fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
     let (needed, available) = (needed(), available(gpu));
     if needed > available {
@@ -127,7 +128,7 @@ fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
             remedy: "take Dispatches::Each, as Dispatches::of would",
         });
     }
-    bindings::kernel(gpu, &bindings::Constants { mode: gate::mode(gate) })
+    bindings::decide::kernel(gpu, &bindings::decide::Constants { mode: gate::mode(gate) })
 }
 
 fn one(
@@ -142,33 +143,46 @@ fn one(
     let clip_clock = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
     let gate = GateTime::new(gpu, gate, crowd, gate_state, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
-    let group = bindings::Group {
-        clip_clock_params: &clip_clock.uniform,
-        instances: crowd.instances.slice(),
-        clips: clips.clips.slice(),
-        timelines: clips.timelines.slice().cast(),
-        times: clips.times.slice(),
-        lods: gate_state.lods.slice(),
-        layer_weights: crowd.layer_weights.slice(),
-        history: gate_state.history.slice(),
-        clip_clocks: gate_state.clip_clocks.slice(),
-        gate_params: &gate.uniform,
-        animated_bones: gate_state.animated_bones.slice(),
-        table: gate_state.table.slice(),
-        sampled: gate_state.sampled.slice(),
-        remaining: gate_state.remaining.slice(),
-        bits: active.bits.slice(),
-        compact_params: &compact,
-        slots: active.slots.slice().cast(),
-        updated_bones: active.updated_bones.slice(),
-        counts: active.counts.slice(),
-        pairs: active.pairs.pairs.slice(),
-        pair_dispatch: active.pairs.dispatched.slice().cast(),
-        updated_instances: active.instances.slice(),
-        instance_dispatches: active.dispatches.slice(),
-    };
+    let group = group(
+        clip_clock::group(&clip_clock, clips, crowd, gate_state),
+        gate::group(&gate, gate_state, active),
+        compact::group(&compact, active),
+    );
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
     Ok(Work::One { clip_clock, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+}
+
+/// The resources of all three kernels that `animation/decide` stands for.
+fn group<'a>(
+    clip_clock: bindings::clip_clock::Group<'a>,
+    gate: bindings::gate::Group<'a>,
+    compact: bindings::compact::Group<'a>,
+) -> bindings::decide::Group<'a> {
+    bindings::decide::Group {
+        clip_clock_params: clip_clock.clip_clock_params,
+        instances: clip_clock.instances,
+        clips: clip_clock.clips,
+        timelines: clip_clock.timelines,
+        times: clip_clock.times,
+        lods: clip_clock.lods,
+        layer_weights: clip_clock.layer_weights,
+        history: clip_clock.history,
+        clip_clocks: clip_clock.clip_clocks,
+        gate_params: gate.gate_params,
+        animated_bones: gate.animated_bones,
+        table: gate.table,
+        sampled: gate.sampled,
+        remaining: gate.remaining,
+        bits: gate.bits,
+        compact_params: compact.compact_params,
+        slots: compact.slots,
+        updated_bones: compact.updated_bones,
+        counts: compact.counts,
+        pairs: compact.pairs,
+        pair_dispatch: compact.pair_dispatch,
+        updated_instances: compact.updated_instances,
+        instance_dispatches: compact.instance_dispatches,
+    }
 }
 
 impl Decider {
@@ -210,7 +224,8 @@ enum Decision {
 }
 
 impl DecideJob {
-    /// Chooses frame and time of the next submission, the latter as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`].
+    /// Sets frame and time of the next submission, the time as
+    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
@@ -231,10 +246,10 @@ impl DecideJob {
         Ok(())
     }
 
-    /// Chooses how many bones may be sampled from the next submission on.
+    /// Sets the number of bones that may be sampled from the next submission on.
     ///
     /// # Errors
-    /// [`InputError`] where a gate decides; [`GpuError`].
+    /// [`InputError`] if a gate decides; [`GpuError`].
     pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
         match &self.work {
             Work::Each { decision: Decision::Budget(job), .. } => Ok(job.set(gpu, most)?),

@@ -1,4 +1,4 @@
-//! `kernels/animation/gate.wgsl`.
+//! The GPU pass of `kernels/animation/gate.wgsl`.
 
 use super::{Frame, Gate};
 use crate::Error;
@@ -20,7 +20,7 @@ pub struct GatePass {
 }
 
 impl GatePass {
-    /// Compiles the pipeline of a mode.
+    /// Compiles the pipeline of a gate.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -28,12 +28,12 @@ impl GatePass {
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { mode: mode(gate) })?, gate })
     }
 
-    /// Prepares the decision, from a crowd's phases.
+    /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a table of another kind than the gate needs, or of motion along another path than the crowd's
-    /// rotations take, for another crowd than the active bones are listed of, and for [`Gate::Bounded`] over model matrices
-    /// that dual quaternions were prepared to blend; [`GpuError`].
+    /// [`InputError`](crate::InputError) for a table of a kind that the gate cannot use or of another rotation
+    /// path than the crowd's, for a crowd other than that of the active bones, and for [`Gate::Bounded`] over
+    /// model matrices that are prepared for dual quaternions; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -42,18 +42,9 @@ impl GatePass {
         active: &Active,
     ) -> Result<GateJob, Error> {
         let time = GateTime::new(gpu, self.gate, crowd, gate_state, active)?;
-        let group = bindings::Group {
-            lods: gate_state.lods.slice(),
-            clip_clocks: gate_state.clip_clocks.slice(),
-            gate_params: &time.uniform,
-            animated_bones: gate_state.animated_bones.slice(),
-            table: gate_state.table.slice(),
-            sampled: gate_state.sampled.slice(),
-            remaining: gate_state.remaining.slice(),
-            bits: active.bits.slice(),
-        };
+        let group = group(&time, gate_state, active).bind(gpu, &self.kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.threads(self.gate)),
             kernel: self.kernel.clone(),
         };
@@ -61,7 +52,25 @@ impl GatePass {
     }
 }
 
-/// `MODE` of the kernel.
+/// What a gate decides from, and its decision.
+pub(crate) fn group<'a>(
+    time: &'a GateTime,
+    gate_state: &'a GateState,
+    active: &'a Active,
+) -> bindings::Group<'a> {
+    bindings::Group {
+        lods: gate_state.lods.slice(),
+        clip_clocks: gate_state.clip_clocks.slice(),
+        gate_params: &time.uniform,
+        animated_bones: gate_state.animated_bones.slice(),
+        table: gate_state.table.slice(),
+        sampled: gate_state.sampled.slice(),
+        remaining: gate_state.remaining.slice(),
+        bits: active.bits.slice(),
+    }
+}
+
+/// The kernel's `MODE`.
 pub(crate) fn mode(gate: Gate) -> u32 {
     match gate {
         Gate::Off => modes::OFF,
@@ -76,7 +85,7 @@ pub(crate) fn mode(gate: Gate) -> u32 {
 #[derive(Debug, Clone)]
 pub(crate) struct GateTime {
     params: GateParams,
-    pub(crate) uniform: Uniform<GateParams>,
+    uniform: Uniform<GateParams>,
 }
 
 impl GateTime {
@@ -111,7 +120,7 @@ impl GateTime {
         Ok(Self { params, uniform: Uniform::new(gpu, "gate", &params)? })
     }
 
-    /// One a word of bits, or an instance where words wait for each other.
+    /// One thread per word of bits, or per instance if words depend on each other.
     fn threads(&self, gate: Gate) -> u32 {
         self.params.instances * if gate == Gate::Bounded { 1 } else { self.params.words }
     }
@@ -131,7 +140,7 @@ pub struct GateJob {
 }
 
 impl GateJob {
-    /// Chooses the frame of the next submission.
+    /// Sets the frame of the next submission.
     ///
     /// # Errors
     /// [`GpuError`].

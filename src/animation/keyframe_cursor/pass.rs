@@ -1,16 +1,21 @@
-//! `kernels/animation/keyframe_cursor.wgsl`.
+//! The GPU pass of `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::clip_set::ClipSet;
+use crate::animation::clip_set::{ClipSet, Timeline};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::{Instance, check_elapsed};
+use crate::asset::keyframe::KeyframeCursor;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
-/// Finds where instances stand in their clips.
+impl SeenAs<[u32; 2]> for Timeline {}
+impl SeenAs<[u32; 2]> for KeyframeCursor {}
+
+/// Finds the keyframe cursors of instances.
 #[derive(Debug, Clone)]
 pub struct KeyframeCursorPass {
     all: Kernel,
@@ -27,7 +32,7 @@ impl KeyframeCursorPass {
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
-    /// Prepares the places of a crowd.
+    /// Prepares the cursors of a crowd.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -46,7 +51,7 @@ impl KeyframeCursorPass {
         Ok(KeyframeCursorJob { params, uniform, work })
     }
 
-    /// Prepares the places of instances with an active bone alone, at the times that the gate saw: after
+    /// Prepares the cursors of instances with an active bone, at the times that the gate saw. Record it after
     /// `animation/compact`.
     ///
     /// # Errors
@@ -86,7 +91,7 @@ impl KeyframeCursorParams {
     }
 }
 
-/// Which instances are placed.
+/// The listed instances.
 struct Listed<'a> {
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
@@ -121,7 +126,7 @@ enum Work {
     Active(IndirectJob),
 }
 
-/// Prepared places: set the time, then record.
+/// Prepared cursors: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct KeyframeCursorJob {
     params: KeyframeCursorParams,
@@ -130,8 +135,8 @@ pub struct KeyframeCursorJob {
 }
 
 impl KeyframeCursorJob {
-    /// Chooses the time of the next submission: seconds since the instances' starts. Let starts follow the clock every
-    /// few minutes: `f32` seconds grow coarse.
+    /// Sets the time of the next submission, in seconds since the starts of the instances. Move the starts
+    /// every few minutes, because `f32` seconds lose precision.
     ///
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
@@ -155,10 +160,11 @@ impl KeyframeCursorJob {
 }
 
 impl Crowd {
-    /// Room for `instances` of a set's clips.
+    /// Allocates a crowd of instances of a set's clips, with one layer.
     ///
     /// # Errors
-    /// [`crate::InputError`] for no instances, or ones that play no clip of the set; [`GpuError`].
+    /// [`crate::InputError`] for no instances, and for instances of a clip that the set does not have;
+    /// [`GpuError`].
     pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
         Self::layered(gpu, set, instances, &[])
     }

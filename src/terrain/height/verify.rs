@@ -14,8 +14,8 @@ use crate::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch};
 use crate::terrain::verify::{config, scattered};
 use crate::terrain::window::Window;
 
-/// The cases cover every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
-/// sizes.
+/// The cases cover every size, distribution and number of coarse levels; windows of every
+/// alignment; features; batches; block sizes.
 ///
 /// # Errors
 /// What the device reports.
@@ -43,7 +43,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     block_sizes(cases)
 }
 
-/// Compares large patches under everything that small ones are tested with: coarse levels, reach, neighbours,
+/// Compares large patches under everything that small ones are tested with: coarse levels, aprons, neighbours,
 /// features.
 fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (size, coarse_levels, apron, offset, mode) in [
