@@ -108,3 +108,10 @@ fn a_sampler_in_place_of_a_texture_does_not_compile() {
     assert!(said.contains("error[E0308]") && said.contains("TextureView"), "{said}");
     assert_eq!(said.matches("error[").count(), 1, "{said}");
 }
+
+#[test]
+fn a_cast_to_elements_that_the_bytes_are_not_does_not_compile() {
+    let said = bound(&RIGHT.replace("hits: hits.slice()", "hits: rays.slice().cast()")).expect_err("refused");
+    assert!(said.contains("error[E0277]") && said.contains("`SurfaceRay: SeenAs<"), "{said}");
+    assert_eq!(said.matches("error[").count(), 1, "{said}");
+}
