@@ -106,7 +106,7 @@ impl Keys {
     ///
     /// # Errors
     /// [`InputError`] for tangents that exceed `f32` when they are multiplied by their seconds.
-    fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
+    pub(crate) fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
         let mut keys = self.clone();
         keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
         match self.interpolation {

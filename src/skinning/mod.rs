@@ -29,6 +29,7 @@ pub(crate) mod verify;
 pub mod vertex;
 
 pub use character_levels::{level_errors, own_levels};
+pub use collapse::collapse_bones;
 pub use extent::Extent;
 pub use instance_lod::InstanceLod;
 pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};

@@ -13,7 +13,7 @@ use crate::asset::{Clip, Model};
 use crate::asset::{Influence, Mesh};
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::reference::palette;
-use crate::skinning::skin::reference::{skin, transformed};
+use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::Vertex;
 
 /// Poses per second of a clip that are enough for [`MeshLevels`](super::MeshLevels) and
@@ -95,24 +95,30 @@ impl Pose {
     }
 
     fn of(model: &Model, mesh: &Mesh, locals: &[Transform], weights: &[f32]) -> Self {
-        let models = local_to_model(&model.skeleton, locals);
-        Self { palette: palette(&model.skins[mesh.skin], &models), vertices: morph(mesh, weights) }
+        Self::at(model, mesh, &local_to_model(&model.skeleton, locals), weights)
+    }
+
+    /// With bones at these places in the model's space.
+    pub(super) fn at(model: &Model, mesh: &Mesh, models: &[Affine], weights: &[f32]) -> Self {
+        Self { palette: palette(&model.skins[mesh.skin], models), vertices: morph(mesh, weights) }
     }
 
     /// The position of a vertex under each of its bones alone.
     pub(super) fn points(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
-        let point = |influence: &Influence| {
-            let bone = &self.palette[influence.bone as usize];
-            Vec3::from(transformed(&self.vertices[vertex], bone).position)
-        };
-        influences.iter().map(point).collect()
+        influences.iter().map(|influence| self.point(vertex, influence)).collect()
+    }
+
+    fn point(&self, vertex: usize, influence: &Influence) -> Vec3 {
+        let [x, y, z] = self.vertices[vertex].position;
+        let along = |row: &[f32; 4]| row[0] * x + row[1] * y + row[2] * z + row[3];
+        Vec3::from(self.palette[influence.bone as usize].each_ref().map(along))
     }
 
     /// The positions of all vertices.
     pub(super) fn positions(&self, mesh: &Mesh) -> Vec<Vec3> {
         let position = |vertex: usize| {
-            let influences = mesh.influences.of(vertex);
-            mean(influences, &self.points(vertex, influences))
+            let influences = mesh.influences.of(vertex).iter();
+            influences.map(|influence| influence.weight * self.point(vertex, influence)).sum()
         };
         (0..self.vertices.len()).map(position).collect()
     }

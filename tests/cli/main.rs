@@ -5,6 +5,7 @@
 mod harness;
 
 mod bad_input;
+mod collapse;
 mod commands;
 mod crowd;
 mod crowd_drawn;

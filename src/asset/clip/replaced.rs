@@ -26,14 +26,28 @@ impl Clip {
     ) -> Result<Self, InputError> {
         let rotation = rotation.map(|keys| keys.stored("rotation", true)).transpose()?;
         let mut changed = [(Part::Translation, translation), (Part::Rotation, rotation)];
-        let mut layout = Layout::default();
-        for (index, track) in self.tracks.iter().enumerate() {
+        let tracks = self.tracks.iter().enumerate().map(|(index, track)| {
             let change = changed.iter_mut().find(|(part, _)| index == 3 * bone + *part as usize);
             let change = change.and_then(|(_, keys)| keys.take());
-            let keys = change.unwrap_or_else(|| self.stored_keys(track));
+            change.unwrap_or_else(|| self.stored_keys(track))
+        });
+        Self::of_stored(&self.name, self.duration, tracks)
+    }
+
+    /// A clip of tracks as they are stored, three a bone; one without times is at rest, which is its value.
+    ///
+    /// # Errors
+    /// [`InputError`] for more values than a buffer has room for.
+    pub(crate) fn of_stored(
+        name: &str,
+        duration: f32,
+        tracks: impl IntoIterator<Item = Keys>,
+    ) -> Result<Self, InputError> {
+        let mut layout = Layout::default();
+        for keys in tracks {
             let rest = keys.values[0];
             layout.add(Some(keys).filter(|keys| !keys.times.is_empty()), rest);
         }
-        layout.finish(self.name.clone(), self.duration)
+        layout.finish(name.to_owned(), duration)
     }
 }

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bench;
+mod collapse;
 mod crowd;
 mod demo;
 mod info;

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::Context;
 use crate::arguments::{Backend, one_of};
+use crate::collapse::CollapseArgs;
 
 /// What becomes of times outside a clip.
 pub const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clamp)];
@@ -33,6 +34,8 @@ pub struct Pose {
     model: PathBuf,
     #[command(flatten)]
     moment: MomentArgs,
+    #[command(flatten)]
+    collapse: CollapseArgs,
     /// What computes; both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
@@ -90,7 +93,7 @@ struct BoneReport<'a> {
 
 impl Pose {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let mut model = open_bare(&self.model)?;
+        let mut model = self.collapse.apply(open_bare(&self.model)?)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
         let (skeleton, clip) = (&model.skeleton, &model.clips[clip]);
         let pose = match self.backend.gpu(context)? {

@@ -16,6 +16,7 @@ use relievo::{Error, InputError};
 
 use crate::Context;
 use crate::arguments::Backend;
+use crate::collapse::CollapseArgs;
 use crate::output::say;
 use crate::pose::{MomentArgs, open};
 use crate::progress::during;
@@ -34,6 +35,8 @@ pub struct Skin {
     model: PathBuf,
     #[command(flatten)]
     moment: MomentArgs,
+    #[command(flatten)]
+    collapse: CollapseArgs,
     /// Which bones a vertex follows: all of its own (up to 8); the K strongest; or all, fading to the strongest alone as
     /// LAMBDA goes from 0 to 1.
     #[arg(long, value_name = "full|truncate:K|fade:LAMBDA", default_value = "full")]
@@ -100,6 +103,7 @@ impl Skin {
                 source: InputError::new("meshes", "none", bound),
             });
         }
+        model = self.collapse.apply(model)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
         if let Some(metres) = self.within {
             let coarsened = during("simplifying", || coarsen(&mut model, clip, metres))?;

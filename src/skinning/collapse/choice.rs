@@ -1,0 +1,248 @@
+//! Which bones collapse: one after another the one whose collapse is seen least.
+
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::CollapseOptions;
+use super::compose::{is_constant, signs};
+use super::rest::{Follower, Rest};
+use crate::InputError;
+use crate::animation::local_to_model::reference::local_to_model;
+use crate::animation::sample::reference::sample;
+use crate::asset::clip::{Clip, Part};
+use crate::asset::keyframe::RotationPath;
+use crate::asset::transform::column_major;
+use crate::asset::{Model, Skeleton};
+use crate::skinning::poses_of;
+
+/// Poses of each clip that are looked at, at most.
+const POSES: usize = 64;
+
+/// What vertices stray by less than this, of the model's size, is rounding.
+const UNSEEN: f64 = 1e-6;
+
+/// Which bones are kept, and what becomes of the others.
+pub(super) struct Remap {
+    /// For each bone the kept one that it is, or that it follows.
+    follows: Vec<usize>,
+    parents: Vec<Option<usize>>,
+}
+
+impl Remap {
+    fn new(skeleton: &Skeleton) -> Self {
+        let parents = skeleton.bones().iter().map(|bone| bone.parent.map(|parent| parent as usize));
+        Self { follows: (0..skeleton.len()).collect(), parents: parents.collect() }
+    }
+
+    pub(super) fn is_kept(&self, bone: usize) -> bool {
+        self.follows[bone] == bone
+    }
+
+    /// The kept bone that a bone is, or that it follows.
+    pub(super) fn follows(&self, bone: usize) -> usize {
+        self.follows[bone]
+    }
+
+    /// The kept bones.
+    pub(super) fn kept(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.follows.len()).filter(|bone| self.is_kept(*bone))
+    }
+
+    /// The bones from below the nearest kept bone above, down to this one.
+    pub(super) fn chain(&self, bone: usize) -> Vec<usize> {
+        let above = |bone: &usize| self.parents[*bone].filter(|parent| !self.is_kept(*parent));
+        let mut chain: Vec<usize> = std::iter::successors(Some(bone), above).collect();
+        chain.reverse();
+        chain
+    }
+
+    /// For each bone the place among the kept ones of what it is, or follows.
+    pub(super) fn indices(&self) -> Vec<u32> {
+        let mut places = vec![0; self.follows.len()];
+        self.kept().zip(0..).for_each(|(bone, place)| places[bone] = place);
+        self.follows.iter().map(|bone| places[*bone]).collect()
+    }
+
+    /// The nearest kept bone above.
+    fn kept_above(&self, bone: usize) -> Option<usize> {
+        self.parents[bone].map(|parent| self.follows[parent])
+    }
+
+    fn collapse(&mut self, bone: usize, into: usize) {
+        self.follows.iter_mut().filter(|follows| **follows == bone).for_each(|follows| *follows = into);
+    }
+}
+
+/// What a collapse costs: how far a vertex strays at most, then how far a vertex lies from the bone, by weight.
+type Cost = [f64; 2];
+
+/// What the choice looks at.
+pub(super) struct Choice<'a> {
+    rest: &'a Rest,
+    /// Of each bone, in each pose.
+    poses: Vec<Vec<DAffine3>>,
+    /// Bones that never collapse.
+    stays: Vec<bool>,
+    /// Bones whose scale is the same along all axes, but for signs, at rest and in every clip.
+    is_even: Vec<bool>,
+    remap: Remap,
+    costs: Vec<Option<Cost>>,
+}
+
+impl<'a> Choice<'a> {
+    /// # Errors
+    /// [`InputError`] for names that no bone has, and clips that are too long.
+    pub(super) fn new(model: &Model, options: &CollapseOptions, rest: &'a Rest) -> Result<Self, InputError> {
+        let skeleton = &model.skeleton;
+        let is_even = |bone: usize| {
+            let at_rest = signs([skeleton.bones()[bone].rest.scale]).is_some();
+            at_rest && model.clips.iter().all(|clip| super::compose::signs_in(clip, bone).is_some())
+        };
+        let mut poses = Vec::new();
+        for clip in &model.clips {
+            poses.extend(looked_at(skeleton, clip)?);
+        }
+        Ok(Self {
+            rest,
+            poses,
+            stays: stays(model, options)?,
+            is_even: (0..skeleton.len()).map(is_even).collect(),
+            remap: Remap::new(skeleton),
+            costs: vec![None; skeleton.len()],
+        })
+    }
+
+    /// Collapses bones until so many are left, or none may go.
+    ///
+    /// # Errors
+    /// [`InputError`] for fewer than those that stay.
+    pub(super) fn collapsed_to(mut self, count: usize) -> Result<Remap, InputError> {
+        let least = self.stays.iter().filter(|stays| **stays).count();
+        if count < least {
+            let bound =
+                format!("must be at least {least}: roots, what clips move first, end effectors, bones named");
+            return Err(InputError::new("bones", count, bound));
+        }
+        let mut left = self.remap.follows.len();
+        while left > count && self.collapse() {
+            left -= 1;
+        }
+        Ok(self.remap)
+    }
+
+    /// Collapses the bone that costs least, if there is one. Of equal ones the last, which lies deepest in its chain.
+    fn collapse(&mut self) -> bool {
+        let holds = self.holds();
+        let is_candidate = |bone: &usize| !self.stays[*bone] && (self.is_even[*bone] || !holds[*bone]);
+        let candidates: Vec<usize> = self.remap.kept().filter(is_candidate).collect();
+        for bone in &candidates {
+            if self.costs[*bone].is_none() {
+                self.costs[*bone] = Some(self.cost(*bone));
+            }
+        }
+        let cost = |bone: &usize| self.costs[*bone].unwrap_or([f64::INFINITY; 2]);
+        let order = |a: &usize, b: &usize| {
+            let [a, b] = [cost(a), cost(b)];
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        };
+        let Some(best) = candidates.into_iter().rev().min_by(order) else { return false };
+        let Some(into) = self.remap.kept_above(best) else { return false };
+        // Whatever hung on it hangs on another one now, and that one gets its vertices.
+        let below: Vec<usize> =
+            self.remap.kept().filter(|bone| self.remap.kept_above(*bone) == Some(best)).collect();
+        below.into_iter().chain([into]).for_each(|bone| self.costs[bone] = None);
+        self.remap.collapse(best, into);
+        true
+    }
+
+    /// Whether kept bones lie below each bone.
+    fn holds(&self) -> Vec<bool> {
+        let mut holds = vec![false; self.stays.len()];
+        for bone in self.remap.kept() {
+            if let Some(above) = self.remap.kept_above(bone) {
+                holds[above] = true;
+            }
+        }
+        holds
+    }
+
+    /// What it costs that a bone, and what has collapsed into it, follows the next kept bone above.
+    fn cost(&self, bone: usize) -> Cost {
+        let Some(above) = self.remap.kept_above(bone) else { return [f64::INFINITY; 2] };
+        let group: Vec<usize> =
+            (0..self.stays.len()).filter(|other| self.remap.follows(*other) == bone).collect();
+        let offsets: Vec<DAffine3> = group.iter().map(|other| self.offset(above, *other)).collect();
+        let mut moved: Vec<(usize, &Follower)> = (group.iter().enumerate())
+            .flat_map(|(place, other)| self.rest.followers[*other].iter().map(move |one| (place, one)))
+            .collect();
+        moved.sort_by_key(|(_, follower)| follower.vertex);
+        let stray = |models: &Vec<DAffine3>| {
+            let changes: Vec<(DMat3, DVec3)> = (group.iter().zip(&offsets))
+                .map(|(other, offset)| difference(models[above] * *offset, models[*other]))
+                .collect();
+            let of_vertex = |moved: &[(usize, &Follower)]| -> f64 {
+                let strays = moved.iter().map(|(place, follower)| {
+                    let (turn, shift) = changes[*place];
+                    follower.weight * (turn * follower.local + shift)
+                });
+                strays.sum::<DVec3>().length_squared()
+            };
+            moved.chunk_by(|a, b| a.1.vertex == b.1.vertex).map(of_vertex).fold(0.0, f64::max)
+        };
+        let stray = self.poses.par_iter().map(stray).reduce(|| 0.0, f64::max).sqrt();
+        let origin = self.rest.models[bone].translation;
+        let bone_radius = moved.iter().map(|(place, follower)| {
+            let at_rest = self.rest.models[group[*place]].transform_point3(follower.local);
+            follower.weight * at_rest.distance(origin)
+        });
+        let bone_radius = bone_radius.fold(0.0, f64::max);
+        [if stray > UNSEEN * self.rest.size { stray } else { 0.0 }, bone_radius]
+    }
+
+    /// Where a bone is at rest in the space of one above it.
+    fn offset(&self, above: usize, bone: usize) -> DAffine3 {
+        let parent = |bone: &usize| self.remap.parents[*bone].filter(|parent| *parent != above);
+        let mut chain: Vec<usize> = std::iter::successors(Some(bone), parent).collect();
+        chain.reverse();
+        self.rest.offset(&chain)
+    }
+}
+
+fn difference(a: DAffine3, b: DAffine3) -> (DMat3, DVec3) {
+    (a.matrix3 - b.matrix3, a.translation - b.translation)
+}
+
+/// All bones of poses of a clip, evenly spaced from start to end, at most [`POSES`].
+fn looked_at(skeleton: &Skeleton, clip: &Clip) -> Result<Vec<Vec<DAffine3>>, InputError> {
+    let poses = poses_of(clip)?.min(POSES);
+    let pose = |at: usize| {
+        let time = clip.duration() * (at as f32 / (poses - 1) as f32);
+        let models = local_to_model(skeleton, &sample(clip, time, RotationPath::Slerp));
+        models.iter().map(|model| super::rest::bind(&column_major(model))).collect()
+    };
+    Ok((0..poses).into_par_iter().map(pose).collect())
+}
+
+/// Which bones never collapse: roots, the uppermost that a clip moves, end effectors, and those that are named.
+fn stays(model: &Model, options: &CollapseOptions) -> Result<Vec<bool>, InputError> {
+    let bones = model.skeleton.bones();
+    let mut stays: Vec<bool> = bones.iter().map(|bone| bone.parent.is_none()).collect();
+    let moves = |bone: usize| {
+        let tracks = |clip: &Clip| Part::ALL.iter().any(|part| !is_constant(clip, bone, *part));
+        model.clips.iter().any(tracks)
+    };
+    let mut is_moved = vec![false; bones.len()];
+    for (index, bone) in bones.iter().enumerate() {
+        let above = bone.parent.is_some_and(|parent| is_moved[parent as usize]);
+        is_moved[index] = above || moves(index);
+        stays[index] |= is_moved[index] && !above;
+        stays[index] |= options.keep_end_effectors && model.skeleton.descendants()[index] == 0;
+    }
+    for (at, name) in options.keep.iter().enumerate() {
+        let named = bones.iter().zip(&mut stays).filter(|(bone, _)| bone.name == *name);
+        if named.map(|(_, stays)| *stays = true).count() == 0 {
+            return Err(InputError::new(format!("keep[{at}]"), name, "must be the name of a bone"));
+        }
+    }
+    Ok(stays)
+}

@@ -1,0 +1,98 @@
+//! Chains of bones as one translation, rotation and scale.
+
+use glam::{DQuat, DVec3};
+
+use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::{Skeleton, Transform};
+
+/// By how much scales along the axes may differ, of the largest of a bone's.
+const UNEVEN: f32 = 1e-4;
+
+/// A bone in the space of one above it. The scale of all bones but the last is even: the same along all axes, but for
+/// `signs`.
+#[derive(Clone, Copy)]
+pub(super) struct Composed {
+    pub translation: DVec3,
+    pub rotation: DQuat,
+    pub scale: DVec3,
+    pub signs: DVec3,
+}
+
+impl Composed {
+    pub(super) const IDENTITY: Self =
+        Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE, signs: DVec3::ONE };
+
+    pub(super) fn point(&self, point: DVec3) -> DVec3 {
+        self.translation + self.vector(point)
+    }
+
+    pub(super) fn vector(&self, vector: DVec3) -> DVec3 {
+        self.rotation * (self.scale * vector)
+    }
+
+    /// The rotation of what turns below: an even scale passes it, and mirrors its axis.
+    pub(super) fn turned(&self, below: DQuat) -> DQuat {
+        let axis = self.signs.element_product() * self.signs * DVec3::new(below.x, below.y, below.z);
+        self.rotation * DQuat::from_xyzw(axis.x, axis.y, axis.z, below.w)
+    }
+
+    /// One more bone below, whose scale has these signs.
+    pub(super) fn with(&self, below: &Transform, signs: DVec3) -> Self {
+        let [translation, scale] =
+            [below.translation, below.scale].map(|vector| DVec3::from(vector.map(f64::from)));
+        Self {
+            translation: self.point(translation),
+            rotation: self.turned(DQuat::from_array(below.rotation.map(f64::from))),
+            scale: self.scale * scale,
+            signs: self.signs * signs,
+        }
+    }
+
+    pub(super) fn transform(&self) -> Transform {
+        Transform {
+            translation: self.translation.as_vec3().to_array(),
+            rotation: self.rotation.normalize().as_quat().to_array(),
+            scale: self.scale.as_vec3().to_array(),
+        }
+    }
+}
+
+/// The signs of scales that are the same along all axes but for these; `None` where they are not.
+pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3> {
+    let scales: Vec<[f32; 3]> = scales.into_iter().collect();
+    let largest = scales.iter().max_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
+    let signs = largest.map(|scale| if scale < 0.0 { -1.0_f32 } else { 1.0 });
+    let is_even = |scale: &[f32; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|axis| signs[axis] * scale[axis]);
+        (x - y).abs().max((x - z).abs()) <= UNEVEN * largest[0].abs()
+    };
+    scales.iter().all(is_even).then(|| DVec3::from(signs.map(f64::from)))
+}
+
+/// Those of a bone in a clip, between its keys too.
+pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
+    signs(clip.stored_keys(clip.track(bone, Part::Scale)).values.into_iter().map(|[x, y, z, _]| [x, y, z]))
+}
+
+/// Whether a clip leaves a part of a bone as it is all the time.
+pub(super) fn is_constant(clip: &Clip, bone: usize, part: Part) -> bool {
+    let keys = clip.stored_keys(clip.track(bone, part));
+    let is_spline = keys.interpolation == Interpolation::CubicSpline && !keys.times.is_empty();
+    let first = keys.values[usize::from(is_spline)];
+    keys.values.iter().enumerate().all(|(at, value)| {
+        let is_tangent = is_spline && at % 3 != 1;
+        *value == if is_tangent { [0.0; 4] } else { first }
+    })
+}
+
+/// Where the last bone of a chain is at rest, in the space of the bone above the first.
+pub(super) fn rest(skeleton: &Skeleton, chain: &[usize]) -> Transform {
+    let rest = |bone: usize| skeleton.bones()[bone].rest;
+    let [bone] = chain else {
+        let add = |above: Composed, bone: &usize| {
+            above.with(&rest(*bone), signs([rest(*bone).scale]).unwrap_or(DVec3::ONE))
+        };
+        return chain.iter().fold(Composed::IDENTITY, add).transform();
+    };
+    rest(*bone)
+}

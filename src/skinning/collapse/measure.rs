@@ -1,0 +1,78 @@
+//! How far a collapsed model is off.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::CollapseError;
+use super::choice::Remap;
+use crate::InputError;
+use crate::animation::local_to_model::reference::local_to_model;
+use crate::animation::sample::reference::sample;
+use crate::asset::keyframe::RotationPath;
+use crate::asset::{Affine, Mesh, Model, Transform};
+use crate::skinning::pose::{Pose, poses_of};
+
+/// The largest of the distances in a pose, of bones and of vertices, and the sum of the squares of the latter.
+#[derive(Default)]
+struct Off {
+    bones: f64,
+    vertices: f64,
+    squares: f64,
+}
+
+/// Looks at every clip 60 times a second; at rest, where there are none.
+pub(super) fn error(model: &Model, collapsed: &Model, remap: &Remap) -> Result<CollapseError, InputError> {
+    let mut moments: Vec<Option<(usize, f32)>> = Vec::new();
+    for (index, clip) in model.clips.iter().enumerate() {
+        let poses = poses_of(clip)?;
+        let time = |at: usize| clip.duration() * (at as f32 / (poses - 1) as f32);
+        moments.extend((0..poses).map(|at| Some((index, time(at)))));
+    }
+    if moments.is_empty() {
+        moments.push(None);
+    }
+    let kept: Vec<usize> = remap.kept().collect();
+    let off: Vec<Off> = moments.par_iter().map(|moment| off(model, collapsed, &kept, *moment)).collect();
+    let vertices: usize = model.meshes.iter().map(Mesh::vertices).sum();
+    let squares: f64 = off.iter().map(|off| off.squares).sum();
+    let largest = |of: fn(&Off) -> f64| off.iter().map(of).fold(0.0, f64::max) as f32;
+    Ok(CollapseError {
+        largest: largest(|off| off.vertices),
+        rms: (squares / (vertices * off.len()).max(1) as f64).sqrt() as f32,
+        kept_bones: largest(|off| off.bones),
+    })
+}
+
+fn off(model: &Model, collapsed: &Model, kept: &[usize], moment: Option<(usize, f32)>) -> Off {
+    let [before, after] = [model, collapsed].map(|model| posed(model, moment));
+    let mut off = Off::default();
+    for (bone, after) in kept.iter().zip(&after) {
+        off.bones = off.bones.max(origin(&before[*bone]).distance(origin(after)).into());
+    }
+    for (full, reduced) in model.meshes.iter().zip(&collapsed.meshes) {
+        let weights = match moment {
+            None => full.weights.clone(),
+            Some((clip, time)) => full.weights_at(clip, time),
+        };
+        let before = Pose::at(model, full, &before, &weights).positions(full);
+        let after = Pose::at(collapsed, reduced, &after, &weights).positions(reduced);
+        for (before, after) in before.into_iter().zip(after) {
+            let square = before.as_dvec3().distance_squared(after.as_dvec3());
+            off.vertices = off.vertices.max(square.sqrt());
+            off.squares += square;
+        }
+    }
+    off
+}
+
+fn posed(model: &Model, moment: Option<(usize, f32)>) -> Vec<Affine> {
+    let locals: Vec<Transform> = match moment {
+        None => model.skeleton.rest(),
+        Some((clip, time)) => sample(&model.clips[clip], time, RotationPath::Slerp),
+    };
+    local_to_model(&model.skeleton, &locals)
+}
+
+fn origin(model: &Affine) -> Vec3 {
+    Vec3::from(model.map(|row| row[3]))
+}

@@ -1,0 +1,103 @@
+//! A model at rest: where its bones and its vertices are, and how far vertices lie from the bones that take them along.
+
+use glam::{DAffine3, DQuat, DVec3};
+
+use crate::asset::{Model, Transform};
+
+/// A vertex that follows a bone.
+pub(super) struct Follower {
+    /// Counted over all meshes.
+    pub vertex: usize,
+    /// In the bone's space.
+    pub local: DVec3,
+    pub weight: f64,
+}
+
+/// A model at rest.
+pub(super) struct Rest {
+    /// Each bone in its parent's space.
+    pub locals: Vec<DAffine3>,
+    /// Each bone in the model's space.
+    pub models: Vec<DAffine3>,
+    /// What follows each bone.
+    pub followers: Vec<Vec<Follower>>,
+    /// How far the vertices that follow each bone or one below it, and the origins of bones below it, lie from its origin;
+    /// in the model's units.
+    pub radii: Vec<f64>,
+    /// Half of the diagonal of a box around all vertices; without vertices, around the origins of bones.
+    pub size: f64,
+}
+
+/// In f64; the rotation of length 1.
+pub(super) fn affine(transform: &Transform) -> DAffine3 {
+    let [scale, translation] =
+        [transform.scale, transform.translation].map(|v| DVec3::from(v.map(f64::from)));
+    let rotation = DQuat::from_array(transform.rotation.map(f64::from)).normalize();
+    DAffine3::from_scale_rotation_translation(scale, rotation, translation)
+}
+
+/// A skin's inverse bind matrix.
+pub(super) fn bind(matrix: &[f32; 16]) -> DAffine3 {
+    DAffine3::from_mat4(glam::DMat4::from_cols_array(&matrix.map(f64::from)))
+}
+
+impl Rest {
+    pub(super) fn new(model: &Model) -> Self {
+        let bones = model.skeleton.bones();
+        let locals: Vec<DAffine3> = bones.iter().map(|bone| affine(&bone.rest)).collect();
+        let mut models: Vec<DAffine3> = Vec::with_capacity(bones.len());
+        for (bone, local) in bones.iter().zip(&locals) {
+            models.push(bone.parent.map_or(*local, |parent| models[parent as usize] * *local));
+        }
+        let followers = followers(model);
+        let (mut radii, mut low, mut high) = (vec![0.0_f64; bones.len()], DVec3::MAX, DVec3::MIN);
+        let has_vertices = followers.iter().any(|followers| !followers.is_empty());
+        for bone in 0..bones.len() {
+            let origin = models[bone].translation;
+            let places = followers[bone].iter().map(|follower| models[bone].transform_point3(follower.local));
+            for (at, place) in [origin].into_iter().chain(places).enumerate() {
+                if at > 0 || !has_vertices {
+                    (low, high) = (low.min(place), high.max(place));
+                }
+                let parent = |bone: usize| bones[bone].parent.map(|parent| parent as usize);
+                for above in std::iter::successors(Some(bone), |bone| parent(*bone)) {
+                    radii[above] = radii[above].max(place.distance(models[above].translation));
+                }
+            }
+        }
+        Self { locals, models, followers, radii, size: low.distance(high) / 2.0 }
+    }
+
+    /// What takes points from the last bone's space into that of the bone above the first.
+    pub(super) fn offset(&self, chain: &[usize]) -> DAffine3 {
+        chain.iter().fold(DAffine3::IDENTITY, |offset, bone| offset * self.locals[*bone])
+    }
+
+    /// The largest factor by which a bone's space is scaled at rest.
+    pub(super) fn scale(&self, bone: usize) -> f64 {
+        let matrix = self.models[bone].matrix3;
+        [matrix.x_axis, matrix.y_axis, matrix.z_axis].iter().map(|axis| axis.length()).fold(0.0, f64::max)
+    }
+}
+
+fn followers(model: &Model) -> Vec<Vec<Follower>> {
+    let mut followers: Vec<Vec<Follower>> = model.skeleton.bones().iter().map(|_| Vec::new()).collect();
+    let mut first = 0;
+    for mesh in &model.meshes {
+        let skin = &model.skins[mesh.skin];
+        let binds: Vec<DAffine3> = skin.inverse_binds.iter().map(bind).collect();
+        for (vertex, position) in mesh.positions.iter().enumerate() {
+            let position = DVec3::from(position.map(f64::from));
+            for influence in mesh.influences.of(vertex) {
+                let joint = influence.bone as usize;
+                followers[skin.bones[joint] as usize].push(Follower {
+                    vertex: first + vertex,
+                    local: binds[joint].transform_point3(position),
+                    weight: influence.weight.into(),
+                });
+            }
+        }
+        first += mesh.vertices();
+    }
+    followers
+}

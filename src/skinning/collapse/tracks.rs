@@ -1,0 +1,267 @@
+//! Tracks of bones whose parents have collapsed: what the whole chain did to the space of the kept bone above it.
+
+use glam::{DQuat, DVec3};
+
+use super::choice::Remap;
+use super::compose::{Composed, is_constant, signs_in};
+use super::rest::Rest;
+use crate::InputError;
+use crate::animation::sample::reference::{rotation_at, slerp, vector_at};
+use crate::asset::clip::{Clip, Interpolation, Keys, Part};
+use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
+use crate::asset::transform::finite;
+use crate::asset::{Model, Skeleton, Transform};
+
+/// How far the composed keys of a bone may move points that follow it, or bones below it, off between two keys, as each
+/// of translation, rotation and scale counts at a quarter, half and three quarters of the way; as a part of the model's
+/// size at rest, half of the diagonal of a box around it. Where it would be more, keys are added, up to 63 between two.
+const BETWEEN_KEYS: f64 = 1e-3;
+
+/// How often a stretch between two keys is halved at most.
+const HALVINGS: u32 = 6;
+
+/// Values that are nearer than this, of the larger, are equal.
+const ROUNDING: f32 = 1e-6;
+
+/// A clip of the kept bones, whose skeleton this is.
+pub(super) fn clip(
+    model: &Model,
+    clip: &Clip,
+    remap: &Remap,
+    skeleton: &Skeleton,
+    rest: &Rest,
+) -> Result<Clip, InputError> {
+    let mut tracks = Vec::with_capacity(3 * skeleton.len());
+    for (bone, reduced) in remap.kept().zip(skeleton.bones()) {
+        let chain = remap.chain(bone);
+        if chain.len() == 1 {
+            tracks.extend(Part::ALL.map(|part| clip.stored_keys(clip.track(bone, part))));
+            continue;
+        }
+        let composed = Chain::new(model, clip, &chain, rest).tracks()?;
+        tracks.extend(
+            Part::ALL.into_iter().zip(composed).map(|(part, keys)| settled(keys, part, &reduced.rest)),
+        );
+    }
+    Clip::of_stored(clip.name(), clip.duration(), tracks)
+}
+
+/// A track without keys is at rest: one whose value is another one gets a key.
+fn settled(mut keys: Keys, part: Part, rest: &Transform) -> Keys {
+    if keys.times.is_empty() {
+        let rest = value(rest, part);
+        let length = rest.iter().fold(0.0_f32, |largest, value| largest.max(value.abs()));
+        if distance(part, keys.values[0], rest) <= f64::from(ROUNDING * length) {
+            keys.values[0] = rest;
+        } else {
+            keys.times.push(0.0);
+        }
+    }
+    keys
+}
+
+/// On which side of a jump.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Before,
+    After,
+}
+
+/// A kept bone in a clip, with the collapsed bones between it and the next kept bone above.
+struct Chain<'a> {
+    clip: &'a Clip,
+    /// Each with the signs of its scale.
+    collapsed: Vec<(usize, DVec3)>,
+    bone: usize,
+    /// How far points of the model are off where translation, rotation (radians) and scale are off by 1.
+    levers: [f64; 3],
+    tolerance: f64,
+}
+
+impl<'a> Chain<'a> {
+    fn new(model: &Model, clip: &'a Clip, chain: &[usize], rest: &Rest) -> Self {
+        let (bone, collapsed) = (chain[chain.len() - 1], &chain[..chain.len() - 1]);
+        let above = model.skeleton.bones()[chain[0]].parent;
+        let scale = above.map_or(1.0, |above| rest.scale(above as usize));
+        let own = rest.scale(bone);
+        let of_scale = if own > 0.0 { scale * rest.radii[bone] / own } else { 0.0 };
+        let signed = |bone: &usize| (*bone, signs_in(clip, *bone).unwrap_or(DVec3::ONE));
+        Self {
+            clip,
+            collapsed: collapsed.iter().map(signed).collect(),
+            bone,
+            levers: [scale, rest.radii[bone], of_scale],
+            tolerance: BETWEEN_KEYS * rest.size,
+        }
+    }
+
+    fn tracks(&self) -> Result<[Keys; 3], InputError> {
+        let is_rigid = self.moving(self.collapsed.iter().map(|(bone, _)| *bone)).is_empty();
+        let all = if is_rigid { Part::ALL.map(|part| self.mapped(part)) } else { self.sampled() };
+        let mut checked = Part::ALL.into_iter().zip(all).map(|(part, keys)| match part {
+            Part::Rotation if keys.interpolation != Interpolation::CubicSpline => {
+                keys.stored("rotation", true)
+            }
+            _ => finite("keys", keys.values.as_flattened()).map(|()| keys),
+        });
+        let mut next =
+            || checked.next().unwrap_or_else(|| Err(InputError::new("keys", "none", "must be three")));
+        Ok([next()?, next()?, next()?])
+    }
+
+    /// Tracks of these bones that are not the same all the time.
+    fn moving(&self, bones: impl Iterator<Item = usize>) -> Vec<Keys> {
+        let tracks = bones.flat_map(|bone| Part::ALL.map(|part| (bone, part)));
+        let moving = tracks.filter(|(bone, part)| !is_constant(self.clip, *bone, *part));
+        moving.map(|(bone, part)| self.clip.stored_keys(self.clip.track(bone, part))).collect()
+    }
+
+    /// The collapsed bones at a time.
+    fn above(&self, time: f32, side: Side) -> Composed {
+        let add = |above: Composed, (bone, signs): &(usize, DVec3)| {
+            above.with(&local(self.clip, *bone, time, side), *signs)
+        };
+        self.collapsed.iter().fold(Composed::IDENTITY, add)
+    }
+
+    fn at(&self, time: f32, side: Side) -> Transform {
+        self.above(time, side).with(&local(self.clip, self.bone, time, side), DVec3::ONE).transform()
+    }
+
+    /// The bone's own keys below bones that do not move: exactly what they do, since all of it is linear in the values.
+    fn mapped(&self, part: Part) -> Keys {
+        let above = self.above(0.0, Side::After);
+        let mut keys = self.clip.stored_keys(self.clip.track(self.bone, part));
+        let is_spline = keys.interpolation == Interpolation::CubicSpline;
+        for (at, value) in keys.values.iter_mut().enumerate() {
+            let is_tangent = is_spline && at % 3 != 1;
+            let [x, y, z, w] = value.map(f64::from);
+            let vector = DVec3::new(x, y, z);
+            *value = match part {
+                Part::Translation if is_tangent => above.vector(vector).extend(0.0),
+                Part::Translation => above.point(vector).extend(0.0),
+                Part::Rotation => above.turned(DQuat::from_xyzw(x, y, z, w)).into(),
+                Part::Scale => (above.scale * vector).extend(0.0),
+            }
+            .as_vec4()
+            .to_array();
+        }
+        keys
+    }
+
+    /// Keys at the times of all tracks of the chain, and between them where it bends.
+    fn sampled(&self) -> [Keys; 3] {
+        let tracks = self.moving(self.collapsed.iter().map(|(bone, _)| *bone).chain([self.bone]));
+        let mut times: Vec<f32> = tracks.iter().flat_map(|keys| keys.times.iter().copied()).collect();
+        times.sort_by(f32::total_cmp);
+        times.dedup();
+        let is_step = tracks.iter().all(|keys| keys.interpolation == Interpolation::Step);
+        let mut poses: Vec<(f32, Transform)> = Vec::new();
+        for (at, time) in times.into_iter().enumerate() {
+            let [before, after] = [Side::Before, Side::After].map(|side| (time, self.at(time, side)));
+            if let Some(last) = poses.last().copied().filter(|_| !is_step) {
+                self.halve([last, before], HALVINGS, &mut poses);
+            }
+            if before != after && (at == 0 || !is_step) {
+                poses.push(before);
+            }
+            poses.push(after);
+        }
+        let interpolation = if is_step { Interpolation::Step } else { Interpolation::Linear };
+        Part::ALL.map(|part| keys(&poses, part, interpolation))
+    }
+
+    /// Adds keys between two, where the straight way would be too far off.
+    fn halve(&self, ends: [(f32, Transform); 2], halvings: u32, poses: &mut Vec<(f32, Transform)>) {
+        let [(from, start), (to, end)] = ends;
+        let at = |fraction: f32| from + (to - from) * fraction;
+        let middle = at(0.5);
+        let is_off = |fraction: f32| {
+            let pose = self.at(at(fraction), Side::After);
+            Part::ALL.into_iter().zip(self.levers).any(|(part, lever)| {
+                let straight = between(part, value(&start, part), value(&end, part), fraction);
+                lever * distance(part, straight, value(&pose, part)) > self.tolerance
+            })
+        };
+        let has_room = halvings > 0 && middle > from && middle < to;
+        if has_room && [0.25, 0.5, 0.75].into_iter().any(is_off) {
+            let pose = (middle, self.at(middle, Side::After));
+            self.halve([ends[0], pose], halvings - 1, poses);
+            poses.push(pose);
+            self.halve([pose, ends[1]], halvings - 1, poses);
+        }
+    }
+}
+
+/// A part of poses; without times where it is the same in all.
+fn keys(poses: &[(f32, Transform)], part: Part, interpolation: Interpolation) -> Keys {
+    let (times, values): (Vec<f32>, Vec<[f32; 4]>) =
+        poses.iter().map(|(time, pose)| (*time, value(pose, part))).unzip();
+    if values.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Keys { times: vec![], values: values[..1].to_vec(), interpolation: Interpolation::Step };
+    }
+    Keys { times, values, interpolation }
+}
+
+/// A part as tracks hold it.
+fn value(transform: &Transform, part: Part) -> [f32; 4] {
+    let vector = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+    match part {
+        Part::Translation => vector(transform.translation),
+        Part::Rotation => transform.rotation,
+        Part::Scale => vector(transform.scale),
+    }
+}
+
+/// A bone in its parent's space.
+fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
+    let of = |part| {
+        let track = clip.track(bone, part);
+        let (times, interpolation) = (clip.times_of(track), track.interpolation());
+        let place = match side {
+            Side::Before => place_before(times, interpolation, time),
+            Side::After => keyframe_cursor(times, time),
+        };
+        (&clip.values()[track.first_value as usize..], interpolation, place)
+    };
+    let vector = |part| {
+        let (values, interpolation, place) = of(part);
+        let [x, y, z, _] = vector_at(values, interpolation, place);
+        [x, y, z]
+    };
+    let (values, interpolation, place) = of(Part::Rotation);
+    let rotation = rotation_at(values, interpolation, place, RotationPath::Slerp);
+    Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
+}
+
+/// Where a moment lies among key times, as seen from before it: at a key, a jump to it has not happened.
+fn place_before(times: &[f32], interpolation: Interpolation, time: f32) -> KeyframeCursor {
+    let first = times.partition_point(|other| *other < time);
+    if times.get(first) != Some(&time) {
+        return keyframe_cursor(times, time);
+    }
+    let key = if interpolation == Interpolation::Step { first.saturating_sub(1) } else { first };
+    KeyframeCursor { key: key as u32, fraction: 0.0 }
+}
+
+fn between(part: Part, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4] {
+    if part != Part::Rotation {
+        return std::array::from_fn(|i| start[i] + (end[i] - start[i]) * fraction);
+    }
+    let dot: f32 = start.iter().zip(end).map(|(a, b)| a * b).sum();
+    slerp(start, if dot < 0.0 { end.map(|x| -x) } else { end }, fraction)
+}
+
+/// Between two values of a part: between vectors, the largest difference of scales, or radians.
+fn distance(part: Part, a: [f32; 4], b: [f32; 4]) -> f64 {
+    let [a, b] = [a, b].map(|value| glam::DVec4::from_array(value.map(f64::from)));
+    match part {
+        Part::Translation => a.distance(b),
+        // From the chord of q and the nearer one of ±q.
+        Part::Rotation => {
+            let (near, far) = (a.distance(b).min((a + b).length()), a.distance(b).max((a + b).length()));
+            4.0 * near.atan2(far)
+        }
+        Part::Scale => (a - b).abs().max_element(),
+    }
+}
