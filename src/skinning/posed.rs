@@ -6,13 +6,14 @@ use image::RgbaImage;
 use super::InstanceLod;
 use super::morph::reference::morph;
 use super::palette::reference::palette_for;
-use super::picture::reference::{Part, Scene};
+use super::picture::framing;
 use super::picture::texture::Surface;
-use super::picture::{Light, framing};
+use super::picture::{Part, Scene};
 use super::skin::reference::skin;
 use super::vertex::{Blend, Vertex};
 use crate::InputError;
 use crate::animation::Pose;
+use crate::asset::Light;
 use crate::asset::mesh::COORDINATE_LIMIT;
 use crate::asset::{Mesh, Model};
 
