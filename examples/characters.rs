@@ -11,7 +11,7 @@
 
 use glam::{Vec3, camera};
 use image::{Rgba, RgbaImage};
-use relievo::animation::concat::{ConcatPass, Walk};
+use relievo::animation::concat::ConcatPass;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let clips = ClipBuffers::new(&gpu, &set)?;
         let place = PlacePass::new(&gpu)?.prepare(&gpu, &clips, &posed)?;
         let sample = SamplePass::new(&gpu, RotationPath::Slerp)?.prepare(&gpu, &clips, &posed)?;
-        let concat = ConcatPass::new(&gpu, Walk::of(&gpu))?.prepare(&gpu, &model.skeleton, &posed)?;
+        let concat = ConcatPass::new(&gpu)?.prepare(&gpu, &model.skeleton, &posed)?;
         let placements = Buffer::from_slice(&gpu, "placements", &places(model, index, characters))?;
         let albedos = Albedo::of_meshes(&gpu, model, &clay, ColorTexture::new)?;
         crowd.add(

@@ -7,7 +7,7 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Lens, Lod};
+use relievo::animation::{BoundTable, ClipSet, Frame, Gate, Lens, Lod};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::reaches;
 use relievo::gpu::{Gpu, Options};
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let clips: Vec<_> = model.clips.iter().collect();
     let set = ClipSet::new(&clips)?;
     let reaches = reaches(model.skeleton.len(), &model.skins, &model.meshes);
-    let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp)?;
+    let table = BoundTable::new(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp)?;
 
     // A thousand of them, each at a moment of its own, from 10 to 110 m away.
     let count = 1000;
@@ -34,8 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let crowd = Crowd::new(&gpu, &set, &instances)?;
 
     // Once: pipelines and bind groups.
-    let choice = Choice::Gate(Gate::Bounded);
-    let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &table, choice)?;
+    let gate = Gate::Bounded(table.clone());
+    let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &gate)?;
 
     // A frame: how far away each is, and how many pixels may be missed.
     let lens = Lens::new(1080, 1.0, 0.1);
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     for number in 0..60 {
         let elapsed = number as f32 / 60.0;
-        frame.gating.lods.write(&gpu, &lods)?;
+        frame.state.lods.write(&gpu, &lods)?;
         frame.set(
             &gpu,
             &Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 },

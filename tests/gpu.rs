@@ -10,7 +10,7 @@ use std::task::{Context, Poll, Wake};
 use harness::gpu;
 use relievo::animation::ClipSet;
 use relievo::animation::active::ActivePairs;
-use relievo::animation::concat::{ConcatPass, Walk};
+use relievo::animation::concat::ConcatPass;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
@@ -236,7 +236,7 @@ fn a_frame_of_a_crowd_allocates_nothing() {
     let place = PlacePass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("prepared");
     let sample = sampling.prepare(&gpu, &clips, &crowd).expect("prepared");
     let some = sampling.prepare_active(&gpu, &clips, &crowd, &active).expect("prepared");
-    let concat = ConcatPass::new(&gpu, Walk::Levels).expect("compiled");
+    let concat = ConcatPass::new(&gpu).expect("compiled");
     let concat = concat.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
     for frame in 0..4 {
         let (known, _) = census(&instance, &gpu);

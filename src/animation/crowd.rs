@@ -86,6 +86,8 @@ pub struct Crowd {
     pub bones: usize,
     /// Layers, the base included: 1 where each instance plays one clip.
     pub layers: usize,
+    /// Clips of the set.
+    pub(crate) clips: usize,
     path: RotationPath,
 }
 
@@ -122,6 +124,7 @@ impl Crowd {
             previous: None,
             bones,
             layers: 1 + layers.len(),
+            clips: set.clips().len(),
             path: RotationPath::default(),
         })
     }

@@ -16,9 +16,9 @@ pub mod crowd;
 pub mod decide;
 pub mod frame;
 pub mod gate;
-pub mod gate_table;
 #[cfg(feature = "gpu")]
-pub mod gating;
+pub mod gate_state;
+pub mod gate_table;
 pub mod instance;
 pub mod layers;
 pub mod lod;
@@ -37,9 +37,10 @@ pub mod verify;
 pub use crate::asset::keyframe::RotationPath;
 pub use bounds::Bounds;
 pub use clip_set::ClipSet;
-pub use decide::Choice;
 pub use gate::{Frame, Gate};
-pub use gate_table::GateTable;
+#[cfg(feature = "gpu")]
+pub use gate_state::GateState;
+pub use gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 pub use instance::{Instance, Wrap};
 pub use layers::Layer;
 pub use lod::{Lens, Lod, Range};

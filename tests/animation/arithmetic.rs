@@ -1,7 +1,7 @@
 //! The shaders' whole numbers, on the adapter, against wider ones.
 
 use relievo::animation::budget::reference::rank_of;
-use relievo::animation::gate::reference::{motion_at, motion_between, share_of};
+use relievo::animation::gate_table::sums::{motion_at, motion_between, share_of};
 use relievo::animation::verify::Draw;
 use relievo::gpu::shaders::{ANIMATION_BUDGET, ANIMATION_GATE};
 

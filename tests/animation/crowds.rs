@@ -1,10 +1,10 @@
 //! Crowds on the device at hand.
 
 use relievo::Error;
-use relievo::animation::bounds::{BoundsPass, Share, bone_reaches};
+use relievo::animation::bounds::{BoundsPass, bone_reaches};
 use relievo::animation::chosen::ChosenBones;
 use relievo::animation::concat::reference::concat;
-use relievo::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
+use relievo::animation::concat::{CONCAT_BOUND, ConcatPass};
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
@@ -113,7 +113,7 @@ fn layered_crowds_are_concatenated() {
     let locals = sampled(&gpu, &set, &crowd, 0.3);
     let expected: Vec<f32> =
         locals.chunks(153).flat_map(|locals| concat(&model.skeleton, locals)).flatten().flatten().collect();
-    let pass = ConcatPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
+    let pass = ConcatPass::new(&gpu).expect("compiled");
     let job = pass.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
     gpu.run("test", |encoder| job.record(encoder)).expect("run");
     let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
@@ -194,7 +194,7 @@ fn chosen_bones_are_those_of_the_whole() {
 fn bounds_that_do_not_fit_are_refused() {
     let (gpu, (model, set)) = (gpu(), scene());
     let crowd = Crowd::new(&gpu, &set, &plays(0, 3)).expect("fits");
-    let pass = BoundsPass::new(&gpu, Share::of(&gpu)).expect("compiled");
+    let pass = BoundsPass::new(&gpu).expect("compiled");
     let refused = |reaches: &[f32], room| {
         let bounds = Buffer::new(&gpu, "bounds", room).expect("allocated");
         field(pass.prepare(&gpu, &crowd, reaches, &bounds).expect_err("refused"))

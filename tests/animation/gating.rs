@@ -1,6 +1,5 @@
 //! Gates: what they promise, on random clips and on the creature's.
 
-use relievo::animation::Choice;
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::compact::reference::Work;
 use relievo::animation::frame::reference::Crowd;
@@ -10,7 +9,9 @@ use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::verify::{Draw, random_clips, random_skeleton};
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Lod};
+use relievo::animation::{
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable,
+};
 use relievo::asset::clip::BoneKeys;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
@@ -49,16 +50,28 @@ impl Stage {
         self.clips.iter().collect()
     }
 
-    fn bounds(&self, path: RotationPath) -> GateTable {
-        GateTable::of_bounds(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
+    fn bounds(&self, path: RotationPath) -> BoundTable {
+        BoundTable::new(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
     }
 
-    fn movers(&self) -> GateTable {
-        GateTable::of_movers(&self.order, &self.set, &self.clips()).expect("fits")
+    fn bounded(&self, path: RotationPath) -> Gate {
+        Gate::Bounded(self.bounds(path))
     }
 
-    fn crowd<'a>(&'a self, table: &'a GateTable, path: RotationPath, instances: &[Instance]) -> Crowd<'a> {
-        Crowd::new(&self.order, &self.set, table, path, instances.to_vec()).expect("one path")
+    fn expectations(&self, path: RotationPath) -> ExpectationTable {
+        ExpectationTable::new(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
+    }
+
+    fn animated_bones(&self) -> AnimatedBones {
+        AnimatedBones::new(&self.order, &self.set, &self.clips()).expect("fits")
+    }
+
+    fn off(&self) -> Gate {
+        Gate::Off(self.animated_bones())
+    }
+
+    fn crowd<'a>(&'a self, gate: &'a Gate, path: RotationPath, instances: &[Instance]) -> Crowd<'a> {
+        Crowd::new(&self.order, &self.set, gate, path, instances.to_vec()).expect("one path")
     }
 
     /// The farthest that a point which follows one bone alone is from where full evaluation puts it: the ends of the
@@ -94,9 +107,10 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
         Instance::new(clip, wrap, 2.0 * draw.signed(), [1.0, -1.0, 0.25, 2.5][draw.word() as usize % 4])
     };
     let instances: Vec<Instance> = (0..6).map(|_| instance(&mut draw)).collect();
-    let (bounds, movers) = (stage.bounds(path), stage.movers());
-    let mut lazy = stage.crowd(&bounds, path, &instances);
-    let mut full = stage.crowd(&movers, path, &instances);
+    let (bounds, off) = (stage.bounds(path), stage.off());
+    let bounded = Gate::Bounded(bounds.clone());
+    let mut lazy = stage.crowd(&bounded, path, &instances);
+    let mut full = stage.crowd(&off, path, &instances);
     lazy.lods.iter_mut().for_each(|lod| lod.allowed = times * bounds.units(allowed));
     let (mut elapsed, mut worst, mut sampled) = (0.0, 0.0_f64, 0);
     let frames = 150;
@@ -108,8 +122,8 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
             let (at, new) = (draw.word() as usize % instances.len(), instance(&mut draw));
             (lazy.instances[at], full.instances[at]) = (new, new);
         }
-        sampled += lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed).pairs.len();
-        full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
+        sampled += lazy.advance(&frame(number), elapsed).pairs.len();
+        full.advance(&frame(number), elapsed);
         worst = worst.max(stage.error(&lazy.models, &full.models));
     }
     let pairs = frames as usize * instances.len() * stage.skeleton.len();
@@ -146,15 +160,15 @@ fn a_gate_that_allows_too_much_is_seen() {
 #[test]
 fn nothing_allowed_is_nothing_missed() {
     let stage = Stage::creature();
-    let (bounds, movers) = (stage.bounds(RotationPath::Slerp), stage.movers());
+    let (bounded, off) = (stage.bounded(RotationPath::Slerp), stage.off());
     let instances: Vec<_> =
         (0..5).map(|at| Instance::new(at % 3, Wrap::Loop, 0.3 * at as f32, 1.0)).collect();
-    let mut lazy = stage.crowd(&bounds, RotationPath::Slerp, &instances);
-    let mut full = stage.crowd(&movers, RotationPath::Slerp, &instances);
+    let mut lazy = stage.crowd(&bounded, RotationPath::Slerp, &instances);
+    let mut full = stage.crowd(&off, RotationPath::Slerp, &instances);
     for number in 0..90 {
         let elapsed = number as f32 / 60.0;
-        lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed);
-        full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
+        lazy.advance(&frame(number), elapsed);
+        full.advance(&frame(number), elapsed);
         assert!(lazy.models == full.models, "frame {number}");
     }
 }
@@ -163,39 +177,40 @@ fn nothing_allowed_is_nothing_missed() {
 #[test]
 fn bones_that_never_move_are_sampled_once() {
     let stage = Stage::creature();
-    let movers = stage.movers();
-    let mut crowd = stage.crowd(&movers, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
-    let first = crowd.advance(Choice::Gate(Gate::Off), &frame(0), 0.0);
-    let next = crowd.advance(Choice::Gate(Gate::Off), &frame(1), 0.4);
+    let off = stage.off();
+    let mut crowd = stage.crowd(&off, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
+    let first = crowd.advance(&frame(0), 0.0);
+    let next = crowd.advance(&frame(1), 0.4);
     assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
     let locals = relievo::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
     assert_eq!(crowd.models, relievo::animation::concat::reference::concat(&stage.skeleton, &locals));
 }
 
-fn pairs_a_frame(stage: &Stage, table: &GateTable, choice: Choice, lod: Lod, frames: u32) -> Vec<Work> {
+fn pairs_a_frame(stage: &Stage, gate: &Gate, lod: Lod, frames: u32) -> Vec<Work> {
     let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
-    let mut crowd = stage.crowd(table, RotationPath::Slerp, &instances);
+    let mut crowd = stage.crowd(gate, RotationPath::Slerp, &instances);
     crowd.lods.fill(lod);
-    (0..frames).map(|number| crowd.advance(choice, &frame(number), number as f32 / 60.0)).collect()
+    (0..frames).map(|number| crowd.advance(&frame(number), number as f32 / 60.0)).collect()
 }
 
 #[test]
 fn uniform_and_random_take_their_share_of_the_bones() {
     let stage = Stage::creature();
-    let table = stage.movers();
-    let moving = pairs_a_frame(&stage, &table, Choice::Gate(Gate::Off), Lod::FULL, 2)[1].pairs.len();
+    let bones = stage.animated_bones();
+    let moving = pairs_a_frame(&stage, &stage.off(), Lod::FULL, 2)[1].pairs.len();
     for share in [0.0, 0.1, 0.33, 0.75, 1.0] {
         let lod = Lod { omega: (share * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
-        for mode in [Gate::Uniform, Gate::Random] {
-            let done = pairs_a_frame(&stage, &table, Choice::Gate(mode), lod, 121);
+        for gate in [Gate::Uniform(bones.clone()), Gate::Random(bones.clone())] {
+            let done = pairs_a_frame(&stage, &gate, lod, 121);
             assert_eq!(done[0].pairs.len(), 20 * 153, "a first frame is full");
             let mean = done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / 120.0;
             let found = mean / moving as f64;
-            assert!((found - share).abs() < 0.01, "{mode:?}: {found} of {share}");
+            assert!((found - share).abs() < 0.01, "{}: {found} of {share}", gate.name());
             // Together, or each for itself.
             let is_whole = |work: &Work| work.pairs.len() == work.instances.len() * moving / 20;
             let whole = done[1..].iter().all(is_whole);
-            assert_eq!(whole, mode == Gate::Uniform || share == 0.0 || share == 1.0, "{mode:?} {share}");
+            let is_together = matches!(gate, Gate::Uniform(_)) || share == 0.0 || share == 1.0;
+            assert_eq!(whole, is_together, "{} {share}", gate.name());
         }
     }
 }
@@ -220,12 +235,11 @@ fn skip_period_skips_once_a_period() {
     let user = vec![USER_DEFAULT; stage.skeleton.len()];
     let of = |clip| Priorities::new(&stage.skeleton, clip, true, &Weights::default(), &user).expect("fits");
     let priorities: Vec<_> = stage.clips.iter().map(of).collect();
-    let table =
-        GateTable::of_priorities(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
+    let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
     // A second, of 65,536 ticks.
-    let mode = Choice::Gate(Gate::SkipPeriod { period: 65536 });
+    let gate = Gate::SkipPeriod { table, period: 65536 };
     let share = |omega: u32| {
-        let done = pairs_a_frame(&stage, &table, mode, Lod { omega, ..Lod::FULL }, 241);
+        let done = pairs_a_frame(&stage, &gate, Lod { omega, ..Lod::FULL }, 241);
         done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
     };
     let moving = share(OMEGA_ONE);
@@ -240,13 +254,12 @@ fn skip_period_skips_once_a_period() {
 #[test]
 fn hidden_instances_cost_nothing_and_come_back_whole() {
     let stage = Stage::creature();
-    for (table, mode) in [(stage.movers(), Gate::Uniform), (stage.bounds(RotationPath::Slerp), Gate::Bounded)]
-    {
+    for gate in [Gate::Uniform(stage.animated_bones()), stage.bounded(RotationPath::Slerp)] {
         let instances = [Instance::new(0, Wrap::Loop, 0.0, 1.0); 2];
-        let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
+        let mut crowd = stage.crowd(&gate, RotationPath::Slerp, &instances);
         crowd.lods.fill(Lod { omega: 1000, allowed: u32::MAX >> 1, ..Lod::FULL });
         let done = |crowd: &mut Crowd<'_>, number: u32| {
-            crowd.advance(Choice::Gate(mode), &frame(number), number as f32 / 60.0).pairs.len()
+            crowd.advance(&frame(number), number as f32 / 60.0).pairs.len()
         };
         assert_eq!(done(&mut crowd, 0), 2 * 153);
         crowd.lods[0].flags = Lod::HIDDEN;
@@ -265,29 +278,24 @@ fn hidden_instances_cost_nothing_and_come_back_whole() {
 #[test]
 fn budgets_are_kept_and_spent_on_what_missed_most() {
     let stage = Stage::creature();
-    let table = GateTable::of_expectations(
-        &stage.skeleton,
-        &stage.set,
-        &stage.clips(),
-        &stage.reaches,
-        RotationPath::Slerp,
-    )
-    .expect("fits");
-    let moving = pairs_a_frame(&stage, &table, Choice::Budget(u32::MAX), Lod::FULL, 2)[1].pairs.len();
+    let table = stage.expectations(RotationPath::Slerp);
+    let budget = |bones| Gate::Budget { table: table.clone(), bones };
+    let moving = pairs_a_frame(&stage, &budget(u32::MAX), Lod::FULL, 2)[1].pairs.len();
     for most in [0, 1, 500, 1500] {
-        let done = pairs_a_frame(&stage, &table, Choice::Budget(most), Lod::FULL, 60);
+        let done = pairs_a_frame(&stage, &budget(most), Lod::FULL, 60);
         // Every bone that moves has missed something.
         assert!(done[1..].iter().all(|work| work.pairs.len() == (most as usize).min(moving)), "{most}");
     }
     // Twice as large on screen is served more.
     let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
-    let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
+    let gate = budget(600);
+    let mut crowd = stage.crowd(&gate, RotationPath::Slerp, &instances);
     for (at, lod) in crowd.lods.iter_mut().enumerate() {
         lod.weight = if at < 10 { 65535 } else { 20000 };
     }
     let mut near = [0; 2];
     for number in 0..60 {
-        let work = crowd.advance(Choice::Budget(600), &frame(number), number as f32 / 60.0);
+        let work = crowd.advance(&frame(number), number as f32 / 60.0);
         for pair in work.pairs.iter().filter(|_| number > 0) {
             near[usize::from(*pair >= 10 * 153)] += 1;
         }
@@ -316,49 +324,50 @@ fn ranks_are_logarithms() {
 fn tables_of_motion_hold_for_their_own_path_alone() {
     let stage = Stage::creature();
     let instances = [Instance::new(0, Wrap::Loop, 0.0, 1.0)];
-    let refused = |table: &GateTable, path| {
-        Crowd::new(&stage.order, &stage.set, table, path, instances.to_vec()).err().map(|error| {
-            assert!(error.bound.contains(&format!("{:?}", table.path().expect("has motion"))), "{error}");
+    let refused = |gate: &Gate, path| {
+        Crowd::new(&stage.order, &stage.set, gate, path, instances.to_vec()).err().map(|error| {
+            assert!(error.bound.contains(&format!("{:?}", gate.path().expect("has motion"))), "{error}");
             (error.field, error.value)
         })
     };
     let wrong = |path| Some(("crowd.path".to_owned(), format!("{path:?}")));
     let (slerp, nlerp) = (RotationPath::Slerp, RotationPath::Nlerp);
     for (path, other) in [(slerp, nlerp), (nlerp, slerp)] {
-        let (bounds, reaches) = (stage.bounds(path), &stage.reaches);
-        let expected = GateTable::of_expectations(&stage.skeleton, &stage.set, &stage.clips(), reaches, path);
-        for table in [bounds, expected.expect("fits")] {
-            assert_eq!((refused(&table, path), refused(&table, other)), (None, wrong(other)));
+        let budget = Gate::Budget { table: stage.expectations(path), bones: 9 };
+        for gate in [stage.bounded(path), budget] {
+            assert_eq!((refused(&gate, path), refused(&gate, other)), (None, wrong(other)));
         }
     }
-    let movers = stage.movers();
-    assert_eq!(movers.path(), None);
-    assert_eq!([slerp, nlerp].map(|path| refused(&movers, path)), [None, None]);
+    let off = stage.off();
+    assert_eq!(off.path(), None);
+    assert_eq!([slerp, nlerp].map(|path| refused(&off, path)), [None, None]);
 }
 
 /// A table of another clip, or reaches that are none, are refused by name.
 #[test]
 fn tables_refuse_what_does_not_fit() {
     let stage = Stage::creature();
-    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
+    fn field<T: std::fmt::Debug>(result: Result<T, relievo::InputError>) -> String {
+        result.expect_err("refused").field
+    }
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
-    assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &clips[..1])), "clips.len");
+    assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &clips[..1])), "clips.len");
     // As many clips, but in another order, or another one among them.
     let slow: Vec<BoneKeys> = (0..stage.skeleton.len()).map(|_| BoneKeys::default()).collect();
     let slow = Clip::new("slow", &stage.skeleton, &slow, clips[1].duration()).expect("valid");
     for (others, wrong) in
         [([clips[1], clips[0], clips[2]], "clips[0]"), ([clips[0], &slow, clips[2]], "clips[1]")]
     {
-        assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &others)), wrong);
+        assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &others)), wrong);
     }
-    assert_eq!(field(GateTable::of_priorities(&stage.order, &stage.set, &clips, &[])), "priorities.len");
-    let bounds = |reaches: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, reaches, path);
+    assert_eq!(field(PriorityTable::new(&stage.order, &stage.set, &clips, &[])), "priorities.len");
+    let bounds = |reaches: &[f32]| BoundTable::new(&stage.skeleton, &stage.set, &clips, reaches, path);
     assert_eq!(field(bounds(&[])), "reaches.len");
     let mut reaches = stage.reaches.clone();
     reaches[3] = f32::NAN;
     assert_eq!(field(bounds(&reaches)), "reaches[3]");
     let other = Stage::random(0, 7);
-    assert_eq!(field(GateTable::of_movers(&other.order, &stage.set, &clips)), "skeleton.len");
+    assert_eq!(field(AnimatedBones::new(&other.order, &stage.set, &clips)), "skeleton.len");
     // The twin alone, without phases, has nothing to decide.
-    assert!(gate(&stage.movers(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
+    assert!(gate(&stage.off(), &frame(0), &[], &[], &mut []).bits.is_empty());
 }

@@ -6,7 +6,7 @@ use super::plain_soa::PlainSoa;
 use super::{ELAPSED, Scene};
 use crate::Error;
 use crate::animation::concat::reference::concat_into;
-use crate::animation::concat::{ConcatJob, ConcatPass, Walk};
+use crate::animation::concat::{ConcatJob, ConcatPass};
 use crate::animation::place::reference::places_into;
 use crate::animation::place::{PlaceJob, PlacePass};
 use crate::animation::sample::SamplePass;
@@ -32,7 +32,7 @@ impl DeviceFrame {
         Ok(Self {
             place,
             sample: SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &scene.crowd)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &scene.skeleton, &scene.crowd)?,
+            concat: ConcatPass::new(gpu)?.prepare(gpu, &scene.skeleton, &scene.crowd)?,
             copies: [scene.gathered(gpu, Reads::Everything)?, scene.copied(gpu)?],
         })
     }

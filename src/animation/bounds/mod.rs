@@ -30,7 +30,9 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{BoundsPass, Share};
+pub use pass::BoundsPass;
+#[cfg(feature = "verify")]
+pub(crate) use pass::Share;
 
 /// By what extents grow.
 pub const BOUNDS_GROWTH: f32 = 1.0 + 1.0 / 524_288.0;

@@ -9,7 +9,7 @@ use crate::{Error, InputError};
 
 /// What takes the bones of an instance together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Share {
+pub(crate) enum Share {
     /// A workgroup: enough threads for a real GPU.
     Workgroup,
     /// A thread: no barriers, which are slow where processors are few.
@@ -31,11 +31,19 @@ pub struct BoundsPass {
 }
 
 impl BoundsPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipeline that is fastest on this kind of adapter.
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_share(gpu, Share::of(gpu))
+    }
+
+    /// Compiles the pipeline for what takes the bones of an instance together.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub(crate) fn with_share(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
         let whole = share == Share::Whole;
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, share })
     }

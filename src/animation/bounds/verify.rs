@@ -24,7 +24,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let expected = bounds(&models, &reaches);
         for share in [Share::Workgroup, Share::Whole] {
             let output = Poisoned::<Bounds>::new(gpu, count)?;
-            let job = BoundsPass::new(gpu, share)?.prepare(gpu, &crowd, &reaches, &output.buffer)?;
+            let job = BoundsPass::with_share(gpu, share)?.prepare(gpu, &crowd, &reaches, &output.buffer)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
             let name = format!("{bones} bones × {count}, {share:?}");
             let comparison = output.check(gpu, |actual| {

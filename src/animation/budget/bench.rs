@@ -5,8 +5,8 @@ use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
 use crate::animation::budget::BudgetPass;
 use crate::animation::budget::reference::budget;
-use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
+use crate::animation::gate_table::ExpectationTable;
 use crate::animation::lod::Lod;
 use crate::animation::phase::{Phase, Verdict};
 use crate::asset::keyframe::RotationPath;
@@ -20,34 +20,32 @@ use crate::terrain::bench::copy_of;
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = BudgetPass::new(gpu)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
         let (bones, pairs) = (scene.skeleton.len(), scene.pairs());
-        let table = GateTable::of_expectations(
+        let table = ExpectationTable::new(
             &scene.skeleton,
             &scene.set,
             &[&scene.clip],
             &vec![0.1; bones],
             RotationPath::Slerp,
         )?;
-        let gating = Gating::new(gpu, &table, &scene.crowd)?;
+        let state = GateState::new(gpu, &scene.crowd)?;
         let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
         let lods = vec![Lod::FULL; count];
         let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
         let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
         let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
-        gating.phases.write(gpu, &phases)?;
-        let job = pass.prepare(gpu, &scene.crowd, &gating, &active)?;
+        state.phases.write(gpu, &phases)?;
         let most = pairs as u32 / 2;
-        job.set(gpu, most)?;
+        let job = BudgetPass::new(gpu, &table, most)?.prepare(gpu, &scene.crowd, &state, &active)?;
         // Of each bone four words in, half a word of ranks out and in, a word out.
         let copied = copy_of(gpu, 3 * pairs)?;
         // Bones missed something every time.
         let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| {
-                encoder.copy_buffer_to_buffer(before.raw(), 0, gating.sampled.raw(), 0, before.bytes());
+                encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
                 job.record(encoder);
             }),
             Contender::job(Backend::Copy, &copied),

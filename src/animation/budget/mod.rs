@@ -1,12 +1,12 @@
 //! Which bones of which instances are sampled when only so many may be: those whose stale transforms are expected to
-//! show most, by how far they moved points since they were sampled ([`GateTable::of_expectations`]) and how large
+//! show most, by how far they moved points since they were sampled ([`ExpectationTable`]) and how large
 //! their instance is on screen ([`Lod::weight`](super::lod::Lod::weight)). Takes the place of `gate` in a frame.
 //!
 //! Bones are ranked by the logarithm of that motion, in sixteenths of an octave, and counted rank by rank; all above
 //! a rank are served, and those of this rank in the order of instances and slots until the budget is spent. Instances
 //! that have to be sampled in full are, whatever the budget; it is spent on them first.
 //!
-//! [`GateTable::of_expectations`]: super::gate_table::GateTable::of_expectations
+//! [`ExpectationTable`]: super::gate_table::ExpectationTable
 
 #[cfg(feature = "verify")]
 pub mod bench;

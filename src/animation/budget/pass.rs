@@ -3,8 +3,8 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::gate_table::Kind;
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
+use crate::animation::gate_table::{ExpectationTable, TableBuffers};
 use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM};
@@ -16,51 +16,53 @@ const TALLY: usize = 1027;
 #[derive(Debug, Clone)]
 pub struct BudgetPass {
     stages: [Kernel; 5],
+    table: TableBuffers,
+    bones: u32,
 }
 
 impl BudgetPass {
-    /// Compiles the pipelines.
+    /// Uploads a table and compiles the pipelines. `bones`: the budget until a job sets another.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, table: &ExpectationTable, bones: u32) -> Result<Self, GpuError> {
         let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
-        Ok(Self { stages: [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?] })
+        let stages = [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?];
+        Ok(Self { stages, table: TableBuffers::of_expectations(gpu, table)?, bones })
     }
 
-    /// Prepares the decision, from a crowd's phases. The gating's table is one of expectations. The budget is that of
-    /// all bones until it is set.
+    /// Prepares the decision, from a crowd's phases.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a table of another kind than expectations, or along another path than the crowd's;
-    /// [`GpuError`].
+    /// [`crate::InputError`] for a crowd of other bones or clips than the table, for motion along another path than the
+    /// crowd's rotations take, and for another crowd than the active bones are listed of; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
-        gating: &Gating,
+        state: &GateState,
         active: &Active,
     ) -> Result<BudgetJob, Error> {
-        gating.check(Some(Kind::Expectations), crowd)?;
+        self.table.check(crowd)?;
         active.pairs.check_crowd(crowd)?;
         let params = BudgetParams {
-            instances: gating.lods.len() as u32,
+            instances: state.lods.len() as u32,
             bones: crowd.bones as u32,
-            words: gating.words,
-            stride: gating.stride,
-            budget: u32::MAX,
+            words: self.table.words,
+            stride: self.table.stride,
+            budget: self.bones,
         };
         let words = params.instances * params.words;
         let uniform = Uniform::new(gpu, "budget", &params)?;
         let ranks: Buffer<u32> = Buffer::new(gpu, "ranks", 17 * words as usize)?;
-        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TALLY + gating.lods.len())?;
+        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TALLY + state.lods.len())?;
         let group = bindings::Group {
             params: &uniform,
-            lods: gating.lods.slice(),
-            phases: gating.phases.slice(),
-            movers: gating.movers.slice(),
-            table: gating.table.slice(),
-            sampled: gating.sampled.slice(),
+            lods: state.lods.slice(),
+            phases: state.phases.slice(),
+            movers: self.table.animated_bones.slice(),
+            table: self.table.rows.slice(),
+            sampled: state.sampled.slice(),
             bits: active.bits.slice(),
             ranks: ranks.slice(),
             tally: tally.slice(),

@@ -1,23 +1,23 @@
-//! Which bones are sampled when only so many may be: twin of `kernels/animation/budget.wgsl`.
+//! Which bones are sampled when only so many may be: reference of `kernels/animation/budget.wgsl`.
 
-use crate::animation::gate::reference::{bits_of, motion_at, motion_between};
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate_table::ExpectationTable;
+use crate::animation::gate_table::sums::{motion_at, motion_between};
 use crate::animation::lod::Lod;
 use crate::animation::phase::{Phase, Verdict};
 
-/// A bit for each slot of each instance: [`GateTable::words`] words an instance. `sampled` holds, for each slot of each
+/// A bit for each slot of each instance: [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words an instance. `sampled` holds, for each slot of each
 /// instance, the sum of motion when it was sampled last.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need, and with a table without motion.
+/// With fewer levels or sums than the phases need.
 pub fn budget(
-    table: &GateTable,
+    table: &ExpectationTable,
     budget: u32,
     lods: &[Lod],
     phases: &[Phase],
     sampled: &mut [u32],
 ) -> Vec<u32> {
-    let (bones, words) = (table.bones(), table.words());
+    let (bones, words) = (table.animated_bones().bones(), table.animated_bones().words());
     let mut chosen = Vec::new();
     let mut ranked: Vec<(u32, usize)> = Vec::new();
     let is_unlimited = budget as usize >= phases.len() * bones;
@@ -29,7 +29,7 @@ pub fn budget(
         if phase.verdict() != Verdict::Free {
             continue;
         }
-        for slot in movers(table, phase) {
+        for slot in table.animated_bones().slots(phase.clip) {
             let missed = missed_by(table, phase, slot, sampled[first + slot]);
             if missed > 0 || is_unlimited {
                 ranked.push((rank_of(missed, lod.weight), first + slot));
@@ -49,20 +49,12 @@ pub fn budget(
     bits
 }
 
-/// Slots that the phase's clip moves.
-fn movers(table: &GateTable, phase: &Phase) -> impl Iterator<Item = usize> {
-    let (_, movers) = table.record(phase.clip);
-    movers.iter().enumerate().flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
-}
-
-fn motion_now(table: &GateTable, phase: &Phase, slot: usize) -> u32 {
+fn motion_now(table: &ExpectationTable, phase: &Phase, slot: usize) -> u32 {
     motion_at(table.motion(phase.row, slot), phase.fraction())
 }
 
-fn missed_by(table: &GateTable, phase: &Phase, slot: usize, last: u32) -> u32 {
-    let (periods, _) = table.record(phase.clip);
-    let [period, _] = table.motion(periods, slot);
-    motion_between(motion_now(table, phase, slot), last, period)
+fn missed_by(table: &ExpectationTable, phase: &Phase, slot: usize, last: u32) -> u32 {
+    motion_between(motion_now(table, phase, slot), last, table.period(phase.clip, slot))
 }
 
 /// 1 to 768, by the logarithm of `missed · weight`: sixteen an octave.

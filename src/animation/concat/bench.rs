@@ -6,8 +6,8 @@ use crate::Error;
 use crate::animation::bench::frame::{DeviceFrame, PlainFrame, TwinFrame};
 use crate::animation::bench::plain_soa::PlainSoa;
 use crate::animation::bench::{CROWDS, Scene, host};
+use crate::animation::concat::ConcatPass;
 use crate::animation::concat::reference::concat_into;
-use crate::animation::concat::{ConcatPass, Walk};
 use crate::animation::crowd::packed;
 use crate::animation::sample::reference::sample_set;
 use crate::asset::keyframe::RotationPath;
@@ -32,7 +32,7 @@ fn alone(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     let (pairs, bones) = (scene.pairs(), scene.skeleton.len());
     let locals = sample_set(&scene.set, &scene.instances, &scene.places, RotationPath::Slerp);
     scene.crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
-    let job = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &scene.skeleton, &scene.crowd)?;
+    let job = ConcatPass::new(gpu)?.prepare(gpu, &scene.skeleton, &scene.crowd)?;
     let copied = scene.copied(gpu)?;
     let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
     let soa = scene.places.iter().map(|place| {

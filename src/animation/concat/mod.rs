@@ -16,8 +16,10 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub mod verify;
 
+#[cfg(feature = "verify")]
+pub(crate) use pass::Walk;
 #[cfg(feature = "gpu")]
-pub use pass::{ConcatActiveJob, ConcatJob, ConcatPass, Walk};
+pub use pass::{ConcatActiveJob, ConcatJob, ConcatPass};
 
 /// How far a component may lie from the twin's, on any device: times the bones of the longest chain, times the largest
 /// component (at least 1). A local matrix carries 10ε of its scale (ε = 2⁻²⁴, each operation to either neighbour 2ε), a

@@ -11,7 +11,7 @@ use crate::{Error, InputError};
 
 /// How threads share the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Walk {
+pub(crate) enum Walk {
     /// A thread a chain, a dispatch a level of chains: enough threads for a real GPU.
     Levels,
     /// A thread an instance, one dispatch: an instance's bones stay in the cache of a processor. On lavapipe about
@@ -41,11 +41,19 @@ pub type ConcatJob = Job;
 pub type ConcatActiveJob = IndirectJob;
 
 impl ConcatPass {
-    /// Compiles the pipelines.
+    /// Compiles the pipelines that are fastest on this kind of adapter.
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_walk(gpu, Walk::of(gpu))
+    }
+
+    /// Compiles the pipelines of a walk.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub(crate) fn with_walk(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
         let whole = walk == Walk::Whole;
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { whole, compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)?, walk })

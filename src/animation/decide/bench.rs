@@ -4,10 +4,10 @@ use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, ELAPSED, Scene};
 use crate::animation::compact::reference::compact;
+use crate::animation::decide::DecidePass;
 use crate::animation::decide::reference::Decider;
-use crate::animation::decide::{Choice, DecidePass, Dispatches};
-use crate::animation::gate::{Frame, Gate};
-use crate::animation::gating::Gating;
+use crate::animation::gate::Frame;
+use crate::animation::gate_state::GateState;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
@@ -28,22 +28,21 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
 fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, count)?;
-    let (order, choice) = (scene.order(), Choice::Gate(Gate::Uniform));
-    let table = scene.table(Gate::Uniform)?;
-    let gating = Gating::new(gpu, &table, &scene.crowd)?;
+    let (order, gate) = (scene.order(), scene.uniform()?);
+    let state = GateState::new(gpu, &scene.crowd)?;
     let active = Active::new(gpu, &order, &scene.crowd)?;
     let lods = vec![Lod { omega, ..Lod::FULL }; count];
-    gating.lods.write(gpu, &lods)?;
-    let pass = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
-    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating, &active)?;
+    state.lods.write(gpu, &lods)?;
+    let pass = DecidePass::new(gpu, &gate, &scene.crowd)?;
+    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame, ELAPSED)?;
-    let mut decider = Decider::new(&scene.set, &table, count);
+    let mut decider = Decider::new(&scene.set, &gate, count);
     // In the first frame no pose is stored, and nothing can be skipped.
     gpu.run("first", |encoder| job.record(encoder))?;
     let mut decide = || {
         let phases = decider.phases(&scene.instances, &[], &lods, ELAPSED, 0.0);
-        compact(&order, &decider.bits(choice, &frame, &lods, &phases))
+        compact(&order, &decider.bits(&frame, &lods, &phases))
     };
     decide();
     let chosen = decide().pairs.len();

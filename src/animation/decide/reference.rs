@@ -1,11 +1,8 @@
-//! From the time to what is done: twin of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
+//! From the time to what is done: reference of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
 
-use crate::animation::budget::reference::budget;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::decide::Choice;
-use crate::animation::gate::Frame;
 use crate::animation::gate::reference::{Chosen, gate};
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate::{Frame, Gate};
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
@@ -17,8 +14,8 @@ use crate::animation::phase::reference::phases;
 pub struct Decider<'a> {
     /// What instances play.
     pub set: &'a ClipSet,
-    /// What the gate decides by.
-    pub table: &'a GateTable,
+    /// What decides.
+    pub gate: &'a Gate,
     /// Of each instance, what it played when it was looked at last; see [`phases`].
     pub history: Vec<[u32; 4]>,
     /// Of each slot of each instance, the sum of motion when it was sampled last; see [`gate`].
@@ -27,8 +24,8 @@ pub struct Decider<'a> {
 
 impl<'a> Decider<'a> {
     /// Before the first frame of so many instances.
-    pub fn new(set: &'a ClipSet, table: &'a GateTable, instances: usize) -> Self {
-        Self { set, table, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
+    pub fn new(set: &'a ClipSet, gate: &'a Gate, instances: usize) -> Self {
+        Self { set, gate, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
     }
 
     /// Where instances stand, as [`phases`] finds it.
@@ -49,15 +46,8 @@ impl<'a> Decider<'a> {
     /// What is sampled: [`compact`](crate::animation::compact::reference::compact) makes lists of them.
     ///
     /// # Panics
-    /// With fewer levels than phases, and with a table of another kind than the choice needs.
-    pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], phases: &[Phase]) -> Chosen {
-        let Self { table, sampled, .. } = self;
-        match choice {
-            Choice::Gate(mode) => gate(table, mode, frame, lods, phases, sampled),
-            Choice::Budget(most) => {
-                let bits = budget(table, most, lods, phases, sampled);
-                Chosen { ahead: vec![0; bits.len()], bits }
-            }
-        }
+    /// With fewer levels than phases.
+    pub fn bits(&mut self, frame: &Frame, lods: &[Lod], phases: &[Phase]) -> Chosen {
+        gate(self.gate, frame, lods, phases, &mut self.sampled)
     }
 }

@@ -4,12 +4,11 @@
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::concat::{ConcatActiveJob, ConcatPass, Walk};
+use crate::animation::concat::{ConcatActiveJob, ConcatPass};
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::decide::{Choice, DecideJob, DecidePass, Dispatches};
-use crate::animation::gate::Frame;
-use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::decide::{DecideJob, DecidePass};
+use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate_state::GateState;
 use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
 use crate::animation::place::{PlaceJob, PlacePass};
@@ -21,7 +20,7 @@ use crate::gpu::{Gpu, compute_pass};
 #[derive(Debug, Clone)]
 pub struct GatedFrame {
     /// What the gate knows; levels of detail may be written between frames.
-    pub gating: Gating,
+    pub state: GateState,
     /// What the frame that was recorded last did.
     pub active: Active,
     model_matrices: ModelMatrices,
@@ -36,32 +35,30 @@ impl GatedFrame {
     /// crowd's path.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, and a table of other bones or clips, of another
-    /// kind than the choice needs, or of motion along another path than the crowd's ([`Crowd::path`]), and for
-    /// [`Gate::Bounded`](super::Gate::Bounded) over model matrices that dual quaternions were prepared to blend;
-    /// [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a crowd of another skeleton, a gate of other bones or clips, or of motion along
+    /// another path than the crowd's ([`Crowd::path`]), and for [`Gate::Bounded`] over model matrices that dual
+    /// quaternions were prepared to blend; [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        table: &GateTable,
-        choice: Choice,
+        gate: &Gate,
     ) -> Result<Self, Error> {
-        let gating = Gating::new(gpu, table, crowd)?;
+        let state = GateState::new(gpu, crowd)?;
         let active = Active::new(gpu, &Order::new(skeleton), crowd)?;
-        let decide = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
+        let decide = DecidePass::new(gpu, gate, crowd)?;
         let sample = match crowd.layers {
             1 => SamplePass::new(gpu, crowd.path())?,
             _ => SamplePass::layered(gpu, crowd.path())?,
         };
         Ok(Self {
-            decide: decide.prepare(gpu, clips, crowd, &gating, &active)?,
-            place: PlacePass::new(gpu)?.prepare_active(gpu, clips, crowd, &gating, &active)?,
+            decide: decide.prepare(gpu, clips, crowd, &state, &active)?,
+            place: PlacePass::new(gpu)?.prepare_active(gpu, clips, crowd, &state, &active)?,
             sample: sample.prepare_active(gpu, clips, crowd, &active.pairs)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare_active(gpu, skeleton, crowd, &active)?,
+            concat: ConcatPass::new(gpu)?.prepare_active(gpu, skeleton, crowd, &active)?,
             model_matrices: crowd.model_matrices.with_updated_bones(&active.dirty),
-            gating,
+            state,
             active,
         })
     }
@@ -84,9 +81,9 @@ impl GatedFrame {
     /// As [`DecideJob::set_budget`].
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) where a gate decides; [`GpuError`](crate::gpu::GpuError).
-    pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
-        self.decide.set_budget(gpu, most)
+    /// [`InputError`](crate::InputError) unless the gate is [`Gate::Budget`]; [`GpuError`](crate::gpu::GpuError).
+    pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
+        self.decide.set_budget(gpu, bones)
     }
 
     /// Records the frame: afterwards the crowd's model matrices are those of the time.

@@ -5,10 +5,9 @@ use crate::animation::active::PAIR_AHEAD;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::{Work, compact};
 use crate::animation::concat::reference::concat_dirty;
-use crate::animation::decide::Choice;
 use crate::animation::decide::reference::Decider;
-use crate::animation::gate::Frame;
-use crate::animation::gate_table::{GateTable, check_path};
+use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate_table::check_path;
 use crate::animation::instance::Instance;
 use crate::animation::lod::Lod;
 use crate::animation::order::Order;
@@ -38,15 +37,15 @@ impl<'a> Crowd<'a> {
     /// A crowd before its first frame, whose rotations take `path` between keys.
     ///
     /// # Errors
-    /// [`InputError`] for a table of motion along another path.
+    /// [`InputError`] for a gate that decides by motion along another path.
     pub fn new(
         order: &'a Order,
         set: &'a ClipSet,
-        table: &'a GateTable,
+        gate: &'a Gate,
         path: RotationPath,
         instances: Vec<Instance>,
     ) -> Result<Self, InputError> {
-        check_path(table.path(), path)?;
+        check_path(gate.path(), path)?;
         let (count, pairs) = (instances.len(), instances.len() * set.bones());
         Ok(Self {
             order,
@@ -55,19 +54,19 @@ impl<'a> Crowd<'a> {
             lods: vec![Lod::FULL; count],
             locals: vec![Transform::IDENTITY; pairs],
             models: vec![AFFINE_IDENTITY; pairs],
-            decider: Decider::new(set, table, count),
+            decider: Decider::new(set, gate, count),
         })
     }
 
     /// Brings the crowd to a time, and says what was done for it.
-    pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
+    pub fn advance(&mut self, frame: &Frame, elapsed: f32) -> Work {
         let set = self.decider.set;
-        let lead = choice.ahead(frame);
+        let lead = self.decider.gate.ahead(frame);
         let now = places(set, &self.instances, elapsed);
         // Nothing is sampled there without a lead.
         let ahead = if lead == 0.0 { Vec::new() } else { places(set, &self.instances, elapsed + lead) };
         let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed, lead);
-        let bits = self.decider.bits(choice, frame, &self.lods, &phases);
+        let bits = self.decider.bits(frame, &self.lods, &phases);
         let work = compact(self.order, &bits);
         let (bones, timelines) = (set.bones(), set.timelines_a_clip());
         for listed in &work.pairs {

@@ -17,40 +17,75 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{GateJob, GatePass};
 
-/// How bones are chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+use super::gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
+use crate::asset::keyframe::RotationPath;
+
+/// How bones are chosen, and from what: each gate has the table that it decides by.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Gate {
     /// Every bone that moves.
-    Off,
-    /// A's rule (section 12.10): a bone *skips* one update each `priority · Ω · period`. Its table is
-    /// [`GateTable::of_priorities`](super::gate_table::GateTable::of_priorities).
+    Off(AnimatedBones),
+    /// A's rule (section 12.10): a bone *skips* one update each `priority · Ω · period`.
     SkipPeriod {
+        /// The priorities.
+        table: PriorityTable,
         /// Ticks of priority 1 at Ω = 1; A has one second.
         period: u32,
     },
     /// All bones of an instance together, in a share Ω of the frames: what engines call update-rate optimization.
-    Uniform,
+    Uniform(AnimatedBones),
     /// A share Ω of all bones, by a hash of frame and bone: as many as [`Gate::Uniform`], on average.
-    Random,
-    /// Bones that may have moved further than the instance allows, parents first: a bone that missed no more than its share
-    /// of what is left stays as it is and leaves the rest to the bones below it; one that missed more is sampled, and
-    /// leaves them everything. So bones take turns, and what one does not use another does. Its table is
-    /// [`GateTable::of_bounds`](super::gate_table::GateTable::of_bounds): no point is ever further from its place than
-    /// [`Lod::allowed`](super::lod::Lod::allowed), nor any vertex that bones blend linearly. Dual quaternions are no
-    /// convex mean, so the promise does not hold for them: skinning refuses them under this gate.
-    Bounded,
+    Random(AnimatedBones),
+    /// Bones that may have moved further than the instance allows, parents first: a bone that missed no more than its
+    /// fraction of what is left stays as it is and leaves the rest to the bones below it; one that missed more is sampled,
+    /// and leaves them everything. So bones take turns, and what one does not use another does. No point is ever further
+    /// from its place than [`Lod::allowed`](super::lod::Lod::allowed), nor any vertex that bones blend linearly. Dual
+    /// quaternions are no convex mean, so the promise does not hold for them: skinning refuses them under this gate.
+    Bounded(BoundTable),
+    /// At most so many bones of the crowd, those that are expected to show most: [`super::budget`].
+    Budget {
+        /// The motion that is expected to show.
+        table: ExpectationTable,
+        /// The most bones of a frame; instances that have to be sampled in full are in any case.
+        bones: u32,
+    },
 }
 
 impl Gate {
     /// The name on command lines and in reports.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
-            Self::Off => "off",
+            Self::Off(_) => "off",
             Self::SkipPeriod { .. } => "skip-period",
-            Self::Uniform => "uniform",
-            Self::Random => "random",
-            Self::Bounded => "bounded",
+            Self::Uniform(_) => "uniform",
+            Self::Random(_) => "random",
+            Self::Bounded(_) => "bounded",
+            Self::Budget { .. } => "budget",
         }
+    }
+
+    /// Which bones the clips move.
+    pub fn animated_bones(&self) -> &AnimatedBones {
+        match self {
+            Self::Off(bones) | Self::Uniform(bones) | Self::Random(bones) => bones,
+            Self::SkipPeriod { table, .. } => table.animated_bones(),
+            Self::Bounded(table) => table.animated_bones(),
+            Self::Budget { table, .. } => table.animated_bones(),
+        }
+    }
+
+    /// The path between rotation keys whose motion the gate knows, if it decides by motion.
+    pub fn path(&self) -> Option<RotationPath> {
+        match self {
+            Self::Off(_) | Self::Uniform(_) | Self::Random(_) | Self::SkipPeriod { .. } => None,
+            Self::Bounded(table) => Some(table.path()),
+            Self::Budget { table, .. } => Some(table.path()),
+        }
+    }
+
+    /// By how many seconds bones may be sampled ahead in a frame: nothing but [`Gate::Bounded`] does so.
+    pub(crate) fn ahead(&self, frame: &Frame) -> f32 {
+        if matches!(self, Self::Bounded(_)) { frame.ahead } else { 0.0 }
     }
 }
 

@@ -1,15 +1,16 @@
-//! Which bones are sampled: twin of `kernels/animation/gate.wgsl`.
+//! Which bones are sampled: reference of `kernels/animation/gate.wgsl`.
 
+use crate::animation::budget::reference::budget;
 use crate::animation::gate::{Frame, Gate};
-use crate::animation::gate_table::{Allotment, EVERYTHING, GateTable};
+use crate::animation::gate_table::sums::{motion_at, motion_between, share_of};
+use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, PriorityTable, bits_of};
 use crate::animation::lod::{Lod, OMEGA_ONE};
-use crate::animation::order::NO_PARENT;
 use crate::animation::phase::{Phase, Verdict};
 
 /// What is sampled.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chosen {
-    /// A bit for each slot of each instance: [`GateTable::words`] words an instance.
+    /// A bit for each slot of each instance: [`AnimatedBones::words`] words an instance.
     pub bits: Vec<u32>,
     /// Likewise, those of them that are sampled ahead.
     pub ahead: Vec<u32>,
@@ -22,59 +23,87 @@ impl Chosen {
     }
 }
 
-/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was sampled last; [`Gate::Bounded`] alone uses it.
+/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was sampled last;
+/// [`Gate::Bounded`] and [`Gate::Budget`] alone use it.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need, and with a table of another kind than the gate needs.
-pub fn gate(
-    table: &GateTable,
-    gate: Gate,
-    frame: &Frame,
-    lods: &[Lod],
-    phases: &[Phase],
-    sampled: &mut [u32],
-) -> Chosen {
+/// With fewer levels or sums than the phases need.
+pub fn gate(gate: &Gate, frame: &Frame, lods: &[Lod], phases: &[Phase], sampled: &mut [u32]) -> Chosen {
+    match gate {
+        Gate::Off(bones) => thinned(bones, lods, phases, |word| word.candidates),
+        Gate::SkipPeriod { table, period } => {
+            thinned(table.animated_bones(), lods, phases, |word| by_priority(table, word, frame, *period))
+        }
+        Gate::Uniform(bones) => thinned(bones, lods, phases, |word| all_or_none(word, frame)),
+        Gate::Random(bones) => thinned(bones, lods, phases, |word| at_random(word, bones.bones(), frame)),
+        Gate::Bounded(table) => bounded(table, lods, phases, sampled),
+        Gate::Budget { table, bones } => {
+            let bits = budget(table, *bones, lods, phases, sampled);
+            Chosen { ahead: vec![0; bits.len()], bits }
+        }
+    }
+}
+
+/// Up to 32 bones of an instance.
+struct Word<'a> {
+    instance: u32,
+    /// The first bone's slot.
+    first: usize,
+    lod: &'a Lod,
+    phase: &'a Phase,
+    /// All of its bones.
+    all: u32,
+    /// Those that may have to be sampled.
+    candidates: u32,
+}
+
+/// The words of bits of an instance.
+fn words<'a>(
+    bones: &'a AnimatedBones,
+    instance: usize,
+    lod: &'a Lod,
+    phase: &'a Phase,
+) -> impl Iterator<Item = Word<'a>> {
+    bones.of(phase.clip).iter().enumerate().map(move |(word, moving)| {
+        let first = 32 * word;
+        let all = u32::MAX >> (32 - (bones.bones() - first).min(32));
+        let candidates = if phase.verdict() == Verdict::Blended { all } else { *moving };
+        Word { instance: instance as u32, first, lod, phase, all, candidates }
+    })
+}
+
+/// What gates leave that decide on each word alone: `thin` of the candidates, where something may be left out.
+fn thinned(bones: &AnimatedBones, lods: &[Lod], phases: &[Phase], thin: impl Fn(&Word<'_>) -> u32) -> Chosen {
     let mut chosen = Chosen::default();
-    let mut kept = vec![0; table.bones()];
     for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
-        let movers = table.record(phase.clip).1;
-        let mut way = Way { left: 0, kept: &mut kept };
-        for (word, movers) in movers.iter().enumerate() {
-            let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
-            let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
-            let candidates = if phase.verdict() == Verdict::Blended { all } else { *movers };
-            let mut ahead = 0;
-            chosen.bits.push(match (phase.verdict(), gate) {
-                (Verdict::Hidden, _) => 0,
-                (verdict, Gate::Bounded) => {
-                    // Sums of motion know of one clip alone.
-                    let forced = if verdict.forces_motion() { all } else { 0 };
-                    let sampled = &mut sampled[instance * table.bones()..];
-                    let [active, early] =
-                        by_motion(table, &at, lod, candidates, forced, phase, sampled, &mut way);
-                    ahead = early;
-                    active
-                }
-                (Verdict::Forced, _) => all,
-                (_, Gate::Off) => candidates,
-                _ if lod.omega >= OMEGA_ONE => candidates,
-                (_, Gate::SkipPeriod { period }) => {
-                    by_priority(table, &at, lod, candidates, phase, frame, period)
-                }
-                (_, Gate::Uniform) => all_or_none(&at, lod, candidates, frame),
-                (_, Gate::Random) => at_random(&at, lod, candidates, frame),
-            });
+        chosen.bits.extend(words(bones, instance, lod, phase).map(|word| match phase.verdict() {
+            Verdict::Hidden => 0,
+            Verdict::Forced => word.all,
+            _ if lod.omega >= OMEGA_ONE => word.candidates,
+            _ => thin(&word),
+        }));
+    }
+    chosen.ahead.resize(chosen.bits.len(), 0);
+    chosen
+}
+
+/// What [`Gate::Bounded`] leaves.
+fn bounded(table: &BoundTable, lods: &[Lod], phases: &[Phase], sampled: &mut [u32]) -> Chosen {
+    let mut chosen = Chosen::default();
+    let bones = table.animated_bones();
+    let mut by_slot = vec![0; bones.bones()];
+    for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
+        let mut remaining = Remaining { last: 0, by_slot: &mut by_slot };
+        for word in words(bones, instance, lod, phase) {
+            let [active, ahead] = match phase.verdict() {
+                Verdict::Hidden => [0; 2],
+                _ => by_motion(table, &word, &mut sampled[instance * bones.bones()..], &mut remaining),
+            };
+            chosen.bits.push(active);
             chosen.ahead.push(ahead);
         }
     }
     chosen
-}
-
-/// A word's place.
-struct At {
-    instance: u32,
-    first: usize,
-    bones: usize,
 }
 
 /// Wellons' "lowbias32".
@@ -84,121 +113,86 @@ pub fn scramble(word: u32) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// The numbers of a word's bits.
-pub fn bits_of(word: u32) -> impl Iterator<Item = usize> {
-    std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
-        .take_while(|rest| *rest != 0)
-        .map(|rest| rest.trailing_zeros() as usize)
-}
-
 /// A skips an update each period: at once where a period is no longer than a frame, else when the last frame has
 /// passed a multiple of it.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
 
-fn by_priority(
-    table: &GateTable,
-    at: &At,
-    lod: &Lod,
-    candidates: u32,
-    phase: &Phase,
-    frame: &Frame,
-    longest: u32,
-) -> u32 {
-    let ticks = frame.ticks.wrapping_add(scramble(at.instance) & 0xffff);
+fn by_priority(table: &PriorityTable, word: &Word<'_>, frame: &Frame, longest: u32) -> u32 {
+    let ticks = frame.ticks.wrapping_add(scramble(word.instance) & 0xffff);
     let is_active = |bit: &usize| {
-        let level = (table.priority(phase.row, at.first + bit) * lod.omega) >> 16;
+        let level = (table.priority(word.phase.row, word.first + bit) * word.lod.omega) >> 16;
         let period = (longest >> 16) * level + (((longest & 0xffff) * level) >> 16);
         !is_skipped(period, ticks, frame.frame_ticks)
     };
-    bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
+    bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-fn all_or_none(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
-    let frame = frame.frame.wrapping_add(scramble(at.instance)) & 0xffff;
-    let is_due = (frame * lod.omega) >> 16 != ((frame + 1) * lod.omega) >> 16;
-    if is_due { candidates } else { 0 }
+fn all_or_none(word: &Word<'_>, frame: &Frame) -> u32 {
+    let frame = frame.frame.wrapping_add(scramble(word.instance)) & 0xffff;
+    let omega = word.lod.omega;
+    let is_due = (frame * omega) >> 16 != ((frame + 1) * omega) >> 16;
+    if is_due { word.candidates } else { 0 }
 }
 
-fn at_random(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
+fn at_random(word: &Word<'_>, bones: usize, frame: &Frame) -> u32 {
     let first = scramble(frame.frame)
-        .wrapping_add(at.instance.wrapping_mul(at.bones as u32))
-        .wrapping_add(at.first as u32);
-    let is_active = |bit: &usize| scramble(first.wrapping_add(*bit as u32)) >> 16 < lod.omega;
-    bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
+        .wrapping_add(word.instance.wrapping_mul(bones as u32))
+        .wrapping_add(word.first as u32);
+    let is_active = |bit: &usize| scramble(first.wrapping_add(*bit as u32)) >> 16 < word.lod.omega;
+    bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-/// What is left of the allowed way of an instance.
-struct Way<'a> {
+/// What is left of the allowed error of an instance.
+struct Remaining<'a> {
     /// By the bone before.
-    left: u32,
+    last: u32,
     /// By bones that others hang below.
-    kept: &'a mut [u32],
+    by_slot: &'a mut [u32],
 }
 
-/// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
+/// Parents first: a bone that missed no more than its fraction of what is left stays, and leaves the rest to those below it.
 /// One that missed more is sampled, and leaves them everything; or it is sampled ahead, where it moves no more than its
-/// share until then. What is sampled, and of this, what is sampled ahead.
-#[allow(clippy::too_many_arguments, reason = "the shader's own")]
+/// fraction until then. What is sampled, and of this, what is sampled ahead.
 fn by_motion(
-    table: &GateTable,
-    at: &At,
-    lod: &Lod,
-    candidates: u32,
-    asked: u32,
-    phase: &Phase,
+    table: &BoundTable,
+    word: &Word<'_>,
     sampled: &mut [u32],
-    way: &mut Way<'_>,
+    remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
-    // So are all where nothing may be missed.
+    let Word { first, lod, phase, all, candidates, .. } = *word;
+    // Sums of motion know of one clip alone; and all are where nothing may be missed.
+    let asked = if phase.verdict().forces_motion() { all } else { 0 };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
-    let last_row = table.record(phase.clip).0;
     let [mut active, mut ahead] = [forced, 0];
     for bit in bits_of(candidates | forced) {
-        let slot = at.first + bit;
-        let [period, granted] = table.motion(last_row, slot);
-        let granted = Allotment(granted);
-        if granted.starts() {
-            way.left = match table.motion(table.above(phase.clip), slot)[0] {
-                NO_PARENT => lod.allowed.min(EVERYTHING - 1),
-                above => way.kept[above as usize],
+        let slot = first + bit;
+        let (period, budget) = table.of_clip(phase.clip, slot);
+        if budget.starts() {
+            remaining.last = match table.above(phase.clip, slot) {
+                None => lod.allowed.min(EVERYTHING - 1),
+                Some(above) => remaining.by_slot[above],
             };
         }
-        let share = share_of(way.left, granted.share());
+        let granted = share_of(remaining.last, budget.fraction());
         let now = motion_at(table.motion(phase.row, slot), phase.fraction());
-        let missed = motion_between(now, sampled[slot], period) + granted.hidden();
+        let missed = motion_between(now, sampled[slot], period) + budget.quantization_slack();
         let is_forced = forced >> bit & 1 != 0;
-        if is_forced || missed > share {
+        if is_forced || missed > granted {
             active |= 1 << bit;
             sampled[slot] = now;
             let later = motion_at(table.motion(phase.ahead_row, slot), phase.ahead_fraction);
-            let early = motion_between(later, now, period) + granted.hidden();
-            if phase.is_ahead() && !is_forced && early <= share {
+            let early = motion_between(later, now, period) + budget.quantization_slack();
+            if phase.is_ahead() && !is_forced && early <= granted {
                 ahead |= 1 << bit;
                 sampled[slot] = later;
-                way.left -= early;
+                remaining.last -= early;
             }
         } else {
-            way.left -= missed;
+            remaining.last -= missed;
         }
-        way.kept[slot] = way.left;
+        remaining.by_slot[slot] = remaining.last;
     }
     [active, ahead]
-}
-
-/// `value · fraction / 65536`, the fraction at most 65536.
-pub fn share_of(value: u32, fraction: u32) -> u32 {
-    ((u64::from(value) * u64::from(fraction)) >> 16) as u32
-}
-
-/// How far a bone has moved along its clip: the sum at a row's start, its rise to the next, and the way there.
-pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
-    start.wrapping_add(share_of(rise, fraction))
-}
-
-/// The shorter way between two sums: directly, or over the clip's end. `period`: that of the whole clip.
-pub fn motion_between(now: u32, last: u32, period: u32) -> u32 {
-    let direct = now.abs_diff(last);
-    direct.min(period.max(direct) - direct)
 }

@@ -6,8 +6,8 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::gate;
 use crate::animation::gate::{Frame, Gate, GatePass};
-use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
+use crate::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::Order;
 use crate::animation::phase::{Phase, Verdict};
@@ -24,68 +24,61 @@ use crate::harness::{Cases, compare};
 /// # Errors
 /// What the device reports.
 pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let case = case as u32;
         let (skeleton, set, instances) = random_crowd(case, bones, count)?;
         let clips = random_clips(case, &skeleton, 3)?;
         let crowd = Crowd::new(cases.gpu, &set, &instances)?;
-        for mode in modes {
-            let table = table(mode, &skeleton, &set, &clips.iter().collect::<Vec<_>>())?;
-            add(cases, case, mode, &Order::new(&skeleton), &set, &crowd, &table)?;
+        for gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
+            add(cases, case, &gate, &Order::new(&skeleton), &set, &crowd)?;
         }
     }
     Ok(())
 }
 
-pub(crate) fn table(
-    mode: Gate,
-    skeleton: &Skeleton,
-    set: &ClipSet,
-    clips: &[&Clip],
-) -> Result<GateTable, Error> {
+/// Every gate but a budget, of clips.
+pub(crate) fn gates(skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Result<[Gate; 5], Error> {
     let order = Order::new(skeleton);
     let weights = Weights::default();
     let user = vec![USER_DEFAULT; skeleton.len()];
-    Ok(match mode {
-        Gate::SkipPeriod { .. } => {
-            let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
-            let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-            GateTable::of_priorities(&order, set, clips, &priorities)?
-        }
-        Gate::Bounded => {
-            GateTable::of_bounds(skeleton, set, clips, &vec![0.5; skeleton.len()], RotationPath::Slerp)?
-        }
-        _ => GateTable::of_movers(&order, set, clips)?,
-    })
+    let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
+    let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let bones = AnimatedBones::new(&order, set, clips)?;
+    let reaches = vec![0.5; skeleton.len()];
+    Ok([
+        Gate::Off(bones.clone()),
+        Gate::SkipPeriod { table: PriorityTable::new(&order, set, clips, &priorities)?, period: 65536 },
+        Gate::Uniform(bones.clone()),
+        Gate::Random(bones),
+        Gate::Bounded(BoundTable::new(skeleton, set, clips, &reaches, RotationPath::Slerp)?),
+    ])
 }
 
 fn add(
     cases: &mut Cases<'_>,
     case: u32,
-    mode: Gate,
+    mode: &Gate,
     order: &Order,
     set: &ClipSet,
     crowd: &Crowd,
-    table: &GateTable,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let count = crowd.len();
-    let mut gating = Gating::new(gpu, table, crowd)?;
+    let mut state = GateState::new(gpu, crowd)?;
     let mut active = Active::new(gpu, order, crowd)?;
-    let output = Poisoned::<u32>::new(gpu, 2 * count * table.words())?;
+    let output = Poisoned::<u32>::new(gpu, 2 * count * order.words())?;
     active.bits = output.buffer.clone();
     let sums = Poisoned::<u32>::new(gpu, crowd.pairs())?;
-    gating.sampled = sums.buffer.clone();
+    state.sampled = sums.buffer.clone();
     let pass = GatePass::new(gpu, mode)?;
-    let job = pass.prepare(gpu, crowd, &gating, &active)?;
+    let job = pass.prepare(gpu, crowd, &state, &active)?;
     let mut draw = Draw::new(case ^ 0x9a7e);
     let mut sampled = vec![0; crowd.pairs()];
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
         let (lods, phases) = random_state(&mut draw, set, count, number == 0);
-        gating.lods.write(gpu, &lods)?;
-        gating.phases.write(gpu, &phases)?;
+        state.lods.write(gpu, &lods)?;
+        state.phases.write(gpu, &phases)?;
         let frame = Frame {
             ticks,
             frame_ticks: 1092,
@@ -95,7 +88,7 @@ fn add(
         job.set(gpu, &frame)?;
         output.poison(gpu)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
-        let expected = gate(table, mode, &frame, &lods, &phases, &mut sampled).words();
+        let expected = gate(mode, &frame, &lods, &phases, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
         cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
     }

@@ -2,8 +2,7 @@
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
-use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::lod::Lod;
 use crate::animation::phase::PhasePass;
 use crate::animation::phase::reference::phases;
@@ -20,11 +19,10 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = PhasePass::new(gpu)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
-        let table = GateTable::of_movers(&scene.order(), &scene.set, &[&scene.clip])?;
-        let gating = Gating::new(gpu, &table, &scene.crowd)?;
+        let state = GateState::new(gpu, &scene.crowd)?;
         let found = places(&scene.set, &scene.instances, 0.4);
         scene.crowd.places.write(gpu, &found)?;
-        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating)?;
+        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &state)?;
         job.set(gpu, 0.4, 0.0)?;
         // 12 words in, 6 out.
         let copied = copy_of(gpu, 9 * count)?;

@@ -1,7 +1,7 @@
 //! `kernels/animation/phase.wgsl`.
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::instance::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::phase as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
@@ -26,25 +26,25 @@ impl PhasePass {
     /// Prepares the phases of a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of other clips; [`GpuError`].
+    /// [`InputError`] for clips of another set than the crowd's; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gating: &Gating,
+        state: &GateState,
     ) -> Result<PhaseJob, Error> {
-        let time = PhaseTime::new(gpu, clips, crowd, gating)?;
+        let time = PhaseTime::new(gpu, clips, crowd, state)?;
         let group = bindings::Group {
             phase_params: &time.uniform,
             instances: crowd.instances.slice(),
             clips: clips.clips.slice(),
             timelines: clips.timelines.slice().cast(),
             times: clips.times.slice(),
-            lods: gating.lods.slice(),
+            lods: state.lods.slice(),
             shares: crowd.shares.slice(),
-            history: gating.history.slice(),
-            phases: gating.phases.slice(),
+            history: state.history.slice(),
+            phases: state.phases.slice(),
         };
         let step = Step {
             groups: vec![group.bind(gpu, &self.kernel)?],
@@ -63,14 +63,13 @@ pub(crate) struct PhaseTime {
 }
 
 impl PhaseTime {
-    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, gating: &Gating) -> Result<Self, Error> {
-        let clips_len = gating.movers.len() / (gating.words as usize + 1);
-        if clips_len != clips.clips.len() {
-            let bound = format!("must be {}, those of the set", clips.clips.len());
-            return Err(InputError::new("table.clips", clips_len, bound).into());
+    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, state: &GateState) -> Result<Self, Error> {
+        if clips.clips.len() != crowd.clips {
+            let bound = format!("must be {}, as the crowd's", crowd.clips);
+            return Err(InputError::new("clips.len", clips.clips.len(), bound).into());
         }
         let params = PhaseParams {
-            instances: gating.lods.len() as u32,
+            instances: state.lods.len() as u32,
             elapsed: 0.0,
             layers: crowd.layers as u32 - 1,
             ahead: 0.0,

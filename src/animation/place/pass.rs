@@ -4,7 +4,7 @@ use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::bindings::animation::place as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
@@ -56,13 +56,13 @@ impl PlacePass {
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gating: &Gating,
+        state: &GateState,
         active: &Active,
     ) -> Result<PlaceJob, Error> {
         let params = PlaceParams::new(clips, crowd);
         let uniform = Uniform::new(gpu, "place", &params)?;
         let listed =
-            Listed { instances: &active.instances, dispatches: &active.dispatches, history: &gating.history };
+            Listed { instances: &active.instances, dispatches: &active.dispatches, history: &state.history };
         let group = bind(&self.compacted, gpu, &uniform, clips, crowd, &listed)?;
         let offset = 16 * (active.dispatches.len() as u64 - 1);
         let arguments = active.dispatches.raw();

@@ -3,8 +3,7 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::animation::layers::{Layer, all_instances};
@@ -12,7 +11,7 @@ use crate::animation::order::Order;
 use crate::animation::place::reference::{inside_clip, places};
 use crate::animation::place::{PLACE_BOUND, PlacePass};
 use crate::animation::verify::edges::{ELAPSED, edges};
-use crate::animation::verify::{SIZES, random_clips, random_crowd, random_instances};
+use crate::animation::verify::{SIZES, random_crowd, random_instances};
 use crate::asset::keyframe::Place;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
@@ -67,9 +66,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
         let output = Poisoned::<Place>::new(gpu, rooms)?;
         crowd.places = output.buffer.clone();
         let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
-        let model_clips = random_clips(case as u32, &skeleton, 3)?;
-        let table = GateTable::of_movers(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
-        let gating = Gating::new(gpu, &table, &crowd)?;
+        let state = GateState::new(gpu, &crowd)?;
         let active = Active::new(gpu, &order, &crowd)?;
         // Every third, and what the gate saw is not what the clock says.
         let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
@@ -89,8 +86,8 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
             .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
             .collect();
         let history = seen.iter().zip(&ahead).map(|(now, later)| [1, 0, now.to_bits(), later.to_bits()]);
-        gating.history.write(gpu, &history.collect::<Vec<_>>())?;
-        let job = pass.prepare_active(gpu, &clips, &crowd, &gating, &active)?;
+        state.history.write(gpu, &history.collect::<Vec<_>>())?;
+        let job = pass.prepare_active(gpu, &clips, &crowd, &state, &active)?;
         job.set(gpu, 0.5)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let all = all_instances(&base, &layers);

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 #[cfg(feature = "gpu")]
 use relievo::animation::ClipSet;
+use relievo::animation::concat::ConcatPass;
 use relievo::animation::concat::reference::concat;
-use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
@@ -153,7 +153,7 @@ fn on_gpu(gpu: &Gpu, model: &Model, clip: &Clip, time: f32) -> Result<(Vec<Trans
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
     let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &model.skeleton, &crowd)?;
+    let concat = ConcatPass::new(gpu)?.prepare(gpu, &model.skeleton, &crowd)?;
     gpu.run("pose", |encoder| {
         place.record(encoder);
         sample.record(encoder);

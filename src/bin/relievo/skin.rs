@@ -222,7 +222,7 @@ fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error
 mod device {
     use super::*;
     use relievo::animation::ClipSet;
-    use relievo::animation::concat::{ConcatPass, Walk};
+    use relievo::animation::concat::ConcatPass;
     use relievo::animation::crowd::{ClipBuffers, Crowd};
     use relievo::animation::instance::Instance;
     use relievo::animation::instance::Wrap;
@@ -264,7 +264,7 @@ mod device {
         let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, moment.time, 0.0)])?;
         let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
         let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-        let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &moment.model.skeleton, &crowd)?;
+        let concat = ConcatPass::new(gpu)?.prepare(gpu, &moment.model.skeleton, &crowd)?;
         gpu.run("pose", |encoder| {
             place.record(encoder);
             sample.record(encoder);

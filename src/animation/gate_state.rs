@@ -1,0 +1,36 @@
+//! What gates know of a crowd on the device.
+
+use super::crowd::Crowd;
+use super::lod::Lod;
+use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::shared::animation::gating::Phase;
+
+/// What gates know of a crowd, and keep from frame to frame. All buffers may be read and bound by the caller.
+#[derive(Debug, Clone)]
+pub struct GateState {
+    /// One an instance; written by the host, full detail at first.
+    pub lods: Buffer<Lod>,
+    /// Written by [`crate::animation::phase::PhasePass`].
+    pub phases: Buffer<Phase>,
+    /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
+    /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
+    pub history: Buffer<[u32; 4]>,
+    /// For each slot of each instance, the sum of motion when it was sampled last.
+    pub sampled: Buffer<u32>,
+}
+
+impl GateState {
+    /// Room for a crowd that has not been looked at yet.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
+        let instances = crowd.len();
+        Ok(Self {
+            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
+            phases: Buffer::new(gpu, "phases", instances)?,
+            history: Buffer::new(gpu, "history", instances)?,
+            sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
+        })
+    }
+}
