@@ -3,15 +3,15 @@
 use super::crowd::Crowd;
 use super::lod::Lod;
 use crate::gpu::{Buffer, Gpu, GpuError};
-use crate::shared::animation::gating::Phase;
+use crate::shared::animation::gate_state::ClipClock;
 
 /// What gates know of a crowd, and keep from frame to frame. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
 pub struct GateState {
     /// One an instance; written by the host, full detail at first.
     pub lods: Buffer<Lod>,
-    /// Written by [`crate::animation::phase::PhasePass`].
-    pub phases: Buffer<Phase>,
+    /// Written by [`crate::animation::clip_clock::ClipClockPass`].
+    pub clip_clocks: Buffer<ClipClock>,
     /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
     /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
     pub history: Buffer<[u32; 4]>,
@@ -28,7 +28,7 @@ impl GateState {
         let instances = crowd.len();
         Ok(Self {
             lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
-            phases: Buffer::new(gpu, "phases", instances)?,
+            clip_clocks: Buffer::new(gpu, "clip_clocks", instances)?,
             history: Buffer::new(gpu, "history", instances)?,
             sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
         })

@@ -8,9 +8,9 @@ pub mod bounds;
 pub mod budget;
 #[cfg(feature = "gpu")]
 pub mod chosen;
+pub mod clip_clock;
 pub mod clip_set;
 pub mod compact;
-pub mod concat;
 #[cfg(feature = "gpu")]
 pub mod crowd;
 pub mod decide;
@@ -20,14 +20,14 @@ pub mod gate;
 pub mod gate_state;
 pub mod gate_table;
 pub mod instance;
+pub mod keyframe_cursor;
 pub mod layers;
+pub mod local_to_model;
 pub mod lod;
 #[cfg(feature = "gpu")]
 pub mod model_matrices;
 pub mod motion;
 pub mod order;
-pub mod phase;
-pub mod place;
 pub mod priority;
 pub mod root_motion;
 pub mod sample;
@@ -43,7 +43,7 @@ pub use gate_state::GateState;
 pub use gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 pub use instance::{Instance, Wrap};
 pub use layers::Layer;
-pub use lod::{Lens, Lod, Range};
+pub use lod::{Lod, Projection, Range};
 #[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;
 pub use order::Order;

@@ -3,12 +3,12 @@
 
 use relievo::Error;
 use relievo::animation::active::Active;
-use relievo::animation::concat::ConcatPass;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::decide::DecidePass;
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::gate::GatePass;
 use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Gate, GateState, ModelMatrices, Order};
 use relievo::asset::Model;
@@ -45,9 +45,9 @@ impl Rig {
         let (gpu, model) = (gpu(), creature().expect("valid"));
         let clips = [&model.clips[0]];
         let set = ClipSet::new(&clips).expect("one skeleton");
-        let reaches = vec![0.1; model.skeleton.len()];
+        let bone_radii = vec![0.1; model.skeleton.len()];
         let order = Order::new(&model.skeleton);
-        let table = BoundTable::new(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+        let table = BoundTable::new(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
         let bounded = Gate::Bounded(table.expect("fits"));
         Self {
             clips: ClipBuffers::new(&gpu, &set).expect("uploaded"),
@@ -99,14 +99,14 @@ impl Rig {
     /// Every way to blend the matrices of a crowd.
     fn skin(&self, way: usize, crowd: &Crowd, blend: Blend) -> Option<Result<(), Error>> {
         let own = crowd.model_matrices();
-        let updated = own.with_updated_bones(&self.active(crowd).dirty);
+        let updated = own.with_updated_bones(&self.active(crowd).updated_bones);
         Some(match way {
             0 => self.skinned(own, blend),
             1 => self.skinned(&updated, blend),
             2 => self.drawn(own, blend),
             3 => self.drawn(&updated, blend),
             4 => self.blended(own, blend),
-            5 => self.blended(crowd.previous.as_ref().expect("kept"), blend),
+            5 => self.blended(crowd.previous.as_ref().expect("remaining"), blend),
             6 => self.blended(crowd.clone().model_matrices(), blend),
             _ => return None,
         })
@@ -204,12 +204,12 @@ fn lists_of_active_bones_are_of_one_crowd() {
     let (gpu, crowd, other) = (&rig.gpu, rig.crowd(), rig.crowd());
     let active = rig.active(&crowd);
     let sample = SamplePass::new(gpu, RotationPath::Slerp).expect("compiled");
-    let concat = ConcatPass::new(gpu).expect("compiled");
+    let local_to_model = LocalToModelPass::new(gpu).expect("compiled");
     let prepared = |crowd: &Crowd| {
         [
             rig.gate.prepare(gpu, crowd, &rig.state(crowd), &active).map(drop),
             sample.prepare_active(gpu, &rig.clips, crowd, &active.pairs).map(drop),
-            concat.prepare_active(gpu, &rig.model.skeleton, crowd, &active).map(drop),
+            local_to_model.prepare_active(gpu, &rig.model.skeleton, crowd, &active).map(drop),
         ]
     };
     assert!(prepared(&crowd).iter().all(Result::is_ok));

@@ -2,14 +2,14 @@
 
 use relievo::Error;
 use relievo::animation::active::Active;
-use relievo::animation::concat::ConcatPass;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::decide::DecidePass;
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
+use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::order::Order;
-use relievo::animation::place::PlacePass;
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{
     AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, GateState, Layer, Lod,
@@ -45,8 +45,8 @@ fn misses_nothing(gpu: &Gpu) {
     let clips: Vec<_> = model.clips.iter().collect();
     let (set, order) = (ClipSet::new(&clips).expect("one skeleton"), Order::new(&model.skeleton));
     let buffers = ClipBuffers::new(gpu, &set).expect("uploaded");
-    let reaches = vec![0.1; model.skeleton.len()];
-    let table = BoundTable::new(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+    let bone_radii = vec![0.1; model.skeleton.len()];
+    let table = BoundTable::new(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
     let gate = Gate::Bounded(table.expect("fits"));
     let plays = |clip: u32| -> Vec<Instance> {
         (0..5).map(|at| Instance::new(clip, Wrap::Loop, 0.2 * at as f32, 1.0 - 0.4 * at as f32)).collect()
@@ -57,17 +57,17 @@ fn misses_nothing(gpu: &Gpu) {
     let state = GateState::new(gpu, &lazy).expect("allocated");
     state.lods.write(gpu, &[Lod::FULL; 5]).expect("written");
     let active = Active::new(gpu, &order, &lazy).expect("fits");
-    let (place, sample) = (PlacePass::new(gpu), SamplePass::layered(gpu, RotationPath::Slerp));
-    let (place, sample) = (place.expect("compiled"), sample.expect("compiled"));
-    let concat = ConcatPass::new(gpu).expect("compiled");
+    let (cursor, sample) = (KeyframeCursorPass::new(gpu), SamplePass::layered(gpu, RotationPath::Slerp));
+    let (cursor, sample) = (cursor.expect("compiled"), sample.expect("compiled"));
+    let local_to_model = LocalToModelPass::new(gpu).expect("compiled");
     let decide = DecidePass::new(gpu, &gate, &lazy).expect("compiled");
     let decide = decide.prepare(gpu, &buffers, &lazy, &state, &active).expect("prepared");
-    let places = place.prepare_active(gpu, &buffers, &lazy, &state, &active).expect("prepared");
+    let cursors = cursor.prepare_active(gpu, &buffers, &lazy, &state, &active).expect("prepared");
     let samples = sample.prepare_active(gpu, &buffers, &lazy, &active.pairs).expect("prepared");
-    let palettes = concat.prepare_active(gpu, &model.skeleton, &lazy, &active).expect("prepared");
-    let all_places = place.prepare(gpu, &buffers, &full).expect("prepared");
+    let palettes = local_to_model.prepare_active(gpu, &model.skeleton, &lazy, &active).expect("prepared");
+    let all_cursors = cursor.prepare(gpu, &buffers, &full).expect("prepared");
     let all_samples = sample.prepare(gpu, &buffers, &full).expect("prepared");
-    let all_palettes = concat.prepare(gpu, &model.skeleton, &full).expect("prepared");
+    let all_palettes = local_to_model.prepare(gpu, &model.skeleton, &full).expect("prepared");
     for number in 0..8_u32 {
         let elapsed = 0.15 * number as f32;
         if number == 3 {
@@ -77,14 +77,14 @@ fn misses_nothing(gpu: &Gpu) {
             }
         }
         decide.set(gpu, &frame(number), elapsed).expect("set");
-        places.set(gpu, elapsed).expect("set");
-        all_places.set(gpu, elapsed).expect("set");
+        cursors.set(gpu, elapsed).expect("set");
+        all_cursors.set(gpu, elapsed).expect("set");
         gpu.run("test", |encoder| {
             decide.record(encoder);
-            places.record(encoder);
+            cursors.record(encoder);
             samples.record(encoder);
             palettes.record(encoder);
-            all_places.record(encoder);
+            all_cursors.record(encoder);
             all_samples.record(encoder);
             all_palettes.record(encoder);
         })
@@ -98,10 +98,10 @@ fn misses_nothing(gpu: &Gpu) {
 
 /// Gates of a clip: one that decides by its table of bones alone, one by bounds, one by a budget.
 fn gates(skeleton: &Skeleton, set: &ClipSet, clip: &Clip, path: RotationPath) -> [Gate; 3] {
-    let (clips, reaches) = ([clip], vec![0.1; skeleton.len()]);
+    let (clips, bone_radii) = ([clip], vec![0.1; skeleton.len()]);
     let bones = AnimatedBones::new(&Order::new(skeleton), set, &clips).expect("fits");
-    let bounds = BoundTable::new(skeleton, set, &clips, &reaches, path).expect("fits");
-    let table = ExpectationTable::new(skeleton, set, &clips, &reaches, path).expect("fits");
+    let bounds = BoundTable::new(skeleton, set, &clips, &bone_radii, path).expect("fits");
+    let table = ExpectationTable::new(skeleton, set, &clips, &bone_radii, path).expect("fits");
     [Gate::Uniform(bones), Gate::Bounded(bounds), Gate::Budget { table, bones: 1000 }]
 }
 

@@ -24,15 +24,15 @@ struct Stage {
     clips: Vec<Clip>,
     order: Order,
     set: ClipSet,
-    reaches: Vec<f32>,
+    bone_radii: Vec<f32>,
 }
 
 impl Stage {
     fn new(skeleton: Skeleton, clips: Vec<Clip>) -> Self {
         let set = ClipSet::new(&clips.iter().collect::<Vec<_>>()).expect("one skeleton");
         let order = Order::new(&skeleton);
-        let reaches = (0..skeleton.len()).map(|bone| 0.05 + 0.1 * (bone % 4) as f32).collect();
-        Self { skeleton, clips, order, set, reaches }
+        let bone_radii = (0..skeleton.len()).map(|bone| 0.05 + 0.1 * (bone % 4) as f32).collect();
+        Self { skeleton, clips, order, set, bone_radii }
     }
 
     fn random(case: u32, bones: usize) -> Self {
@@ -51,7 +51,7 @@ impl Stage {
     }
 
     fn bounds(&self, path: RotationPath) -> BoundTable {
-        BoundTable::new(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
+        BoundTable::new(&self.skeleton, &self.set, &self.clips(), &self.bone_radii, path).expect("fits")
     }
 
     fn bounded(&self, path: RotationPath) -> Gate {
@@ -59,7 +59,7 @@ impl Stage {
     }
 
     fn expectations(&self, path: RotationPath) -> ExpectationTable {
-        ExpectationTable::new(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
+        ExpectationTable::new(&self.skeleton, &self.set, &self.clips(), &self.bone_radii, path).expect("fits")
     }
 
     fn animated_bones(&self) -> AnimatedBones {
@@ -79,8 +79,8 @@ impl Stage {
     fn error(&self, stale: &[Affine], fresh: &[Affine]) -> f64 {
         let mut worst = 0.0_f64;
         for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
-            let reach = f64::from(self.reaches[pair % self.skeleton.len()]);
-            for (axis, side) in (0..3).flat_map(|axis| [(axis, -reach), (axis, reach)]) {
+            let bone_radius = f64::from(self.bone_radii[pair % self.skeleton.len()]);
+            for (axis, side) in (0..3).flat_map(|axis| [(axis, -bone_radius), (axis, bone_radius)]) {
                 let off = |row: usize| {
                     let minus = |column: usize| f64::from(stale[row][column]) - f64::from(fresh[row][column]);
                     minus(3) + side * minus(axis)
@@ -124,7 +124,7 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
         }
         sampled += lazy.advance(&frame(number), elapsed).pairs.len();
         full.advance(&frame(number), elapsed);
-        worst = worst.max(stage.error(&lazy.models, &full.models));
+        worst = worst.max(stage.error(&lazy.model_matrices, &full.model_matrices));
     }
     let pairs = frames as usize * instances.len() * stage.skeleton.len();
     (worst / f64::from(allowed), sampled as f64 / pairs as f64)
@@ -169,7 +169,7 @@ fn nothing_allowed_is_nothing_missed() {
         let elapsed = number as f32 / 60.0;
         lazy.advance(&frame(number), elapsed);
         full.advance(&frame(number), elapsed);
-        assert!(lazy.models == full.models, "frame {number}");
+        assert!(lazy.model_matrices == full.model_matrices, "frame {number}");
     }
 }
 
@@ -183,7 +183,10 @@ fn bones_that_never_move_are_sampled_once() {
     let next = crowd.advance(&frame(1), 0.4);
     assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
     let locals = relievo::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
-    assert_eq!(crowd.models, relievo::animation::concat::reference::concat(&stage.skeleton, &locals));
+    assert_eq!(
+        crowd.model_matrices,
+        relievo::animation::local_to_model::reference::local_to_model(&stage.skeleton, &locals)
+    );
 }
 
 fn pairs_a_frame(stage: &Stage, gate: &Gate, lod: Lod, frames: u32) -> Vec<Work> {
@@ -198,19 +201,19 @@ fn uniform_and_random_take_their_share_of_the_bones() {
     let stage = Stage::creature();
     let bones = stage.animated_bones();
     let moving = pairs_a_frame(&stage, &stage.off(), Lod::FULL, 2)[1].pairs.len();
-    for share in [0.0, 0.1, 0.33, 0.75, 1.0] {
-        let lod = Lod { omega: (share * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
+    for fraction in [0.0, 0.1, 0.33, 0.75, 1.0] {
+        let lod = Lod { omega: (fraction * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
         for gate in [Gate::Uniform(bones.clone()), Gate::Random(bones.clone())] {
             let done = pairs_a_frame(&stage, &gate, lod, 121);
             assert_eq!(done[0].pairs.len(), 20 * 153, "a first frame is full");
             let mean = done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / 120.0;
             let found = mean / moving as f64;
-            assert!((found - share).abs() < 0.01, "{}: {found} of {share}", gate.name());
+            assert!((found - fraction).abs() < 0.01, "{}: {found} of {fraction}", gate.name());
             // Together, or each for itself.
             let is_whole = |work: &Work| work.pairs.len() == work.instances.len() * moving / 20;
             let whole = done[1..].iter().all(is_whole);
-            let is_together = matches!(gate, Gate::Uniform(_)) || share == 0.0 || share == 1.0;
-            assert_eq!(whole, is_together, "{} {share}", gate.name());
+            let is_together = matches!(gate, Gate::Uniform(_)) || fraction == 0.0 || fraction == 1.0;
+            assert_eq!(whole, is_together, "{} {fraction}", gate.name());
         }
     }
 }
@@ -238,17 +241,17 @@ fn skip_period_skips_once_a_period() {
     let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
     // A second, of 65,536 ticks.
     let gate = Gate::SkipPeriod { table, period: 65536 };
-    let share = |omega: u32| {
+    let fraction = |omega: u32| {
         let done = pairs_a_frame(&stage, &gate, Lod { omega, ..Lod::FULL }, 241);
         done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
     };
-    let moving = share(OMEGA_ONE);
+    let moving = fraction(OMEGA_ONE);
     // Priorities near ½ at Ω = ½: a skip each quarter of a second, of 15 frames.
-    let half = share(OMEGA_ONE / 2) / moving;
+    let half = fraction(OMEGA_ONE / 2) / moving;
     assert!((0.8..0.96).contains(&half), "{half}");
-    let tenth = share(OMEGA_ONE / 10) / moving;
+    let tenth = fraction(OMEGA_ONE / 10) / moving;
     assert!(tenth < half && tenth > 0.1, "{tenth}");
-    assert_eq!(share(0), 0.0);
+    assert_eq!(fraction(0), 0.0);
 }
 
 #[test]
@@ -361,13 +364,13 @@ fn tables_refuse_what_does_not_fit() {
         assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &others)), wrong);
     }
     assert_eq!(field(PriorityTable::new(&stage.order, &stage.set, &clips, &[])), "priorities.len");
-    let bounds = |reaches: &[f32]| BoundTable::new(&stage.skeleton, &stage.set, &clips, reaches, path);
-    assert_eq!(field(bounds(&[])), "reaches.len");
-    let mut reaches = stage.reaches.clone();
-    reaches[3] = f32::NAN;
-    assert_eq!(field(bounds(&reaches)), "reaches[3]");
+    let bounds = |bone_radii: &[f32]| BoundTable::new(&stage.skeleton, &stage.set, &clips, bone_radii, path);
+    assert_eq!(field(bounds(&[])), "bone_radii.len");
+    let mut bone_radii = stage.bone_radii.clone();
+    bone_radii[3] = f32::NAN;
+    assert_eq!(field(bounds(&bone_radii)), "reaches[3]");
     let other = Stage::random(0, 7);
     assert_eq!(field(AnimatedBones::new(&other.order, &stage.set, &clips)), "skeleton.len");
-    // The twin alone, without phases, has nothing to decide.
+    // The reference alone, without phases, has nothing to decide.
     assert!(gate(&stage.off(), &frame(0), &[], &[], &mut []).bits.is_empty());
 }

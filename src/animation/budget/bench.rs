@@ -5,10 +5,10 @@ use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
 use crate::animation::budget::BudgetPass;
 use crate::animation::budget::reference::budget;
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::ExpectationTable;
 use crate::animation::lod::Lod;
-use crate::animation::phase::{Phase, Verdict};
 use crate::asset::keyframe::RotationPath;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
@@ -34,9 +34,10 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
         let lods = vec![Lod::FULL; count];
         let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
-        let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
-        let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
-        state.phases.write(gpu, &phases)?;
+        let clip_clock =
+            |instance: u32| ClipClock::new(instance % rows, instance % 65536, UpdateReason::Free, 0);
+        let clip_clocks: Vec<ClipClock> = (0..count as u32).map(clip_clock).collect();
+        state.clip_clocks.write(gpu, &clip_clocks)?;
         let most = pairs as u32 / 2;
         let job = BudgetPass::new(gpu, &table, most)?.prepare(gpu, &scene.crowd, &state, &active)?;
         // Of each bone four words in, half a word of ranks out and in, a word out.
@@ -49,9 +50,9 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
                 job.record(encoder);
             }),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
+            Contender::host(Backend::Reference, || {
                 sampled.fill(0);
-                drop(std::hint::black_box(budget(&table, most, &lods, &phases, &mut sampled)));
+                drop(std::hint::black_box(budget(&table, most, &lods, &clip_clocks, &mut sampled)));
             }),
         ];
         bench.case(format!("{count} × 153, half"), (pairs, "bone"), 24 * pairs as u64, contenders)?;

@@ -59,8 +59,8 @@ impl BudgetPass {
         let group = bindings::Group {
             params: &uniform,
             lods: state.lods.slice(),
-            phases: state.phases.slice(),
-            movers: self.table.animated_bones.slice(),
+            clip_clocks: state.clip_clocks.slice(),
+            animated_bones: self.table.animated_bones.slice(),
             table: self.table.rows.slice(),
             sampled: state.sampled.slice(),
             bits: active.bits.slice(),

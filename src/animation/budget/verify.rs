@@ -27,8 +27,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let clips = random_clips(case, &skeleton, 3)?;
         let clips: Vec<_> = clips.iter().collect();
         let crowd = Crowd::new(gpu, &set, &instances)?;
-        let reaches = vec![0.5; bones];
-        let table = ExpectationTable::new(&skeleton, &set, &clips, &reaches, RotationPath::Slerp)?;
+        let bone_radii = vec![0.5; bones];
+        let table = ExpectationTable::new(&skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
         let mut state = GateState::new(gpu, &crowd)?;
         let order = Order::new(&skeleton);
         let mut active = Active::new(gpu, &order, &crowd)?;
@@ -43,16 +43,16 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let pairs = (bones * count) as u32;
         for (frame, most) in [pairs, pairs / 2, 0, pairs / 3 + 1, pairs - 1, u32::MAX].into_iter().enumerate()
         {
-            let (mut lods, phases) = random_state(&mut draw, &set, count, frame == 0);
+            let (mut lods, clip_clocks) = random_state(&mut draw, &set, count, frame == 0);
             let weight = |draw: &mut Draw| draw.word() >> (16 + draw.word() % 17).min(31);
             lods.iter_mut()
                 .for_each(|lod| lod.weight = if frame % 2 == 0 { 65535 } else { weight(&mut draw) });
             state.lods.write(gpu, &lods)?;
-            state.phases.write(gpu, &phases)?;
+            state.clip_clocks.write(gpu, &clip_clocks)?;
             job.set(gpu, most)?;
             output.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let mut expected = budget(&table, most, &lods, &phases, &mut sampled);
+            let mut expected = budget(&table, most, &lods, &clip_clocks, &mut sampled);
             // None is sampled ahead.
             expected.resize(2 * count * order.words(), 0);
             let name = format!("{most} of {bones} bones × {count}, frame {frame}");

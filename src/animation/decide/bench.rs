@@ -41,18 +41,18 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     // In the first frame no pose is stored, and nothing can be skipped.
     gpu.run("first", |encoder| job.record(encoder))?;
     let mut decide = || {
-        let phases = decider.phases(&scene.instances, &[], &lods, ELAPSED, 0.0);
-        compact(&order, &decider.bits(&frame, &lods, &phases))
+        let clip_clocks = decider.clip_clocks(&scene.instances, &[], &lods, ELAPSED, 0.0);
+        compact(&order, &decider.bits(&frame, &lods, &clip_clocks))
     };
     decide();
     let chosen = decide().pairs.len();
     // 12 words in and 6 out of an instance; bits twice out and once in; a pair and its slot.
-    let words = (18 * count + 3 * active.dirty.len() + 2 * chosen) / 2;
+    let words = (18 * count + 3 * active.updated_bones.len() + 2 * chosen) / 2;
     let copied = copy_of(gpu, words)?;
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || drop(std::hint::black_box(decide()))),
+        Contender::host(Backend::Reference, || drop(std::hint::black_box(decide()))),
     ];
     bench.case(name.to_owned(), (scene.pairs(), "bone"), 8 * words as u64, contenders)
 }

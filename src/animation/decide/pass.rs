@@ -2,13 +2,13 @@
 
 use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::clip_clock::pass::ClipClockTime;
+use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{Decider, GateTime, Mode, UploadedGate, no_budget};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
-use crate::animation::phase::pass::PhaseTime;
-use crate::animation::phase::{PhaseJob, PhasePass};
 use crate::gpu::bindings::animation::decide as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
@@ -58,7 +58,7 @@ enum Kernels {
 
 #[derive(Debug, Clone)]
 struct Steps {
-    phase: PhasePass,
+    clip_clock: ClipClockPass,
     gate: GatePass,
     compact: CompactPass,
 }
@@ -105,7 +105,7 @@ impl DecidePass {
         let work = match &self.kernels {
             Kernels::One(gate, kernel) => one(gate, kernel, gpu, clips, crowd, state, active)?,
             Kernels::Each(steps) => Work::Each {
-                phase: steps.phase.prepare(gpu, clips, crowd, state)?,
+                clip_clock: steps.clip_clock.prepare(gpu, clips, crowd, state)?,
                 gate: steps.gate.prepare(gpu, crowd, state, active)?,
                 lists: steps.compact.prepare(gpu, crowd, active)?,
             },
@@ -116,8 +116,8 @@ impl DecidePass {
 
 impl Kernels {
     fn each(gpu: &Gpu, gate: GatePass) -> Result<Self, GpuError> {
-        let (phase, compact) = (PhasePass::new(gpu)?, CompactPass::new(gpu)?);
-        Ok(Self::Each(Box::new(Steps { phase, gate, compact })))
+        let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
+        Ok(Self::Each(Box::new(Steps { clip_clock, gate, compact })))
     }
 }
 
@@ -146,36 +146,36 @@ fn one(
     active: &Active,
 ) -> Result<Work, Error> {
     let table = &gate.table;
-    let phase = PhaseTime::new(gpu, clips, crowd, state)?;
+    let clip_clock = ClipClockTime::new(gpu, clips, crowd, state)?;
     let gate = GateTime::new(gpu, gate, crowd, state, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
     let group = bindings::Group {
-        phase_params: &phase.uniform,
+        clip_clock_params: &clip_clock.uniform,
         instances: crowd.instances.slice(),
         clips: clips.clips.slice(),
         timelines: clips.timelines.slice().cast(),
         times: clips.times.slice(),
         lods: state.lods.slice(),
-        shares: crowd.shares.slice(),
+        layer_weights: crowd.layer_weights.slice(),
         history: state.history.slice(),
-        phases: state.phases.slice(),
+        clip_clocks: state.clip_clocks.slice(),
         gate_params: &gate.uniform,
-        movers: table.animated_bones.slice(),
+        animated_bones: table.animated_bones.slice(),
         table: table.rows.slice(),
         sampled: state.sampled.slice(),
-        kept: gate.remaining.slice(),
+        remaining: gate.remaining.slice(),
         bits: active.bits.slice(),
         compact_params: &compact,
         slots: active.slots.slice().cast(),
-        dirty: active.dirty.slice(),
+        updated_bones: active.updated_bones.slice(),
         counts: active.counts.slice(),
         pairs: active.pairs.pairs.slice(),
         pair_dispatch: active.pairs.dispatched.slice().cast(),
-        dirty_instances: active.instances.slice(),
+        updated_instances: active.instances.slice(),
         instance_dispatches: active.dispatches.slice(),
     };
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
-    Ok(Work::One { phase, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+    Ok(Work::One { clip_clock, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
 }
 
 /// A prepared decision: set time and frame, then record.
@@ -187,24 +187,24 @@ pub struct DecideJob {
 
 #[derive(Debug, Clone)]
 enum Work {
-    One { phase: PhaseTime, gate: GateTime, job: Job },
-    Each { phase: PhaseJob, gate: GateJob, lists: CompactJob },
+    One { clip_clock: ClipClockTime, gate: GateTime, job: Job },
+    Each { clip_clock: ClipClockJob, gate: GateJob, lists: CompactJob },
 }
 
 impl DecideJob {
-    /// Chooses frame and time of the next submission, the latter as for [`super::super::place::PlaceJob::set`].
+    /// Chooses frame and time of the next submission, the latter as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`].
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         let ahead = if self.leads { frame.ahead } else { 0.0 };
         match &self.work {
-            Work::One { phase, gate, .. } => {
-                phase.set(gpu, elapsed, ahead)?;
+            Work::One { clip_clock, gate, .. } => {
+                clip_clock.set(gpu, elapsed, ahead)?;
                 gate.set(gpu, frame)?;
             }
-            Work::Each { phase, gate, .. } => {
-                phase.set(gpu, elapsed, ahead)?;
+            Work::Each { clip_clock, gate, .. } => {
+                clip_clock.set(gpu, elapsed, ahead)?;
                 gate.set(gpu, frame)?;
             }
         }
@@ -231,8 +231,8 @@ impl DecideJob {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         match &self.work {
             Work::One { job, .. } => job.dispatch(pass),
-            Work::Each { phase, gate, lists } => {
-                phase.dispatch(pass);
+            Work::Each { clip_clock, gate, lists } => {
+                clip_clock.dispatch(pass);
                 gate.dispatch(pass);
                 lists.dispatch(pass);
             }
@@ -257,9 +257,9 @@ mod tests {
         let model = crate::samples::creature().expect("valid");
         let clips = [&model.clips[0]];
         let set = ClipSet::new(&clips).expect("one skeleton");
-        let (skeleton, reaches) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
+        let (skeleton, bone_radii) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
         let bones = AnimatedBones::new(&Order::new(skeleton), &set, &clips).expect("fits");
-        let table = ExpectationTable::new(skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+        let table = ExpectationTable::new(skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
         let (gate, budget) = (Gate::Off(bones), Gate::Budget { table: table.expect("fits"), bones: 5 });
         let has_room = available(&gpu) >= needed();
         for (instances, is_few) in [(100, true), (1000, false)] {

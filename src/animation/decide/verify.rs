@@ -2,6 +2,8 @@
 
 use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::clip_clock::ClipClock;
+use crate::animation::clip_clock::verify as clip_clock;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::compact as lists;
 use crate::animation::compact::verify as compact;
@@ -15,8 +17,6 @@ use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::Order;
-use crate::animation::phase::Phase;
-use crate::animation::phase::verify as phase;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::gpu::GpuError;
 use crate::harness::Cases;
@@ -25,7 +25,7 @@ use crate::harness::poison::Poisoned;
 
 /// Every gate, frame after frame, in one dispatch where the device allows it and in several: levels of detail of every
 /// size, some instances hidden, some refreshed, layers above every third crowd. Times are whole 64ths of a second, so
-/// that devices agree on every key; a fraction may be off by 1, and what follows is compared with what the twins make of
+/// that devices agree on every key; a fraction may be off by 1, and what follows is compared with what the references make of
 /// the device's own: to the bit.
 ///
 /// # Errors
@@ -66,9 +66,9 @@ struct Play<'a> {
 
 /// Buffers that the kernels write.
 struct Outputs {
-    phases: Poisoned<Phase>,
+    clip_clocks: Poisoned<ClipClock>,
     bits: Poisoned<u32>,
-    dirty: Poisoned<u32>,
+    updated_bones: Poisoned<u32>,
     pairs: Poisoned<u32>,
     instances: Poisoned<u32>,
 }
@@ -104,11 +104,11 @@ impl Play<'_> {
             job.set(gpu, &frame, elapsed)?;
             outputs.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = decider.phases(&instances, &layers, &lods, elapsed, self.gate.ahead(&frame));
+            let expected = decider.clip_clocks(&instances, &layers, &lods, elapsed, self.gate.ahead(&frame));
             let name = |what| format!("{}, frame {number}: {what}", self.name);
-            let same = |actual: &[Phase]| exact(&phase::settled(actual, &expected), &expected);
-            cases.add(name("phases"), outputs.phases.check(gpu, same)?);
-            let actual = state.phases.read_blocking(gpu)?;
+            let same = |actual: &[ClipClock]| exact(&clip_clock::settled(actual, &expected), &expected);
+            cases.add(name("clip_clocks"), outputs.clip_clocks.check(gpu, same)?);
+            let actual = state.clip_clocks.read_blocking(gpu)?;
             let chosen = decider.bits(&frame, &lods, &actual[..count]);
             let bits = chosen.words();
             cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
@@ -117,7 +117,10 @@ impl Play<'_> {
             let listed = compact::padded(&work.instances, count);
             cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs))?);
             cases.add(name("instances"), outputs.instances.check(gpu, |actual| exact(actual, &listed))?);
-            cases.add(name("dirty"), outputs.dirty.check(gpu, |actual| exact(actual, &work.dirty))?);
+            cases.add(
+                name("updated_bones"),
+                outputs.updated_bones.check(gpu, |actual| exact(actual, &work.updated_bones))?,
+            );
             cases.add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work)?);
         }
         let kept = exact(&state.history.read_blocking(gpu)?, &decider.history);
@@ -134,17 +137,17 @@ impl Play<'_> {
         state: &mut GateState,
         active: &mut Active,
     ) -> Result<Outputs, Error> {
-        let (gpu, words) = (cases.gpu, active.dirty.len());
+        let (gpu, words) = (cases.gpu, active.updated_bones.len());
         let outputs = Outputs {
-            phases: Poisoned::new(gpu, crowd.len())?,
+            clip_clocks: Poisoned::new(gpu, crowd.len())?,
             bits: Poisoned::new(gpu, 2 * words)?,
-            dirty: Poisoned::new(gpu, words)?,
+            updated_bones: Poisoned::new(gpu, words)?,
             pairs: Poisoned::new(gpu, crowd.pairs())?,
             instances: Poisoned::new(gpu, crowd.len())?,
         };
-        state.phases = outputs.phases.buffer.clone();
+        state.clip_clocks = outputs.clip_clocks.buffer.clone();
         active.bits = outputs.bits.buffer.clone();
-        active.dirty = outputs.dirty.buffer.clone();
+        active.updated_bones = outputs.updated_bones.buffer.clone();
         active.pairs.pairs = outputs.pairs.buffer.clone();
         active.instances = outputs.instances.buffer.clone();
         Ok(outputs)
@@ -153,8 +156,8 @@ impl Play<'_> {
 
 impl Outputs {
     fn poison(&self, gpu: &crate::gpu::Gpu) -> Result<(), GpuError> {
-        self.phases.poison(gpu)?;
-        [&self.bits, &self.dirty, &self.pairs, &self.instances]
+        self.clip_clocks.poison(gpu)?;
+        [&self.bits, &self.updated_bones, &self.pairs, &self.instances]
             .iter()
             .try_for_each(|output| output.poison(gpu))
     }

@@ -3,12 +3,12 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::reference::gate;
 use crate::animation::gate::{Frame, Gate, GatePass};
 use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
-use crate::animation::phase::{Phase, Verdict};
 use crate::asset::keyframe::RotationPath;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
@@ -35,10 +35,10 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
     let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
     let lods = vec![Lod { omega: OMEGA_ONE / 2, allowed: 1 << 16, ..Lod::FULL }; count];
     let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
-    let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
-    let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
+    let clip_clock = |instance: u32| ClipClock::new(instance % rows, instance % 65536, UpdateReason::Free, 0);
+    let clip_clocks: Vec<ClipClock> = (0..count as u32).map(clip_clock).collect();
     state.lods.write(gpu, &lods)?;
-    state.phases.write(gpu, &phases)?;
+    state.clip_clocks.write(gpu, &clip_clocks)?;
     let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame)?;
@@ -60,9 +60,9 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
             job.record(encoder);
         }),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             sampled.fill(0);
-            drop(std::hint::black_box(gate(mode, &frame, &lods, &phases, &mut sampled)));
+            drop(std::hint::black_box(gate(mode, &frame, &lods, &clip_clocks, &mut sampled)));
         }),
     ];
     bench.case(format!("{count} × 153, {}", mode.name()), (pairs, "bone"), 8 * words as u64, contenders)
@@ -89,8 +89,8 @@ impl Scene {
     }
 
     fn bounded(&self) -> Result<Gate, Error> {
-        let (clips, reaches) = ([&self.clip], vec![0.1; self.skeleton.len()]);
+        let (clips, bone_radii) = ([&self.clip], vec![0.1; self.skeleton.len()]);
         let path = RotationPath::Slerp;
-        Ok(Gate::Bounded(BoundTable::new(&self.skeleton, &self.set, &clips, &reaches, path)?))
+        Ok(Gate::Bounded(BoundTable::new(&self.skeleton, &self.set, &clips, &bone_radii, path)?))
     }
 }

@@ -63,12 +63,12 @@ impl GatePass {
         let time = GateTime::new(gpu, gate, crowd, state, active)?;
         let group = bindings::Group {
             lods: state.lods.slice(),
-            phases: state.phases.slice(),
+            clip_clocks: state.clip_clocks.slice(),
             gate_params: &time.uniform,
-            movers: gate.table.animated_bones.slice(),
+            animated_bones: gate.table.animated_bones.slice(),
             table: gate.table.rows.slice(),
             sampled: state.sampled.slice(),
-            kept: time.remaining.slice(),
+            remaining: time.remaining.slice(),
             bits: active.bits.slice(),
         };
         let step = Step {

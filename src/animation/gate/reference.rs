@@ -1,11 +1,11 @@
 //! Which bones are sampled: reference of `kernels/animation/gate.wgsl`.
 
 use crate::animation::budget::reference::budget;
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::{Frame, Gate};
-use crate::animation::gate_table::sums::{motion_at, motion_between, share_of};
+use crate::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
 use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, PriorityTable, bits_of};
 use crate::animation::lod::{Lod, OMEGA_ONE};
-use crate::animation::phase::{Phase, Verdict};
 
 /// What is sampled.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -28,17 +28,25 @@ impl Chosen {
 ///
 /// # Panics
 /// With fewer levels or sums than the phases need.
-pub fn gate(gate: &Gate, frame: &Frame, lods: &[Lod], phases: &[Phase], sampled: &mut [u32]) -> Chosen {
+pub fn gate(
+    gate: &Gate,
+    frame: &Frame,
+    lods: &[Lod],
+    clip_clocks: &[ClipClock],
+    sampled: &mut [u32],
+) -> Chosen {
     match gate {
-        Gate::Off(bones) => thinned(bones, lods, phases, |word| word.candidates),
-        Gate::SkipPeriod { table, period } => {
-            thinned(table.animated_bones(), lods, phases, |word| by_priority(table, word, frame, *period))
+        Gate::Off(bones) => thinned(bones, lods, clip_clocks, |word| word.candidates),
+        Gate::SkipPeriod { table, period } => thinned(table.animated_bones(), lods, clip_clocks, |word| {
+            by_priority(table, word, frame, *period)
+        }),
+        Gate::Uniform(bones) => thinned(bones, lods, clip_clocks, |word| all_or_none(word, frame)),
+        Gate::Random(bones) => {
+            thinned(bones, lods, clip_clocks, |word| at_random(word, bones.bones(), frame))
         }
-        Gate::Uniform(bones) => thinned(bones, lods, phases, |word| all_or_none(word, frame)),
-        Gate::Random(bones) => thinned(bones, lods, phases, |word| at_random(word, bones.bones(), frame)),
-        Gate::Bounded(table) => bounded(table, lods, phases, sampled),
+        Gate::Bounded(table) => bounded(table, lods, clip_clocks, sampled),
         Gate::Budget { table, bones } => {
-            let bits = budget(table, *bones, lods, phases, sampled);
+            let bits = budget(table, *bones, lods, clip_clocks, sampled);
             Chosen { ahead: vec![0; bits.len()], bits }
         }
     }
@@ -50,7 +58,7 @@ struct Word<'a> {
     /// The first bone's slot.
     first: usize,
     lod: &'a Lod,
-    phase: &'a Phase,
+    clip_clock: &'a ClipClock,
     /// All of its bones.
     all: u32,
     /// Those that may have to be sampled.
@@ -62,23 +70,28 @@ fn words<'a>(
     bones: &'a AnimatedBones,
     instance: usize,
     lod: &'a Lod,
-    phase: &'a Phase,
+    clip_clock: &'a ClipClock,
 ) -> impl Iterator<Item = Word<'a>> {
-    bones.of(phase.clip).iter().enumerate().map(move |(word, moving)| {
+    bones.of(clip_clock.clip).iter().enumerate().map(move |(word, moving)| {
         let first = 32 * word;
         let all = u32::MAX >> (32 - (bones.bones() - first).min(32));
-        let candidates = if phase.verdict() == Verdict::Blended { all } else { *moving };
-        Word { instance: instance as u32, first, lod, phase, all, candidates }
+        let candidates = if clip_clock.reason() == UpdateReason::Blended { all } else { *moving };
+        Word { instance: instance as u32, first, lod, clip_clock, all, candidates }
     })
 }
 
 /// What gates leave that decide on each word alone: `thin` of the candidates, where something may be left out.
-fn thinned(bones: &AnimatedBones, lods: &[Lod], phases: &[Phase], thin: impl Fn(&Word<'_>) -> u32) -> Chosen {
+fn thinned(
+    bones: &AnimatedBones,
+    lods: &[Lod],
+    clip_clocks: &[ClipClock],
+    thin: impl Fn(&Word<'_>) -> u32,
+) -> Chosen {
     let mut chosen = Chosen::default();
-    for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
-        chosen.bits.extend(words(bones, instance, lod, phase).map(|word| match phase.verdict() {
-            Verdict::Hidden => 0,
-            Verdict::Forced => word.all,
+    for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
+        chosen.bits.extend(words(bones, instance, lod, clip_clock).map(|word| match clip_clock.reason() {
+            UpdateReason::Hidden => 0,
+            UpdateReason::Forced => word.all,
             _ if lod.omega >= OMEGA_ONE => word.candidates,
             _ => thin(&word),
         }));
@@ -88,15 +101,15 @@ fn thinned(bones: &AnimatedBones, lods: &[Lod], phases: &[Phase], thin: impl Fn(
 }
 
 /// What [`Gate::Bounded`] leaves.
-fn bounded(table: &BoundTable, lods: &[Lod], phases: &[Phase], sampled: &mut [u32]) -> Chosen {
+fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled: &mut [u32]) -> Chosen {
     let mut chosen = Chosen::default();
     let bones = table.animated_bones();
     let mut by_slot = vec![0; bones.bones()];
-    for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
+    for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
         let mut remaining = Remaining { last: 0, by_slot: &mut by_slot };
-        for word in words(bones, instance, lod, phase) {
-            let [active, ahead] = match phase.verdict() {
-                Verdict::Hidden => [0; 2],
+        for word in words(bones, instance, lod, clip_clock) {
+            let [active, ahead] = match clip_clock.reason() {
+                UpdateReason::Hidden => [0; 2],
                 _ => by_motion(table, &word, &mut sampled[instance * bones.bones()..], &mut remaining),
             };
             chosen.bits.push(active);
@@ -122,7 +135,7 @@ pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
 fn by_priority(table: &PriorityTable, word: &Word<'_>, frame: &Frame, longest: u32) -> u32 {
     let ticks = frame.ticks.wrapping_add(scramble(word.instance) & 0xffff);
     let is_active = |bit: &usize| {
-        let level = (table.priority(word.phase.row, word.first + bit) * word.lod.omega) >> 16;
+        let level = (table.priority(word.clip_clock.row, word.first + bit) * word.lod.omega) >> 16;
         let period = (longest >> 16) * level + (((longest & 0xffff) * level) >> 16);
         !is_skipped(period, ticks, frame.frame_ticks)
     };
@@ -161,30 +174,30 @@ fn by_motion(
     sampled: &mut [u32],
     remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
-    let Word { first, lod, phase, all, candidates, .. } = *word;
+    let Word { first, lod, clip_clock, all, candidates, .. } = *word;
     // Sums of motion know of one clip alone; and all are where nothing may be missed.
-    let asked = if phase.verdict().forces_motion() { all } else { 0 };
+    let asked = if clip_clock.reason().forces_motion() { all } else { 0 };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let [mut active, mut ahead] = [forced, 0];
     for bit in bits_of(candidates | forced) {
         let slot = first + bit;
-        let (period, budget) = table.of_clip(phase.clip, slot);
+        let (period, budget) = table.of_clip(clip_clock.clip, slot);
         if budget.starts() {
-            remaining.last = match table.above(phase.clip, slot) {
+            remaining.last = match table.above(clip_clock.clip, slot) {
                 None => lod.allowed.min(EVERYTHING - 1),
                 Some(above) => remaining.by_slot[above],
             };
         }
-        let granted = share_of(remaining.last, budget.fraction());
-        let now = motion_at(table.motion(phase.row, slot), phase.fraction());
+        let granted = scale_by_fraction(remaining.last, budget.fraction());
+        let now = motion_at(table.motion(clip_clock.row, slot), clip_clock.fraction());
         let missed = motion_between(now, sampled[slot], period) + budget.quantization_slack();
         let is_forced = forced >> bit & 1 != 0;
         if is_forced || missed > granted {
             active |= 1 << bit;
             sampled[slot] = now;
-            let later = motion_at(table.motion(phase.ahead_row, slot), phase.ahead_fraction);
+            let later = motion_at(table.motion(clip_clock.ahead_row, slot), clip_clock.ahead_fraction);
             let early = motion_between(later, now, period) + budget.quantization_slack();
-            if phase.is_ahead() && !is_forced && early <= granted {
+            if clip_clock.is_ahead() && !is_forced && early <= granted {
                 ahead |= 1 << bit;
                 sampled[slot] = later;
                 remaining.last -= early;

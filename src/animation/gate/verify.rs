@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::gate;
@@ -10,7 +11,6 @@ use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::Order;
-use crate::animation::phase::{Phase, Verdict};
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::asset::clip::Clip;
@@ -44,13 +44,13 @@ pub(crate) fn gates(skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Resu
     let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
     let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
     let bones = AnimatedBones::new(&order, set, clips)?;
-    let reaches = vec![0.5; skeleton.len()];
+    let bone_radii = vec![0.5; skeleton.len()];
     Ok([
         Gate::Off(bones.clone()),
         Gate::SkipPeriod { table: PriorityTable::new(&order, set, clips, &priorities)?, period: 65536 },
         Gate::Uniform(bones.clone()),
         Gate::Random(bones),
-        Gate::Bounded(BoundTable::new(skeleton, set, clips, &reaches, RotationPath::Slerp)?),
+        Gate::Bounded(BoundTable::new(skeleton, set, clips, &bone_radii, RotationPath::Slerp)?),
     ])
 }
 
@@ -76,9 +76,9 @@ fn add(
     let mut sampled = vec![0; crowd.pairs()];
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
-        let (lods, phases) = random_state(&mut draw, set, count, number == 0);
+        let (lods, clip_clocks) = random_state(&mut draw, set, count, number == 0);
         state.lods.write(gpu, &lods)?;
-        state.phases.write(gpu, &phases)?;
+        state.clip_clocks.write(gpu, &clip_clocks)?;
         let frame = Frame {
             ticks,
             frame_ticks: 1092,
@@ -88,7 +88,7 @@ fn add(
         job.set(gpu, &frame)?;
         output.poison(gpu)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
-        let expected = gate(mode, &frame, &lods, &phases, &mut sampled).words();
+        let expected = gate(mode, &frame, &lods, &clip_clocks, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
         cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
     }
@@ -103,32 +103,32 @@ pub(crate) fn random_state(
     set: &ClipSet,
     count: usize,
     is_first: bool,
-) -> (Vec<Lod>, Vec<Phase>) {
+) -> (Vec<Lod>, Vec<ClipClock>) {
     let lod = |draw: &mut Draw| Lod {
         omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
         allowed: draw.word() >> (draw.word() % 32),
         ..Lod::FULL
     };
-    let phase = |draw: &mut Draw| {
+    let clip_clock = |draw: &mut Draw| {
         let clip = draw.word() % set.clips().len() as u32;
         let entry = &set.clips()[clip as usize];
         let row = entry.first_row + draw.word() % (set.rows(entry) - 1);
         let fraction = [0, draw.word() % 65536, 65535, 65536][draw.word() as usize % 4];
-        let verdict = match draw.word() % 8 {
-            _ if is_first => Verdict::Forced,
-            0 => Verdict::Hidden,
-            1 => Verdict::Forced,
-            2 => Verdict::Blended,
-            _ => Verdict::Free,
+        let reason = match draw.word() % 8 {
+            _ if is_first => UpdateReason::Forced,
+            0 => UpdateReason::Hidden,
+            1 => UpdateReason::Forced,
+            2 => UpdateReason::Blended,
+            _ => UpdateReason::Free,
         };
-        let phase = Phase::new(row, fraction, verdict, clip);
+        let clip_clock = ClipClock::new(row, fraction, reason, clip);
         let ahead_row = entry.first_row + draw.word() % (set.rows(entry) - 1);
         match draw.word() % 3 {
-            0 => phase,
+            0 => clip_clock,
             // A little ahead, and anywhere.
-            1 => Phase { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..phase },
-            _ => Phase { ahead_row, ahead_fraction: draw.word() % 65537, ..phase },
+            1 => ClipClock { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..clip_clock },
+            _ => ClipClock { ahead_row, ahead_fraction: draw.word() % 65537, ..clip_clock },
         }
     };
-    (0..count).map(|_| (lod(draw), phase(draw))).unzip()
+    (0..count).map(|_| (lod(draw), clip_clock(draw))).unzip()
 }

@@ -5,7 +5,7 @@ use super::motion::MotionTable;
 use super::{AnimatedBones, EVERYTHING, rows_of};
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::motion::{bounding_levers, motions, shares, whole_reaches};
+use crate::animation::motion::{bounding_levers, budget_fractions, motions, subtree_radii};
 use crate::animation::order::{NO_PARENT, Order};
 use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
@@ -31,7 +31,7 @@ pub struct BoundTable {
 }
 
 impl BoundTable {
-    /// The table of a set's clips. `reaches`: for each bone, how far points that follow it alone lie from its origin,
+    /// The table of a set's clips. `bone_radii`: for each bone, how far points that follow it alone lie from its origin,
     /// metres. `path`: as instances are sampled; crowds that are sampled otherwise are refused, since nlerp turns faster
     /// than slerp in the middle between two keys.
     ///
@@ -42,18 +42,18 @@ impl BoundTable {
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
-        reaches: &[f32],
+        bone_radii: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let (motion, order) = MotionTable::new(skeleton, set, clips, reaches, path, clips.len())?;
+        let (motion, order) = MotionTable::new(skeleton, set, clips, bone_radii, path, clips.len())?;
         let mut table = Self { motion, first_above: rows_of(set), radius: 0.0 };
         let mut all = Vec::with_capacity(clips.len());
         for (entry, clip) in set.clips().iter().zip(clips) {
             let motions = motions(set, entry, clip, path);
-            let mut columns = columns(&motions, &bounding_levers(skeleton, &motions, reaches));
-            share_out(skeleton, &mut columns);
+            let mut columns = columns(&motions, &bounding_levers(skeleton, &motions, bone_radii));
+            distribute_budget(skeleton, &mut columns);
             all.push(columns);
-            let whole = whole_reaches(skeleton, &motions, reaches);
+            let whole = subtree_radii(skeleton, &motions, bone_radii);
             let roots = skeleton.bones().iter().enumerate().filter(|(_, bone)| bone.parent.is_none());
             let radius = roots
                 .map(|(root, _)| motions[root].translation + motions[root].scale * whole[root])
@@ -85,7 +85,7 @@ impl BoundTable {
             if above.is_none() || above != before {
                 rows[last + slot][1] |= ErrorBudget::STARTS;
                 if let Some(above) = above {
-                    rows[last + above][1] |= ErrorBudget::KEPT;
+                    rows[last + above][1] |= ErrorBudget::REMAINING;
                 }
             }
             before = Some(slot);
@@ -153,7 +153,7 @@ impl ErrorBudget {
     /// The bone above is not the one before it in the order.
     const STARTS: u32 = 1 << 5;
     /// What it leaves is needed later.
-    const KEPT: u32 = 1 << 6;
+    const REMAINING: u32 = 1 << 6;
 
     /// `quantization_slack`: a power of two, or 0.
     pub(super) fn new(fraction: f64, quantization_slack: u32) -> Self {
@@ -178,9 +178,9 @@ impl ErrorBudget {
 }
 
 /// Gives each bone its fraction of what the bones above it leave.
-fn share_out(skeleton: &Skeleton, columns: &mut [Column]) {
+fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
-    for (column, share) in columns.iter_mut().zip(shares(skeleton, &rates)) {
-        column.fraction = (FAVOUR * share).min(1.0);
+    for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {
+        column.fraction = (FAVOUR * fraction).min(1.0);
     }
 }

@@ -24,11 +24,11 @@ impl ExpectationTable {
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
-        reaches: &[f32],
+        bone_radii: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let (mut table, order) = MotionTable::new(skeleton, set, clips, reaches, path, 0)?;
-        let levers = typical_levers(skeleton, reaches);
+        let (mut table, order) = MotionTable::new(skeleton, set, clips, bone_radii, path, 0)?;
+        let levers = typical_levers(skeleton, bone_radii);
         let of = |(entry, clip): (_, &&Clip)| columns(&motions(set, entry, clip, path), &levers);
         let all: Vec<_> = set.clips().iter().zip(clips).map(of).collect();
         table.fill(&order, set, &all)?;

@@ -27,13 +27,13 @@ impl MotionTable {
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
-        reaches: &[f32],
+        bone_radii: &[f32],
         path: RotationPath,
         more: usize,
     ) -> Result<(Self, Order), InputError> {
         let order = Order::new(skeleton);
         let animated_bones = AnimatedBones::new(&order, set, clips)?;
-        check_reaches(skeleton, reaches)?;
+        check_bone_radii(skeleton, bone_radii)?;
         let rows = empty_rows(set, more, animated_bones.bones())?;
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
@@ -74,16 +74,16 @@ impl MotionTable {
     }
 }
 
-fn check_reaches(skeleton: &Skeleton, reaches: &[f32]) -> Result<(), InputError> {
-    if reaches.len() != skeleton.len() {
+fn check_bone_radii(skeleton: &Skeleton, bone_radii: &[f32]) -> Result<(), InputError> {
+    if bone_radii.len() != skeleton.len() {
         let bound = format!("must be {}, one a bone", skeleton.len());
-        return Err(InputError::new("reaches.len", reaches.len(), bound));
+        return Err(InputError::new("bone_radii.len", bone_radii.len(), bound));
     }
-    match reaches.iter().position(|reach| !(*reach >= 0.0 && reach.is_finite())) {
+    match bone_radii.iter().position(|bone_radius| !(*bone_radius >= 0.0 && bone_radius.is_finite())) {
         None => Ok(()),
         Some(bone) => {
             let bound = "must be at least 0 and finite";
-            Err(InputError::new(format!("reaches[{bone}]"), reaches[bone], bound))
+            Err(InputError::new(format!("bone_radii[{bone}]"), bone_radii[bone], bound))
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The crowd on the device.
 
 use relievo::Error;
-use relievo::animation::concat::{ConcatJob, ConcatPass};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
-use relievo::animation::place::{PlaceJob, PlacePass};
+use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
@@ -34,9 +34,9 @@ pub(super) struct Gated {
 /// Everything of everybody.
 pub(super) struct Full {
     pub(super) crowd: Crowd,
-    place: PlaceJob,
+    place: KeyframeCursorJob,
     sample: Job,
-    concat: ConcatJob,
+    local_to_model: LocalToModelJob,
 }
 
 impl Device {
@@ -85,17 +85,17 @@ impl Device {
     fn play_stages(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
         let frame = &gated.frame;
-        let stages = |gate, sample, concat| Taken { gate, sample, concat, whole: None };
+        let stages = |gate, sample, local_to_model| Taken { gate, sample, local_to_model, whole: None };
         Ok(Times {
             gated: stages(
                 Some(self.timed(|pass| frame.dispatch_gate(pass))?),
                 Some(self.timed(|pass| frame.dispatch_sample(pass))?),
-                Some(self.timed(|pass| frame.dispatch_concat(pass))?),
+                Some(self.timed(|pass| frame.dispatch_local_to_model(pass))?),
             ),
             full: stages(
                 None,
                 Some(self.timed(|pass| full.dispatch_sample(pass))?),
-                Some(self.timed(|pass| full.concat.dispatch(pass))?),
+                Some(self.timed(|pass| full.local_to_model.dispatch(pass))?),
             ),
         })
     }
@@ -118,10 +118,10 @@ impl Play for Device {
         let active = &self.gated.frame.active;
         self.stale = self.gated.crowd.model_matrices().read_blocking(&self.gpu)?;
         self.fresh = self.full.crowd.model_matrices().read_blocking(&self.gpu)?;
-        let dirty = active.dirty.read_blocking(&self.gpu)?;
+        let updated_bones = active.updated_bones.read_blocking(&self.gpu)?;
         Ok(Played {
             interpolated: active.pairs.dispatched.read_blocking(&self.gpu)?[3] as usize,
-            concatenated: dirty.iter().map(|word| word.count_ones() as usize).sum(),
+            concatenated: updated_bones.iter().map(|word| word.count_ones() as usize).sum(),
             times,
         })
     }
@@ -155,9 +155,9 @@ impl Full {
     fn new(gpu: &Gpu, stage: &Stage<'_>, clips: &ClipBuffers) -> Result<Self, Error> {
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         Ok(Self {
-            place: PlacePass::new(gpu)?.prepare(gpu, clips, &crowd)?,
+            place: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
-            concat: ConcatPass::new(gpu)?.prepare(gpu, &stage.plan.model.skeleton, &crowd)?,
+            local_to_model: LocalToModelPass::new(gpu)?.prepare(gpu, &stage.plan.model.skeleton, &crowd)?,
             crowd,
         })
     }
@@ -169,7 +169,7 @@ impl Full {
 
     fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_sample(pass);
-        self.concat.dispatch(pass);
+        self.local_to_model.dispatch(pass);
     }
 
     pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {

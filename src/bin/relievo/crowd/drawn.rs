@@ -11,10 +11,10 @@ use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, ColorTexture};
 use relievo::skinning::Extent;
 use relievo::skinning::frame::SkinFrame;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE, list_words};
 use relievo::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use relievo::skinning::picture::Light;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::mips::Mips;
 use relievo::{Error, InputError};
@@ -222,13 +222,13 @@ impl<'a> Drawing<'a> {
             for look in &mut self.looks {
                 let Drawable { skin, places, .. } = &look.meshes[mesh];
                 let own = skin.skinned.read_blocking(self.gpu)?;
-                let reductions = skin.crowd.reductions.read_blocking(self.gpu)?;
+                let instance_lods = skin.crowd.instance_lods.read_blocking(self.gpu)?;
                 let levelled = self.stage.levelled.as_ref().filter(|_| look.way.triangles != Triangles::All);
                 let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));
-                let seen = Seen { reductions: &reductions, levels };
+                let seen = Seen { instance_lods: &instance_lods, levels };
                 look.spread.add(self.stage, self.scene, seen, Skinned { vertices: &own, places }, fresh);
-                let levels = reductions.iter().filter(|reduction| reduction.most > 0);
-                let levels = levels.map(|reduction| skin.clusters.level(reduction.level));
+                let levels = instance_lods.iter().filter(|instance_lod| instance_lod.most > 0);
+                let levels = levels.map(|instance_lod| skin.clusters.level(instance_lod.level));
                 let clusters = match look.way.by {
                     By::All => levels.clone().map(|level| level.clusters).sum(),
                     By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3],
@@ -253,7 +253,7 @@ impl Look {
     fn skin(&self, encoder: &mut wgpu::CommandEncoder) {
         for mesh in &self.meshes {
             match self.way.by {
-                By::Gate => mesh.skin.record_moved(encoder),
+                By::Gate => mesh.skin.record_updated_bones(encoder),
                 By::All => mesh.skin.record_all(encoder),
             }
         }
@@ -287,14 +287,14 @@ impl Look {
             compute_nanoseconds: compute,
             draw_nanoseconds: draw,
             nanoseconds_per_vertex: skin / vertices as f64,
-            skinned_share: share(self.clusters),
-            triangle_share: share(self.triangles),
+            skinned_fraction: fraction(self.clusters),
+            triangle_fraction: fraction(self.triangles),
             vertex_error: self.spread.errors(),
         }
     }
 }
 
-fn share([some, all]: [u64; 2]) -> f64 {
+fn fraction([some, all]: [u64; 2]) -> f64 {
     some as f64 / all.max(1) as f64
 }
 
@@ -318,12 +318,13 @@ impl<'a> World<'a> {
         let deepest = scene.origins.iter().map(|origin| origin[2]).fold(0.0, f32::max);
         let far = 2.0 * deepest + 4.0 * stage.plan.size * stage.metres_a_unit;
         let aspect = ASPECT[0] as f32 / ASPECT[1] as f32;
-        let lens = camera::rh::proj::directx::perspective(FIELD_OF_VIEW, aspect, stage.lens.near, far);
+        let projection =
+            camera::rh::proj::directx::perspective(FIELD_OF_VIEW, aspect, stage.projection.near, far);
         let checks = ColorTexture::new(gpu, &checks(), true)?.into();
         Ok(Self {
             placements: Buffer::from_slice(gpu, "placements", &placements(scene))?,
             // The camera is at the origin and looks along -Z.
-            clip_from_world: lens,
+            clip_from_world: projection,
             renderer: SkinnedRenderer::new(gpu, COLOR_FORMAT)?,
             albedos: Albedo::of_meshes(gpu, &stage.plan.model, &checks, ColorTexture::new)?,
             gpu,
@@ -379,7 +380,11 @@ impl<'a> World<'a> {
             near,
             far,
             steps: STEPS,
-            most: if let Skinning::All(reduction) = skinning { reduction.most } else { Reduction::FULL.most },
+            most: if let Skinning::All(instance_lod) = skinning {
+                instance_lod.most
+            } else {
+                InstanceLod::FULL.most
+            },
             center,
             radius,
             levels,
@@ -388,7 +393,7 @@ impl<'a> World<'a> {
             gpu,
             &view,
             placements,
-            &skin.crowd.reductions,
+            &skin.crowd.instance_lods,
             &drawn,
             &scene.arguments,
         )?;
@@ -401,7 +406,7 @@ pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 
     match skinning {
         Skinning::All(_) => None,
         Skinning::Fade(range) => Some([range.min, range.max].map(|units| units * stage.metres_a_unit)),
-        Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.lens, pixels)),
+        Skinning::Bounded(pixels) => Some(stage.extents[mesh].fade_range(&stage.projection, pixels)),
     }
 }
 
@@ -409,7 +414,7 @@ pub fn fade(stage: &Stage<'_>, skinning: Skinning, mesh: usize) -> Option<[f32; 
 pub fn level_begins(stage: &Stage<'_>, triangles: Triangles, mesh: usize) -> Vec<f32> {
     match (triangles, &stage.levelled) {
         (Triangles::Bounded(pixels), Some(levelled)) => {
-            stage.extents[mesh].level_ranges(&stage.lens, pixels, levelled.errors.iter().copied())
+            stage.extents[mesh].level_ranges(&stage.projection, pixels, levelled.errors.iter().copied())
         }
         _ => Vec::new(),
     }

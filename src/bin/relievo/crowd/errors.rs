@@ -1,7 +1,7 @@
 //! How far stale points lie from fresh ones.
 
 use rayon::prelude::*;
-use relievo::animation::Lens;
+use relievo::animation::Projection;
 use relievo::asset::Affine;
 use serde::Serialize;
 
@@ -34,8 +34,8 @@ pub struct Jump {
 
 /// Collects errors frame by frame.
 pub struct Meter<'a> {
-    reaches: &'a [f32],
-    lens: Lens,
+    bone_radii: &'a [f32],
+    projection: Projection,
     scene: &'a Scene,
     /// Each of some instances in turn.
     shares: Vec<Share>,
@@ -55,29 +55,29 @@ struct Share {
 
 impl<'a> Meter<'a> {
     pub fn new(stage: &'a Stage<'_>, scene: &'a Scene) -> Self {
-        let (count, bones) = (stage.instances.len(), stage.reaches.len());
+        let (count, bones) = (stage.instances.len(), stage.bone_radii.len());
         let each = count.div_ceil(rayon::current_num_threads());
-        let share = |first: usize| Share {
+        let fraction = |first: usize| Share {
             metres: Tally::new(),
             pixels: Tally::new(),
             jump: Jump { max_metres: 0.0, max_pixels: 0.0 },
             unseen: 0,
             last: vec![[[0.0; 4]; 3]; bones * each.min(count - first)],
         };
-        let shares = (0..count).step_by(each).map(share).collect();
-        Self { reaches: &stage.reaches, lens: stage.lens, scene, shares, each }
+        let shares = (0..count).step_by(each).map(fraction).collect();
+        Self { bone_radii: &stage.bone_radii, projection: stage.projection, scene, shares, each }
     }
 
     /// Adds a frame; both lists are `instance · bones + bone`.
     pub fn add(&mut self, stale: &[Affine], fresh: &[Affine]) {
-        let Self { reaches, lens, scene, each, .. } = *self;
-        let pairs = each * reaches.len();
+        let Self { bone_radii, projection, scene, each, .. } = *self;
+        let pairs = each * bone_radii.len();
         let lists = stale.par_chunks(pairs).zip(fresh.par_chunks(pairs));
-        self.shares.par_iter_mut().zip(lists).enumerate().for_each(|(at, (share, (stale, fresh)))| {
+        self.shares.par_iter_mut().zip(lists).enumerate().for_each(|(at, (fraction, (stale, fresh)))| {
             for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
-                let instance = at * each + pair / reaches.len();
-                let view = View { origin: scene.origins[instance], turn: scene.turns[instance], lens };
-                share.add(pair, &view, reaches[pair % reaches.len()], stale, fresh);
+                let instance = at * each + pair / bone_radii.len();
+                let view = View { origin: scene.origins[instance], turn: scene.turns[instance], projection };
+                fraction.add(pair, &view, bone_radii[pair % bone_radii.len()], stale, fresh);
             }
         });
     }
@@ -85,12 +85,12 @@ impl<'a> Meter<'a> {
     pub fn finish(self) -> (Errors, Jump) {
         let mut all = self.shares.into_iter();
         let mut sum = all.next().expect("a crowd has instances");
-        for share in all {
-            sum.metres.merge(&share.metres);
-            sum.pixels.merge(&share.pixels);
-            sum.unseen += share.unseen;
-            sum.jump.max_metres = sum.jump.max_metres.max(share.jump.max_metres);
-            sum.jump.max_pixels = sum.jump.max_pixels.max(share.jump.max_pixels);
+        for fraction in all {
+            sum.metres.merge(&fraction.metres);
+            sum.pixels.merge(&fraction.pixels);
+            sum.unseen += fraction.unseen;
+            sum.jump.max_metres = sum.jump.max_metres.max(fraction.jump.max_metres);
+            sum.jump.max_pixels = sum.jump.max_pixels.max(fraction.jump.max_pixels);
         }
         (Errors::of(&sum.metres, &sum.pixels, sum.unseen), sum.jump)
     }
@@ -115,7 +115,7 @@ impl Errors {
 pub(super) struct View {
     pub(super) origin: [f32; 3],
     pub(super) turn: [f32; 2],
-    pub(super) lens: Lens,
+    pub(super) projection: Projection,
 }
 
 impl View {
@@ -130,7 +130,7 @@ impl View {
         let (turned, way) = (self.turned(point), self.turned(way));
         let [x, y, z]: [f64; 3] = std::array::from_fn(|i| turned[i] + f64::from(self.origin[i]));
         let [x2, y2, z2] = [x + way[0], y + way[1], z + way[2]];
-        let (near, focal) = (f64::from(self.lens.near), f64::from(self.lens.focal_pixels));
+        let (near, focal) = (f64::from(self.projection.near), f64::from(self.projection.focal_pixels));
         let is_seen = z > near && z2 > near;
         let [right, up] = [x2 / z2 - x / z, y2 / z2 - y / z];
         // Not hypot, which takes most of the time.
@@ -139,8 +139,8 @@ impl View {
 }
 
 impl Share {
-    /// The ends of a bone's axes, `reach` out.
-    fn add(&mut self, pair: usize, view: &View, reach: f32, stale: &Affine, fresh: &Affine) {
+    /// The ends of a bone's axes, `bone_radius` out.
+    fn add(&mut self, pair: usize, view: &View, bone_radius: f32, stale: &Affine, fresh: &Affine) {
         let off: Affine =
             std::array::from_fn(|row| std::array::from_fn(|column| stale[row][column] - fresh[row][column]));
         let last = std::mem::replace(&mut self.last[pair], off);
@@ -150,7 +150,7 @@ impl Share {
             self.pixels.count += 6;
             return;
         }
-        for (axis, side) in (0..3).flat_map(|axis| [(axis, -reach), (axis, reach)]) {
+        for (axis, side) in (0..3).flat_map(|axis| [(axis, -bone_radius), (axis, bone_radius)]) {
             let at = |matrix: &Affine| -> [f64; 3] {
                 matrix.map(|row| f64::from(row[3]) + f64::from(side) * f64::from(row[axis]))
             };
@@ -209,8 +209,8 @@ impl Tally {
     }
 
     /// A value that a share of all are at most.
-    fn percentile(&self, share: f64) -> f64 {
-        let mut above = (self.count as f64 * (1.0 - share)) as u64;
+    fn percentile(&self, fraction: f64) -> f64 {
+        let mut above = (self.count as f64 * (1.0 - fraction)) as u64;
         for (bin, count) in self.bins.iter().enumerate().rev() {
             if *count > above {
                 return f64::from(f32::from_bits((bin as u32 + 1) << BIN_SHIFT)).min(self.max);
@@ -243,18 +243,19 @@ mod tests {
     /// One bone, a metre long, ten metres before a lens of 1000 pixels, moved sideways, up and away.
     #[test]
     fn errors_are_projected_and_jumps_seen() {
-        let lens = Lens { focal_pixels: 1000.0, near: 0.1 };
+        let projection = Projection { focal_pixels: 1000.0, near: 0.1 };
         let scene = Scene { origins: vec![[0.0, 0.0, 10.0]], turns: vec![[0.0, 1.0]] };
         let fresh: Affine = relievo::asset::transform::AFFINE_IDENTITY;
         let run = |ways: &[[f32; 3]]| {
-            let share = Share {
+            let fraction = Share {
                 metres: Tally::new(),
                 pixels: Tally::new(),
                 jump: Jump { max_metres: 0.0, max_pixels: 0.0 },
                 unseen: 0,
                 last: vec![[[0.0; 4]; 3]],
             };
-            let mut meter = Meter { reaches: &[1.0], lens, scene: &scene, shares: vec![share], each: 1 };
+            let mut meter =
+                Meter { bone_radii: &[1.0], projection, scene: &scene, shares: vec![fraction], each: 1 };
             for way in ways {
                 let mut stale = fresh;
                 (0..3).for_each(|row| stale[row][3] = way[row]);

@@ -48,14 +48,14 @@ pub struct Source<'a> {
     pub order: &'a Order,
     pub set: &'a ClipSet,
     /// For each bone, how far points that follow it lie from its origin.
-    pub reaches: &'a [f32],
+    pub bone_radii: &'a [f32],
     pub weights: &'a Weights,
 }
 
 impl Source<'_> {
     /// The gate itself, with its table; `period` in seconds, `budget` in bones.
     pub fn gate(&self, mode: Mode, period: f64, budget: u32) -> Result<Gate, InputError> {
-        let Self { skeleton, clip, order, set, reaches, weights } = self;
+        let Self { skeleton, clip, order, set, bone_radii, weights } = self;
         let clips = [*clip];
         Ok(match mode {
             Mode::Off => Gate::Off(AnimatedBones::new(order, set, &clips)?),
@@ -68,10 +68,10 @@ impl Source<'_> {
                 Gate::SkipPeriod { table, period: (period * f64::from(TICKS)).round() as u32 }
             }
             Mode::Budget => {
-                let table = ExpectationTable::new(skeleton, set, &clips, reaches, PATH)?;
+                let table = ExpectationTable::new(skeleton, set, &clips, bone_radii, PATH)?;
                 Gate::Budget { table, bones: budget }
             }
-            Mode::Bounded => Gate::Bounded(BoundTable::new(skeleton, set, &clips, reaches, PATH)?),
+            Mode::Bounded => Gate::Bounded(BoundTable::new(skeleton, set, &clips, bone_radii, PATH)?),
         })
     }
 }

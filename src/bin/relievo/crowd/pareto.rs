@@ -13,9 +13,9 @@ use super::errors::{Errors, Jump};
 use super::gates::Mode;
 use super::plan::Plan;
 use super::play::run as play;
+use super::reference::References;
 use super::report::{self, picture};
 use super::stage::{Scene, Stage, moving_bones};
-use super::twin::Twins;
 use super::verdict::{Verdicts, table as verdict_table};
 use crate::output::{Staged, json, say};
 use crate::plot::{Chart, Series};
@@ -40,7 +40,7 @@ pub struct Point {
     /// Bones interpolated, of all that move.
     pub cost: f64,
     /// Bones whose matrices were computed, of all.
-    pub concatenated_share: f64,
+    pub concatenated_fraction: f64,
     #[serde(flatten)]
     pub error: Errors,
     pub jump: Jump,
@@ -163,13 +163,13 @@ fn point(
         let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
         lods.iter_mut().for_each(|lod| lod.omega = omega);
     }
-    let found = play(&mut Twins::new(stage, gate, off, lods)?, stage, scene, false, || {})?;
+    let found = play(&mut References::new(stage, gate, off, lods)?, stage, scene, false, || {})?;
     let frames = f64::from(plan.frames);
     Ok(Point {
         gate: mode,
         parameter,
         cost: found.interpolated as f64 / (moving.max(1) as f64 * frames),
-        concatenated_share: found.concatenated as f64 / (stage.pairs() as f64 * frames),
+        concatenated_fraction: found.concatenated as f64 / (stage.pairs() as f64 * frames),
         error: found.errors,
         jump: found.jump,
     })
@@ -199,10 +199,10 @@ fn table(points: &[Point]) -> String {
     let mut text = "| gate | parameter | cost | rms px | p99 px | max px | jump px | concatenated |\n\
                     |---|---:|---:|---:|---:|---:|---:|---:|\n"
         .to_owned();
-    for Point { gate, parameter, cost, concatenated_share, error, jump } in points {
+    for Point { gate, parameter, cost, concatenated_fraction, error, jump } in points {
         writeln!(
             text,
-            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_share:.3} |",
+            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_fraction:.3} |",
             gate.name(),
             error.rms_pixels,
             error.p99_pixels,

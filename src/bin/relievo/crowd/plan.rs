@@ -4,7 +4,7 @@ use relievo::InputError;
 use relievo::animation::Range;
 use relievo::animation::priority::Weights;
 use relievo::asset::{Clip, Model};
-use relievo::{Error, animation::lod::Lens};
+use relievo::{Error, animation::lod::Projection};
 
 use super::gates::{Mode, TICKS};
 use super::skinning::{Drawn, Skinning};
@@ -29,7 +29,7 @@ const NEAR: f32 = 1.0;
 const SWEEP: u32 = 7;
 
 /// The most frames: 32 bits of ticks hold them at any rate.
-const MOST_FRAMES: u32 = 100_000;
+const MAX_FRAMES: u32 = 100_000;
 
 /// Checked arguments.
 pub struct Plan {
@@ -79,7 +79,7 @@ impl Plan {
         }
         let instances = a.instances.unwrap_or(if a.pareto { 25 } else { 100 });
         check("instances", instances as f64, 1.0..=1e5)?;
-        check("frames", f64::from(a.frames), 1.0..=f64::from(MOST_FRAMES))?;
+        check("frames", f64::from(a.frames), 1.0..=f64::from(MAX_FRAMES))?;
         if a.gate == Some(Mode::Budget) && a.budget.is_none() {
             return Err(InputError::new("budget", "nothing", "must be the most bones a frame").into());
         }
@@ -135,8 +135,8 @@ impl Plan {
     }
 
     /// The camera's lens, for a model of which a unit is so many metres.
-    pub fn lens(&self, metres_a_unit: f32) -> Lens {
-        Lens::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit)
+    pub fn projection(&self, metres_a_unit: f32) -> Projection {
+        Projection::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit)
     }
 }
 

@@ -59,7 +59,7 @@ pub struct Times {
 pub struct Taken {
     pub gate: Option<f64>,
     pub sample: Option<f64>,
-    pub concat: Option<f64>,
+    pub local_to_model: Option<f64>,
     pub whole: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ pub struct Stages {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub concat: Option<f64>,
+    pub local_to_model: Option<f64>,
     pub total: f64,
 }
 
@@ -132,11 +132,11 @@ pub fn middle(mut times: Vec<f64>) -> Option<f64> {
 
 fn medians(times: &[Taken]) -> Stages {
     let median = |of: &dyn Fn(&Taken) -> Option<f64>| middle(times.iter().filter_map(of).collect());
-    let [gate, sample, concat] =
-        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.concat)];
+    let [gate, sample, local_to_model] =
+        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.local_to_model)];
     // The stages' sum where no whole frame was timed.
-    let sum = [gate, sample, concat].into_iter().flatten().sum();
-    Stages { gate, sample, concat, total: median(&|taken| taken.whole).unwrap_or(sum) }
+    let sum = [gate, sample, local_to_model].into_iter().flatten().sum();
+    Stages { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
 }
 
 impl Stages {
@@ -146,7 +146,7 @@ impl Stages {
         Self {
             gate: each(self.gate),
             sample: each(self.sample),
-            concat: each(self.concat),
+            local_to_model: each(self.local_to_model),
             total: self.total / bones as f64,
         }
     }

@@ -11,8 +11,8 @@ use super::errors::{Errors, Jump};
 use super::gates::Mode;
 use super::plan::Plan;
 use super::play::{Found, Stages, gate_of, run as play};
+use super::reference::References;
 use super::stage::{Stage, mean_omega, moving_bones};
-use super::twin::Twins;
 use super::{Layout, pareto};
 use crate::Context;
 use crate::output::{Staged, json, say};
@@ -104,9 +104,9 @@ struct Row {
     mean_omega: f64,
     interpolated: u64,
     skipped: u64,
-    share: f64,
+    fraction: f64,
     concatenated: u64,
-    concatenated_share: f64,
+    concatenated_fraction: f64,
     nanoseconds_per_bone: Stages,
     full_nanoseconds_per_bone: Stages,
     error: Errors,
@@ -212,8 +212,8 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
                 play(&mut device, &stage, &scene, true, step)?
             }
             On::Cpu => {
-                let mut twins = Twins::new(&stage, &gate, &off, lods)?;
-                play(&mut twins, &stage, &scene, true, step)?
+                let mut references = References::new(&stage, &gate, &off, lods)?;
+                play(&mut references, &stage, &scene, true, step)?
             }
         };
         rows.push(row(&stage, *distance, omega, moving_bones(&off), &found));
@@ -244,7 +244,7 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
         range: [plan.range.min, plan.range.max],
         frames: plan.frames,
         rate: plan.rate,
-        focal_pixels: stage.lens.focal_pixels,
+        focal_pixels: stage.projection.focal_pixels,
         skinning: plan.drawn.map(|_| plan.skinning.to_string()),
         mesh: plan.drawn.map(|_| plan.triangles.to_string()),
         distances: rows,
@@ -262,9 +262,9 @@ fn row(stage: &Stage<'_>, distance: f32, mean_omega: f64, moving_bones: usize, f
         mean_omega,
         interpolated: found.interpolated,
         skipped: moving.saturating_sub(found.interpolated),
-        share: found.interpolated as f64 / moving.max(1) as f64,
+        fraction: found.interpolated as f64 / moving.max(1) as f64,
         concatenated: found.concatenated,
-        concatenated_share: found.concatenated as f64 / (pairs as u64 * frames) as f64,
+        concatenated_fraction: found.concatenated as f64 / (pairs as u64 * frames) as f64,
         nanoseconds_per_bone: found.gated.a_bone(pairs),
         full_nanoseconds_per_bone: found.full.a_bone(pairs),
         error: found.errors,
@@ -326,9 +326,9 @@ fn table(report: &Report<'_>) -> String {
     );
     for row in &report.distances {
         let times = &row.nanoseconds_per_bone;
-        let parts = match (times.gate, times.sample, times.concat) {
-            (Some(gate), Some(sample), Some(concat)) => {
-                format!("{gate:.2} + {sample:.2} + {concat:.2}, {:.2}", times.total)
+        let parts = match (times.gate, times.sample, times.local_to_model) {
+            (Some(gate), Some(sample), Some(local_to_model)) => {
+                format!("{gate:.2} + {sample:.2} + {local_to_model:.2}, {:.2}", times.total)
             }
             _ => format!("{:.2}", times.total),
         };
@@ -339,8 +339,8 @@ fn table(report: &Report<'_>) -> String {
              | {max_metres:.4} | {:.3} |",
             row.distance,
             row.mean_omega,
-            100.0 * row.share,
-            100.0 * row.concatenated_share,
+            100.0 * row.fraction,
+            100.0 * row.concatenated_fraction,
             row.full_nanoseconds_per_bone.total,
             row.jump.max_pixels,
         )
@@ -371,11 +371,11 @@ fn charts(report: &Report<'_>) -> [(&'static str, Chart); 3] {
         series("with the gate", &|row| Some(row.nanoseconds_per_bone.total)),
         series("gate", &|row| row.nanoseconds_per_bone.gate),
         series("sample", &|row| row.nanoseconds_per_bone.sample),
-        series("concat", &|row| row.nanoseconds_per_bone.concat),
+        series("local_to_model", &|row| row.nanoseconds_per_bone.local_to_model),
     ];
-    let share = vec![
-        series("interpolated, of moving bones", &|row| Some(row.share)),
-        series("concatenated, of all bones", &|row| Some(row.concatenated_share)),
+    let fraction = vec![
+        series("interpolated, of moving bones", &|row| Some(row.fraction)),
+        series("concatenated, of all bones", &|row| Some(row.concatenated_fraction)),
         series("mean Ω", &|row| Some(row.mean_omega)),
     ];
     let error = vec![
@@ -385,7 +385,7 @@ fn charts(report: &Report<'_>) -> [(&'static str, Chart); 3] {
     ];
     [
         ("cost.png", chart("Cost", "nanoseconds a bone", false, cost)),
-        ("interpolations.png", chart("Work", "share", false, share)),
+        ("interpolations.png", chart("Work", "fraction", false, fraction)),
         ("error.png", chart("Error", "pixels", true, error)),
     ]
 }

@@ -174,7 +174,7 @@ fn report<'a>(stage: &Stage<'a>, gpu: &'a Gpu, distances: Vec<Row>) -> Result<Re
         range: [plan.range.min, plan.range.max],
         frames: plan.frames,
         rate: plan.rate,
-        focal_pixels: stage.lens.focal_pixels,
+        focal_pixels: stage.projection.focal_pixels,
         distances,
     })
 }
@@ -184,7 +184,7 @@ fn row(stage: &Stage<'_>, distance: f32, mean_omega: f64, figures: &[Figures]) -
     let all = figures.get(4).copied();
     Row {
         distance,
-        tall_pixels: stage.plan.size * stage.lens.focal_pixels / distance,
+        tall_pixels: stage.plan.size * stage.projection.focal_pixels / distance,
         mean_omega,
         off,
         animation,
@@ -225,8 +225,8 @@ fn lines(report: &Report<'_>) -> String {
                 look.compute_nanoseconds / 1e6,
                 look.draw_nanoseconds / 1e6,
                 look.nanoseconds_per_vertex,
-                100.0 * look.skinned_share,
-                100.0 * look.triangle_share,
+                100.0 * look.skinned_fraction,
+                100.0 * look.triangle_fraction,
                 look.vertex_error.rms_pixels,
                 look.vertex_error.max_pixels,
             )

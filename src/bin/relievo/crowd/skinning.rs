@@ -3,7 +3,7 @@
 use std::fmt;
 
 use relievo::animation::Range;
-use relievo::skinning::reduction::Reduction;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::{Error, InputError};
 
 /// What is drawn, besides what is measured.
@@ -38,7 +38,7 @@ impl Drawn {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Skinning {
     /// The same of every instance.
-    All(Reduction),
+    All(InstanceLod),
     /// All of them at the first of these distances, in units, one from the second on.
     Fade(Range),
     /// As many as it takes for no vertex to be more than so many pixels off.
@@ -47,7 +47,7 @@ pub enum Skinning {
 
 /// Every influence of every instance.
 #[cfg(feature = "gpu")]
-pub const FULL: Skinning = Skinning::All(Reduction::FULL);
+pub const FULL: Skinning = Skinning::All(InstanceLod::FULL);
 
 impl Skinning {
     /// From the command line, with the distances of the fade.
@@ -58,10 +58,10 @@ impl Skinning {
             return pixels.map(Self::Bounded);
         }
         match text.split_once(':') {
-            None if text == "full" => Ok(Self::All(Reduction::FULL)),
+            None if text == "full" => Ok(Self::All(InstanceLod::FULL)),
             None if text == "fade" => Ok(Self::Fade(range)),
             Some(("truncate", most)) => {
-                Reduction::truncate(most.parse().map_err(|_| refused())?).map(Self::All).map_err(|error| {
+                InstanceLod::truncate(most.parse().map_err(|_| refused())?).map(Self::All).map_err(|error| {
                     InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
                 })
             }
@@ -80,8 +80,8 @@ pub fn bounded(field: &str, text: &str) -> Option<Result<f32, InputError>> {
 impl fmt::Display for Skinning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::All(Reduction::FULL) => f.write_str("full"),
-            Self::All(reduction) => write!(f, "truncate:{}", reduction.most),
+            Self::All(InstanceLod::FULL) => f.write_str("full"),
+            Self::All(instance_lod) => write!(f, "truncate:{}", instance_lod.most),
             Self::Fade(_) => f.write_str("fade"),
             Self::Bounded(pixels) => write!(f, "bounded:{pixels}"),
         }

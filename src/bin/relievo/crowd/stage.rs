@@ -1,12 +1,12 @@
 //! Who plays, and where the camera stands.
 
 use relievo::InputError;
-use relievo::animation::concat::reference::concat;
 use relievo::animation::gate::reference::scramble;
 use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
-use relievo::animation::{ClipSet, Gate, Lens, Lod};
+use relievo::animation::{ClipSet, Gate, Lod, Projection};
 #[cfg(feature = "gpu")]
 use relievo::asset::Model;
 use relievo::skinning;
@@ -25,12 +25,12 @@ pub struct Stage<'a> {
     pub order: Order,
     pub set: ClipSet,
     /// Metres from each bone, along its axes, where errors are measured: its length.
-    pub reaches: Vec<f32>,
+    pub bone_radii: Vec<f32>,
     /// How far gates keep watch: as far, and where the crowd is drawn, to the last vertex.
     watched: Vec<f32>,
     pub instances: Vec<Instance>,
     pub metres_a_unit: f32,
-    pub lens: Lens,
+    pub projection: Projection,
     /// What each mesh does in the clip, where the crowd is drawn.
     #[cfg(feature = "gpu")]
     pub extents: Vec<skinning::Extent>,
@@ -53,7 +53,7 @@ impl<'a> Stage<'a> {
         let skeleton = &plan.model.skeleton;
         let set = ClipSet::new(&[&plan.clip])?;
         let lengths = skeleton.lengths();
-        let [low, high] = extents(&concat(skeleton, &skeleton.rest()), &lengths);
+        let [low, high] = extents(&local_to_model(skeleton, &skeleton.rest()), &lengths);
         let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
         if !(extent > 0.0 && extent.is_finite()) {
             let bound = "must be finite and above 0: the model at rest is a point";
@@ -62,17 +62,17 @@ impl<'a> Stage<'a> {
         let metres_a_unit = (extent / f64::from(plan.size)) as f32;
         let starts = (0..plan.instances as u32).map(|at| plan.clip.duration() * chance(plan.seed, at, 0));
         // Up, so that it reaches all the points.
-        let reaches: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
+        let bone_radii: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
         let meshes = if plan.drawn.is_some() { &plan.model.meshes[..] } else { &[] };
-        let vertices = relievo::asset::reaches(skeleton.len(), &plan.model.skins, meshes);
+        let vertices = relievo::asset::bone_radii(skeleton.len(), &plan.model.skins, meshes);
         Ok(Self {
             order: Order::new(skeleton),
             set,
-            watched: reaches.iter().zip(&vertices).map(|(bone, vertex)| bone.max(*vertex)).collect(),
-            reaches,
+            watched: bone_radii.iter().zip(&vertices).map(|(bone, vertex)| bone.max(*vertex)).collect(),
+            bone_radii,
             instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
             metres_a_unit,
-            lens: plan.lens(metres_a_unit),
+            projection: plan.projection(metres_a_unit),
             #[cfg(feature = "gpu")]
             extents: extents_of(plan, meshes.len())?,
             #[cfg(feature = "gpu")]
@@ -103,7 +103,7 @@ impl<'a> Stage<'a> {
             clip: &self.plan.clip,
             order: &self.order,
             set: &self.set,
-            reaches: &self.watched,
+            bone_radii: &self.watched,
             weights: &self.plan.weights,
         };
         source.gate(mode, self.plan.period, budget)
@@ -142,7 +142,7 @@ impl<'a> Stage<'a> {
     /// All instances at one place on the axis, as large as the plan says, turned every way.
     pub fn line_up(&self) -> Scene {
         let extent = self.plan.size * self.metres_a_unit;
-        let depth = extent * self.lens.focal_pixels / self.plan.tall;
+        let depth = extent * self.projection.focal_pixels / self.plan.tall;
         let count = self.instances.len();
         Scene {
             origins: vec![[0.0, -self.middle, depth]; count],
@@ -152,14 +152,14 @@ impl<'a> Stage<'a> {
 
     /// What gates know of a scene's instances, with errors of so many pixels allowed.
     pub fn lods(&self, scene: &Scene, gate: &Gate, pixels: f32) -> Vec<Lod> {
-        let depth = |origin: &[f32; 3]| origin[2].max(self.lens.near);
+        let depth = |origin: &[f32; 3]| origin[2].max(self.projection.near);
         let nearest = scene.origins.iter().map(depth).fold(f32::INFINITY, f32::min);
         let lod = |origin: &[f32; 3]| {
             // On the ground: the camera's height is no distance.
             let distance = origin[0].hypot(origin[2]) / self.metres_a_unit;
             let allowed = match gate {
                 Gate::Bounded(table) if table.radius() > 0.0 => {
-                    table.units(self.lens.allowed(*origin, table.radius(), pixels))
+                    table.units(self.projection.allowed(*origin, table.radius(), pixels))
                 }
                 _ => 0,
             };
@@ -195,10 +195,10 @@ fn extents(models: &[relievo::asset::Affine], lengths: &[f64]) -> [[f64; 3]; 2] 
     let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for (model, length) in models.iter().zip(lengths) {
         for (axis, row) in model.iter().enumerate() {
-            let reach = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
+            let bone_radius = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
             // A bone points somewhere: half its length is its middle.
-            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - reach / 2.0);
-            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + reach / 2.0);
+            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - bone_radius / 2.0);
+            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + bone_radius / 2.0);
         }
     }
     corners
@@ -210,7 +210,7 @@ fn chance(seed: u32, instance: u32, of: u32) -> f32 {
     (word >> 8) as f32 / (1 << 24) as f32
 }
 
-fn around(share: f32) -> [f32; 2] {
-    let (sine, cosine) = (share * std::f32::consts::TAU).sin_cos();
+fn around(fraction: f32) -> [f32; 2] {
+    let (sine, cosine) = (fraction * std::f32::consts::TAU).sin_cos();
     [sine, cosine]
 }

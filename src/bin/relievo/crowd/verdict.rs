@@ -124,8 +124,8 @@ impl Curve {
 }
 
 /// Between two errors, by their logarithms where they have any.
-fn between(a: f64, b: f64, share: f64) -> f64 {
-    if a > 0.0 && b > 0.0 { a * (b / a).powf(share) } else { a + (b - a) * share }
+fn between(a: f64, b: f64, fraction: f64) -> f64 {
+    if a > 0.0 && b > 0.0 { a * (b / a).powf(fraction) } else { a + (b - a) * fraction }
 }
 
 pub fn table(verdicts: &Verdicts) -> String {

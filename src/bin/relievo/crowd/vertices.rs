@@ -3,7 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 use relievo::skinning::MeshLevels;
-use relievo::skinning::reduction::Reduction;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::vertex::Vertex;
 use serde::Serialize;
 
@@ -17,8 +17,8 @@ pub struct Figures {
     pub compute_nanoseconds: f64,
     pub draw_nanoseconds: f64,
     pub nanoseconds_per_vertex: f64,
-    pub skinned_share: f64,
-    pub triangle_share: f64,
+    pub skinned_fraction: f64,
+    pub triangle_fraction: f64,
     pub vertex_error: Errors,
 }
 
@@ -48,7 +48,7 @@ pub struct Skinned<'a> {
 #[derive(Clone, Copy)]
 pub struct Seen<'a> {
     /// One an instance; those that are out of view are not skinned.
-    pub reductions: &'a [Reduction],
+    pub instance_lods: &'a [InstanceLod],
     /// Of a mesh that has levels of detail: for each level of an instance its own.
     pub levels: Option<(&'a MeshLevels, &'a [u32])>,
 }
@@ -71,20 +71,20 @@ impl Spread {
             stale.vertices.par_chunks(each * vertices).zip(fresh.vertices.par_chunks(each * vertices));
         let shares: Vec<Self> = lists
             .enumerate()
-            .map(|(share, (stales, freshes))| {
+            .map(|(fraction, (stales, freshes))| {
                 let mut found = Self::default();
                 let instances = stales.chunks(vertices).zip(freshes.chunks(vertices));
-                for (instance, (stales, freshes)) in (share * each..).zip(instances) {
-                    let reduction = seen.reductions[instance];
-                    if reduction.most == 0 {
+                for (instance, (stales, freshes)) in (fraction * each..).zip(instances) {
+                    let instance_lod = seen.instance_lods[instance];
+                    if instance_lod.most == 0 {
                         found.unseen += vertices as u64;
                         continue;
                     }
                     let (origin, turn) = (scene.origins[instance], scene.turns[instance]);
-                    let view = View { origin, turn, lens: stage.lens };
+                    let view = View { origin, turn, projection: stage.projection };
                     // Its own level 1 is the first of its levels.
                     let level = seen.levels.and_then(|(levels, own)| {
-                        let own = own.get(reduction.level as usize).or(own.last())?;
+                        let own = own.get(instance_lod.level as usize).or(own.last())?;
                         Some((levels, (*own as usize).checked_sub(1)?))
                     });
                     let own =
@@ -101,10 +101,10 @@ impl Spread {
                 found
             })
             .collect();
-        for share in shares {
-            self.metres.merge(&share.metres);
-            self.pixels.merge(&share.pixels);
-            self.unseen += share.unseen;
+        for fraction in shares {
+            self.metres.merge(&fraction.metres);
+            self.pixels.merge(&fraction.pixels);
+            self.unseen += fraction.unseen;
         }
     }
 

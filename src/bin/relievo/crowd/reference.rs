@@ -12,13 +12,13 @@ use super::play::{Play, Played, Taken, Times, Timing};
 use super::stage::Stage;
 
 /// Both crowds.
-pub struct Twins<'a> {
+pub struct References<'a> {
     gated: Crowd<'a>,
     full: Crowd<'a>,
     rate: f64,
 }
 
-impl<'a> Twins<'a> {
+impl<'a> References<'a> {
     /// `off` is the gate of [`Mode::Off`](super::gates::Mode::Off).
     pub fn new(
         stage: &'a Stage<'_>,
@@ -33,7 +33,7 @@ impl<'a> Twins<'a> {
     }
 }
 
-impl Play for Twins<'_> {
+impl Play for References<'_> {
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         let (frame, elapsed) = frame(number, self.rate);
         let start = Instant::now();
@@ -45,16 +45,16 @@ impl Play for Twins<'_> {
             [gated, full].map(|time| Taken { whole: Some(time.as_nanos() as f64), ..Taken::default() });
         Ok(Played {
             interpolated: work.pairs.len(),
-            concatenated: work.dirty.iter().map(|word| word.count_ones() as usize).sum(),
+            concatenated: work.updated_bones.iter().map(|word| word.count_ones() as usize).sum(),
             times: (timing != Timing::None).then_some(Times { gated, full }),
         })
     }
 
     fn stale(&self) -> &[Affine] {
-        &self.gated.models
+        &self.gated.model_matrices
     }
 
     fn fresh(&self) -> &[Affine] {
-        &self.full.models
+        &self.full.model_matrices
     }
 }
