@@ -1,4 +1,4 @@
-//! What gates know of a crowd on the device.
+//! The state of gates on the device.
 
 use super::crowd::Crowd;
 use super::lod::Lod;
@@ -8,14 +8,15 @@ use crate::shared::animation::gate_state::ClipClock;
 /// What gates know of a crowd, and keep from frame to frame. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
 pub struct GateState {
-    /// One an instance; written by the host, full detail at first.
+    /// One level of detail per instance, written by the host; full detail at first.
     pub lods: Buffer<Lod>,
-    /// Written by [`crate::animation::clip_clock::ClipClockPass`].
+    /// The clip clocks that [`crate::animation::clip_clock::ClipClockPass`] writes.
     pub clip_clocks: Buffer<ClipClock>,
-    /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
-    /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
+    /// For each instance: the last clip + 1, with the highest bit set if layers were above it; a hash of what
+    /// these layers played; and, as bits, the last time inside the clip and the time ahead. Zeros mean that no
+    /// pose is stored.
     pub history: Buffer<[u32; 4]>,
-    /// For each slot of each instance, the sum of motion when it was sampled last.
+    /// For each slot of each instance, the sum of motion when it was last sampled.
     pub sampled: Buffer<u32>,
 }
 

@@ -32,7 +32,7 @@ fn motion_of_the_shaders_is_exact() {
     let body = "
         let all = given[at];
         found[at] = vec4<u32>(
-            share_of(all.x, all.w), motion_at(all.xy, all.w), motion_between(all.x, all.y, all.z), 0u);";
+            scale_by_fraction(all.x, all.w), motion_at(all.xy, all.w), motion_between(all.x, all.y, all.z), 0u);";
     for (given, found) in given.iter().zip(called(&gpu(), &ANIMATION_GATE, body, &given)) {
         let [x, y, z, fraction] = *given;
         let floor = |value: u32| (u128::from(value) * u128::from(fraction) / 65536) as u32;

@@ -35,7 +35,7 @@ fn plays(clip: u32, count: usize) -> Vec<Instance> {
 
 fn field(error: Error) -> String {
     match error {
-        Error::Input(error) => error.field,
+        Error::Input(error) => error.path,
         other => panic!("{other}"),
     }
 }
@@ -186,7 +186,7 @@ fn chosen_bones_are_those_of_the_whole() {
     chosen.choose(&other).expect("fewer");
     assert_eq!(read(&chosen), other.iter().map(at).collect::<Vec<_>>());
     // What is refused changes nothing.
-    let refused = |error: relievo::InputError| error.field;
+    let refused = |error: relievo::InputError| error.path;
     assert_eq!(refused(chosen.choose(&[[0, 0], [4, 0]]).expect_err("refused")), "chosen[1].instance");
     assert_eq!(refused(chosen.choose(&[[0, 153]]).expect_err("refused")), "chosen[0].bone");
     assert_eq!(refused(chosen.choose(&[[0, 0]; 11]).expect_err("refused")), "chosen.len");
@@ -209,5 +209,5 @@ fn bounds_that_do_not_fit_are_refused() {
         (refused(&bone_radii[1..], 3), refused(&bone_radii, 2)),
         ("bone_radii.len".into(), "bounds".into())
     );
-    assert_eq!(refused(&[&bone_radii[..152], &[f32::NAN]].concat(), 3), "reaches[152]");
+    assert_eq!(refused(&[&bone_radii[..152], &[f32::NAN]].concat(), 3), "bone_radii[152]");
 }

@@ -129,7 +129,7 @@ impl Rig {
             model: &self.model,
             matrices,
             placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
-            fade: NO_FADE,
+            fade_range: NO_FADE,
             levels: &[],
             blend,
             albedos: &[Albedo::from(ColorTexture::new(gpu, &clay, true).expect("uploaded"))],
@@ -143,7 +143,7 @@ impl Rig {
 #[track_caller]
 fn refuses(refused: Result<(), Error>, field: &str, value: &str) {
     let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-    assert_eq!((error.field.as_str(), error.value.as_str()), (field, value));
+    assert_eq!((error.path.as_str(), error.value.as_str()), (field, value));
     assert!(error.bound.contains("linear blending alone"), "{}", error.bound);
 }
 
@@ -215,7 +215,7 @@ fn lists_of_active_bones_are_of_one_crowd() {
     assert!(prepared(&crowd).iter().all(Result::is_ok));
     for refused in prepared(&other) {
         let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-        assert_eq!(error.field, "crowd");
+        assert_eq!(error.path, "crowd");
     }
     rig.blended(other.model_matrices(), Blend::DualQuaternion).expect("what was refused claims nothing");
 }

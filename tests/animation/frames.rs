@@ -184,14 +184,14 @@ fn gates_of_other_clips_or_bones_are_refused() {
     for gate in gates(&model.skeleton, &one, &model.clips[0], RotationPath::Slerp) {
         let refused = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &gate).map(drop);
         let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-        assert_eq!((error.field.as_str(), error.value.as_str()), ("table.clips", "1"), "{}", gate.name());
+        assert_eq!((error.path.as_str(), error.value.as_str()), ("table.clips", "1"), "{}", gate.name());
     }
 }
 
 #[track_caller]
 fn names_both(refused: Result<(), Error>, [path, other]: [RotationPath; 2]) {
     let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-    assert_eq!((error.field.as_str(), error.value), ("crowd.path", format!("{other:?}")));
+    assert_eq!((error.path.as_str(), error.value), ("crowd.path", format!("{other:?}")));
     assert!(error.bound.contains(&format!("{path:?}")), "{}", error.bound);
 }
 

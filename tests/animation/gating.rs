@@ -330,7 +330,7 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
     let refused = |gate: &Gate, path| {
         Crowd::new(&stage.order, &stage.set, gate, path, instances.to_vec()).err().map(|error| {
             assert!(error.bound.contains(&format!("{:?}", gate.path().expect("has motion"))), "{error}");
-            (error.field, error.value)
+            (error.path, error.value)
         })
     };
     let wrong = |path| Some(("crowd.path".to_owned(), format!("{path:?}")));
@@ -351,7 +351,7 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
 fn tables_refuse_what_does_not_fit() {
     let stage = Stage::creature();
     fn field<T: std::fmt::Debug>(result: Result<T, relievo::InputError>) -> String {
-        result.expect_err("refused").field
+        result.expect_err("refused").path
     }
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
     assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &clips[..1])), "clips.len");
@@ -368,7 +368,7 @@ fn tables_refuse_what_does_not_fit() {
     assert_eq!(field(bounds(&[])), "bone_radii.len");
     let mut bone_radii = stage.bone_radii.clone();
     bone_radii[3] = f32::NAN;
-    assert_eq!(field(bounds(&bone_radii)), "reaches[3]");
+    assert_eq!(field(bounds(&bone_radii)), "bone_radii[3]");
     let other = Stage::random(0, 7);
     assert_eq!(field(AnimatedBones::new(&other.order, &stage.set, &clips)), "skeleton.len");
     // The reference alone, without phases, has nothing to decide.

@@ -114,7 +114,7 @@ fn interpolations_names_and_durations() {
     assert_eq!(model.clip("hop").expect("by name").duration(), 9.0);
     assert_eq!(model.clip("1").expect("by number").name(), "animation_1");
     let error = model.clip("2").expect_err("no such clip");
-    assert!(error.field == "clip" && error.bound.contains("hop"), "{error}");
+    assert!(error.path == "clip" && error.bound.contains("hop"), "{error}");
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn buffers_lie_beside_the_document() {
         Transform::from_translation([1.0, 2.0, 3.0])
     );
     let error = Model::from_gltf(&scene.gltf(), None).expect_err("no folder");
-    assert_eq!(error.field, "buffers[0].uri");
+    assert_eq!(error.path, "buffers[0].uri");
 }
 
 #[test]

@@ -43,7 +43,7 @@ impl Skinned {
 
     pub fn refused(&self, field: &str, words: &str) {
         let error = self.read().expect_err(field);
-        assert!(error.field == field && error.to_string().contains(words), "{error}");
+        assert!(error.path == field && error.to_string().contains(words), "{error}");
     }
 }
 

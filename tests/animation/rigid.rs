@@ -121,7 +121,7 @@ fn skinned_meshes_come_first() {
 fn what_cannot_be_placed_is_refused() {
     let refused = |scene: &Scene, field: &str, words: &str| {
         let error = Model::from_gltf(&scene.gltf(), None).expect_err(field);
-        assert!(error.field == field && error.to_string().contains(words), "{error}");
+        assert!(error.path == field && error.to_string().contains(words), "{error}");
     };
     let mut round = scene();
     let first = round.push("nodes", json!({"mesh": 0, "children": [3]}));

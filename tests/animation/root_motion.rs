@@ -266,21 +266,21 @@ fn crowds_move_as_their_instances_do() {
         assert_eq!(*found, own.unwrap_or(Transform::IDENTITY));
     }
     let refused = |instances: &[Instance], to, room: usize| {
-        deltas(&motions, instances, 0.0, to, &mut vec![Transform::IDENTITY; room]).expect_err("refused").field
+        deltas(&motions, instances, 0.0, to, &mut vec![Transform::IDENTITY; room]).expect_err("refused").path
     };
     assert_eq!(refused(&instances, 1.0, 19), "deltas.len");
     assert_eq!(refused(&instances, f64::NAN, 20), "to");
     assert_eq!(refused(&[Instance::new(2, Wrap::Loop, 0.0, 1.0)], 1.0, 1), "instance.clip");
     let instance = Instance::new(0, Wrap::Loop, f32::NAN, 1.0);
     let motion = motions[1].as_ref().expect("taken");
-    assert_eq!(motion.delta(&instance, 0.0, 1.0).expect_err("refused").field, "instance.start");
+    assert_eq!(motion.delta(&instance, 0.0, 1.0).expect_err("refused").path, "instance.start");
 }
 
 #[test]
 fn what_cannot_be_taken_is_refused() {
     let (skeleton, clip) = (skeleton(), astray(900, Interpolation::Linear, 0.2));
     let refused = |skeleton: &Skeleton, clip: &Clip, bone, taken| {
-        RootMotion::extract(skeleton, clip, bone, taken).expect_err("refused").field
+        RootMotion::extract(skeleton, clip, bone, taken).expect_err("refused").path
     };
     let nothing = Taken { horizontal: false, vertical: false, yaw: false };
     assert_eq!(refused(&skeleton, &clip, 1, nothing), "taken");
@@ -307,7 +307,7 @@ fn what_cannot_be_taken_is_refused() {
         let clip = Clip::new("scaled", &skeleton, &[BoneKeys::default(), root, BoneKeys::default()], 0.0);
         let found = RootMotion::extract(&skeleton, &clip.expect("valid"), 1, Taken { yaw, ..YAW });
         assert_eq!(
-            found.err().map(|error| error.field),
+            found.err().map(|error| error.path),
             is_refused.then(|| "bones above".to_owned()),
             "{scale:?}"
         );

@@ -30,7 +30,7 @@ fn read(scene: &Scene) -> Model {
 
 fn refused(scene: &Scene, field: &str, words: &str) {
     let error = Model::from_gltf(&scene.gltf(), None).expect_err(field);
-    assert!(error.field == field && error.to_string().contains(words), "{error}");
+    assert!(error.path == field && error.to_string().contains(words), "{error}");
 }
 
 fn bones(model: &Model) -> Vec<&str> {
@@ -200,7 +200,7 @@ fn what_is_required_and_not_read_is_refused_by_name() {
         (json!(["KHR_materials_unlit"]), 0, "KHR_materials_unlit"),
     ] {
         let error = Model::from_gltf(&required(names).gltf(), None).expect_err(name);
-        assert_eq!((&*error.field, &*error.value), (&*format!("extensionsRequired[{at}]"), name));
+        assert_eq!((&*error.path, &*error.value), (&*format!("extensionsRequired[{at}]"), name));
         assert!(error.bound.contains("KHR_texture_transform"), "{error}");
     }
     read(&required(json!(["KHR_texture_transform", "KHR_mesh_quantization", "KHR_draco_mesh_compression"])));

@@ -97,7 +97,7 @@ fn drawn(gpu: &Gpu, double_sided: bool, clip_from_world: Mat4, is_by_hand: bool)
             &Buffer::from_slice(gpu, "model matrices", &bones.repeat(4)).expect("uploaded"),
         ),
         placements,
-        fade: NO_FADE,
+        fade_range: NO_FADE,
         levels: &[],
         blend: Blend::Linear,
         albedos: std::slice::from_ref(&clay),

@@ -40,7 +40,7 @@ fn refused(scene: &Scene, field: &str) {
     let bytes = scene.gltf();
     let (outcome, peak) = import(&bytes, None);
     let error = outcome.err().unwrap_or_else(|| panic!("{field} is accepted, with {peak} bytes"));
-    assert_eq!(error.field, field, "{error}");
+    assert_eq!(error.path, field, "{error}");
     assert!(peak < 1 << 20, "{field}: {peak} bytes for {}", bytes.len());
 }
 
@@ -258,7 +258,7 @@ fn images_are_counted_before_they_are_decoded() {
     scene.json["meshes"][1]["primitives"] = (0..40).map(primitive).collect();
     let (outcome, peak) = import(&scene.gltf(), None);
     let error = outcome.expect_err("too many");
-    assert!(error.bound.contains("texels") && error.field.starts_with("images["), "{error}");
+    assert!(error.bound.contains("texels") && error.path.starts_with("images["), "{error}");
     assert!(peak < 128 << 20, "{peak}");
 }
 

@@ -1,5 +1,5 @@
 //! What makes terrain seamless, shown for random worlds: neighbours agree bit for bit wherever they meet, in
-//! every order and at every resolution, before and after despiking and erosion (spec sections 1.2 to 1.4).
+//! every order and at every resolution, before and after despiking and erosion.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,4 +1,4 @@
-//! `kernels/animation/budget.wgsl`.
+//! The GPU pass of `kernels/animation/budget.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -31,7 +31,7 @@ impl BudgetPass {
         Ok(Self { stages, table: TableBuffers::of_expectations(gpu, table)?, bones })
     }
 
-    /// Prepares the decision, from a crowd's phases.
+    /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
     /// [`crate::InputError`] for a crowd of other bones or clips than the table, for motion along another path than the
@@ -89,7 +89,7 @@ pub struct BudgetJob {
 }
 
 impl BudgetJob {
-    /// Chooses how many bones may be sampled in the next submission.
+    /// Sets the number of bones that may be sampled in the next submission.
     ///
     /// # Errors
     /// [`GpuError`].

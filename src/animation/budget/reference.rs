@@ -1,4 +1,4 @@
-//! Which bones are sampled when only so many may be: reference of `kernels/animation/budget.wgsl`.
+//! Selection of bones within a budget: the CPU reference of `kernels/animation/budget.wgsl`.
 
 use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate_table::ExpectationTable;
@@ -37,7 +37,7 @@ pub fn budget(
         }
     }
     let room = (budget as usize).saturating_sub(chosen.len());
-    // Stable: equal ranks stay in order.
+    // The sort is stable: equal ranks stay in order.
     ranked.sort_by_key(|(rank, _)| std::cmp::Reverse(*rank));
     chosen.extend(ranked.iter().take(room).map(|(_, at)| *at));
     let mut bits = vec![0; clip_clocks.len() * words];
@@ -57,7 +57,7 @@ fn missed_by(table: &ExpectationTable, clip_clock: &ClipClock, slot: usize, last
     motion_between(motion_now(table, clip_clock, slot), last, table.period(clip_clock.clip, slot))
 }
 
-/// 1 to 768, by the logarithm of `missed · weight`: sixteen an octave.
+/// The rank, 1 to 768, by the logarithm of `missed · weight`: sixteen ranks per octave.
 pub fn rank_of(missed: u32, weight: u32) -> u32 {
     let product = u64::from(missed) * u64::from(weight);
     let Some(lead) = product.checked_ilog2() else { return 1 };

@@ -1,4 +1,4 @@
-//! `kernels/animation/decide.wgsl`, and the kernels that it stands for.
+//! The GPU pass of `kernels/animation/decide.wgsl`, and of the separate kernels that it replaces.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -14,35 +14,35 @@ use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::CompactParams;
 
-/// How many dispatches share the work.
+/// How many dispatches divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Dispatches {
     /// One workgroup does all of it.
     One,
-    /// A dispatch for each step, or more.
+    /// At least one dispatch for each step.
     Each,
 }
 
 impl Dispatches {
-    /// The faster way for a crowd on this device.
+    /// The faster choice for a crowd on this device.
     fn of(gpu: &Gpu, crowd: &Crowd) -> Self {
         let is_small = Stages::of(gpu, crowd) == Stages::One;
         if is_small && needed() <= available(gpu) { Self::One } else { Self::Each }
     }
 }
 
-/// Storage buffers that one dispatch needs.
+/// The number of storage buffers that the single dispatch needs.
 fn needed() -> u32 {
     let is_storage = |kind| matches!(kind, BindingKind::StorageRead | BindingKind::StorageReadWrite);
     shaders::ANIMATION_DECIDE.bindings.iter().filter(|binding| is_storage(binding.kind)).count() as u32
 }
 
-/// Storage buffers that the device lets a shader bind.
+/// The number of storage buffers that the device permits in a shader.
 fn available(gpu: &Gpu) -> u32 {
     gpu.device().limits().max_storage_buffers_per_shader_stage
 }
 
-/// Decides what is sampled, and lists it.
+/// Decides which bones are sampled, and lists them.
 #[derive(Debug, Clone)]
 pub struct DecidePass {
     /// Whether bones may be sampled ahead of their time.
@@ -75,8 +75,8 @@ impl DecidePass {
     /// The same with so many dispatches. A budget takes a dispatch for each step in any case.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] for one dispatch on a device that does not let a shader bind enough buffers; what the
-    /// driver's compiler reports.
+    /// [`GpuError::Limit`] for a single dispatch on a device that does not permit enough buffers in a shader;
+    /// errors of the driver's compiler.
     pub(crate) fn with_dispatches(gpu: &Gpu, gate: &Gate, dispatches: Dispatches) -> Result<Self, GpuError> {
         let leads = matches!(gate, Gate::Bounded(_));
         let kernels = match dispatches {
@@ -121,7 +121,7 @@ impl Kernels {
     }
 }
 
-/// The kernel of all steps.
+/// The kernel that performs all steps.
 fn whole(gpu: &Gpu, mode: Mode) -> Result<Kernel, GpuError> {
     let (needed, available) = (needed(), available(gpu));
     if needed > available {
@@ -192,7 +192,8 @@ enum Work {
 }
 
 impl DecideJob {
-    /// Chooses frame and time of the next submission, the latter as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`].
+    /// Sets frame and time of the next submission, the time as
+    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`].
@@ -211,7 +212,7 @@ impl DecideJob {
         Ok(())
     }
 
-    /// Chooses how many bones may be sampled from the next submission on.
+    /// Sets the number of bones that may be sampled from the next submission on.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) unless the gate is [`Gate::Budget`]; [`GpuError`].

@@ -1,4 +1,5 @@
-//! From the time to what is done: reference of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
+//! The decisions of a frame: the CPU reference of `kernels/animation/decide.wgsl` and of the separate kernels
+//! that it replaces.
 
 use crate::animation::clip_clock::ClipClock;
 use crate::animation::clip_clock::reference::clip_clocks;
@@ -9,29 +10,29 @@ use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 
-/// What a crowd is decided by, and what that keeps from frame to frame.
+/// The data by which a crowd is decided, and the state kept from frame to frame.
 #[derive(Debug, Clone)]
 pub struct Decider<'a> {
-    /// What instances play.
+    /// The clips.
     pub set: &'a ClipSet,
     /// What decides.
     pub gate: &'a Gate,
-    /// Of each instance, what it played when it was looked at last; see [`clip_clocks`].
+    /// For each instance, what it played when it was last decided; see [`clip_clocks`].
     pub history: Vec<[u32; 4]>,
-    /// Of each slot of each instance, the sum of motion when it was sampled last; see [`gate`].
+    /// For each slot of each instance, the sum of motion when it was last sampled; see [`gate`].
     pub sampled: Vec<u32>,
 }
 
 impl<'a> Decider<'a> {
-    /// Before the first frame of so many instances.
+    /// The state of `instances` instances before the first frame.
     pub fn new(set: &'a ClipSet, gate: &'a Gate, instances: usize) -> Self {
         Self { set, gate, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
     }
 
-    /// Where instances stand, as [`clip_clocks`] finds it.
+    /// The clip clocks of instances; see [`clip_clocks`].
     ///
     /// # Panics
-    /// With fewer levels than instances.
+    /// If there are fewer levels of detail than instances.
     pub fn clip_clocks(
         &mut self,
         instances: &[Instance],
@@ -43,7 +44,8 @@ impl<'a> Decider<'a> {
         clip_clocks(self.set, instances, layers, lods, elapsed, ahead, &mut self.history)
     }
 
-    /// What is sampled: [`compact`](crate::animation::compact::reference::compact) makes lists of them.
+    /// The bones that are sampled; [`compact`](crate::animation::compact::reference::compact) turns them into
+    /// lists.
     ///
     /// # Panics
     /// With fewer levels than phases.

@@ -1,10 +1,10 @@
-//! Which bones of which instances are sampled in a frame: animation level of detail (A sections 10 to 12).
+//! Animation level of detail: which bones of which instances are sampled in a frame (A sections 10 to 12).
 //!
-//! A gate decides from whole numbers, so every device decides alike, and it saves work: bones that it leaves out are
-//! neither sampled nor, unless a bone above them is active, concatenated. A bone that is left out keeps its last local
-//! transform. Bones that their clip does not move cost nothing in any mode.
+//! A gate decides from integers, so that every device decides alike. It saves work: a bone that is not sampled
+//! keeps its last local transform and, unless a bone above it is active, is not concatenated either. Bones that
+//! their clip does not move cost nothing under any gate.
 //!
-//! What precedes and follows it in a frame: `animation::frame`.
+//! [`animation::frame`](super::frame) has the steps of a frame before and after the gate.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -23,18 +23,19 @@ use crate::asset::keyframe::RotationPath;
 /// How bones are chosen, and from what: each gate has the table that it decides by.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gate {
-    /// Every bone that moves.
+    /// Every bone that moves is sampled.
     Off(AnimatedBones),
     /// A's rule (section 12.10): a bone *skips* one update each `priority · Ω · period`.
     SkipPeriod {
         /// The priorities.
         table: PriorityTable,
-        /// Ticks of priority 1 at Ω = 1; A has one second.
+        /// The period in ticks for priority 1 at Ω = 1; A uses one second.
         period: u32,
     },
-    /// All bones of an instance together, in a share Ω of the frames: what engines call update-rate optimization.
+    /// All bones of an instance together, in a fraction Ω of the frames; engines call this update-rate
+    /// optimization.
     Uniform(AnimatedBones),
-    /// A share Ω of all bones, by a hash of frame and bone: as many as [`Gate::Uniform`], on average.
+    /// A random fraction Ω of all bones, by a hash of frame and bone: on average as many as [`Gate::Uniform`].
     Random(AnimatedBones),
     /// Bones that may have moved further than the instance allows, parents first: a bone that missed no more than its
     /// fraction of what is left stays as it is and leaves the rest to the bones below it; one that missed more is sampled,
@@ -52,7 +53,7 @@ pub enum Gate {
 }
 
 impl Gate {
-    /// The name on command lines and in reports.
+    /// The gate's name on the command line and in reports.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Off(_) => "off",
@@ -83,22 +84,22 @@ impl Gate {
         }
     }
 
-    /// By how many seconds bones may be sampled ahead in a frame: nothing but [`Gate::Bounded`] does so.
+    /// The seconds by which bones may be sampled ahead in a frame; only [`Gate::Bounded`] does so.
     pub(crate) fn ahead(&self, frame: &Frame) -> f32 {
         if matches!(self, Self::Bounded(_)) { frame.ahead } else { 0.0 }
     }
 }
 
-/// When a frame is.
+/// The time of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame {
-    /// A clock that never goes back, in ticks of any length; begins again after 2³².
+    /// A monotonic clock in ticks of any length; it wraps at 2³².
     pub ticks: u32,
     /// Ticks since the last frame.
     pub frame_ticks: u32,
-    /// Frames so far.
+    /// Number of frames so far.
     pub frame: u32,
-    /// Seconds by which [`Gate::Bounded`] may sample a bone ahead of its time: a bone that is off by as much before as after
-    /// stays twice as long. About a frame's length; 0 for never.
+    /// Seconds by which [`Gate::Bounded`] may sample a bone ahead of its time: a bone that is off by as much
+    /// before as after can stay twice as long. Use about the length of a frame; 0 disables it.
     pub ahead: f32,
 }

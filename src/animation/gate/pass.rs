@@ -41,7 +41,7 @@ impl GatePass {
         Self { decider: Decider::Budget(pass) }
     }
 
-    /// Prepares the decision, from a crowd's phases.
+    /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of other bones or clips than the gate's table, for motion along another path than the
@@ -123,7 +123,7 @@ pub(crate) enum Mode {
 }
 
 impl Mode {
-    /// `MODE` of the kernel.
+    /// The kernel's `MODE`.
     pub fn constant(self) -> u32 {
         match self {
             Self::Off => modes::OFF,
@@ -185,7 +185,7 @@ impl GateTime {
         Ok(Self { params, uniform, remaining })
     }
 
-    /// One a word of bits, or an instance where words wait for each other.
+    /// One thread per word of bits, or per instance if words depend on each other.
     fn threads(&self, mode: Mode) -> u32 {
         self.params.instances * if mode.is_bounded() { 1 } else { self.params.words }
     }
@@ -221,7 +221,7 @@ impl GateJob {
         }
     }
 
-    /// Chooses how many bones may be sampled from the next submission on.
+    /// Sets the number of bones that may be sampled from the next submission on.
     ///
     /// # Errors
     /// [`InputError`] unless the gate is [`Gate::Budget`]; [`GpuError`].

@@ -1,4 +1,4 @@
-//! Which bones are sampled: reference of `kernels/animation/gate.wgsl`.
+//! Gates: the CPU reference of `kernels/animation/gate.wgsl`.
 
 use crate::animation::budget::reference::budget;
 use crate::animation::clip_clock::{ClipClock, UpdateReason};
@@ -7,17 +7,17 @@ use crate::animation::gate_table::sums::{motion_at, motion_between, scale_by_fra
 use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, PriorityTable, bits_of};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 
-/// What is sampled.
+/// The bones that are sampled.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chosen {
     /// A bit for each slot of each instance: [`AnimatedBones::words`] words an instance.
     pub bits: Vec<u32>,
-    /// Likewise, those of them that are sampled ahead.
+    /// In the same layout: those of them that are sampled ahead.
     pub ahead: Vec<u32>,
 }
 
 impl Chosen {
-    /// As `Active::bits` holds them.
+    /// Both in the layout of `Active::bits`.
     pub fn words(&self) -> Vec<u32> {
         [self.bits.as_slice(), &self.ahead].concat()
     }
@@ -126,8 +126,8 @@ pub fn scramble(word: u32) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// A skips an update each period: at once where a period is no longer than a frame, else when the last frame has
-/// passed a multiple of it.
+/// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
+/// frame in which the clock passes a multiple of the period.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
@@ -159,9 +159,9 @@ fn at_random(word: &Word<'_>, bones: usize, frame: &Frame) -> u32 {
 
 /// What is left of the allowed error of an instance.
 struct Remaining<'a> {
-    /// By the bone before.
+    /// What the previous bone left.
     last: u32,
-    /// By bones that others hang below.
+    /// What bones with several children left.
     by_slot: &'a mut [u32],
 }
 

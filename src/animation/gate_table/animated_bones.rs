@@ -11,7 +11,7 @@ use crate::asset::clip::{Clip, Interpolation, Part};
 pub struct AnimatedBones {
     bones: usize,
     words: usize,
-    /// For each clip the number of its last row, then a bit for each slot that it moves.
+    /// For each clip the index of its last row, then one bit for each slot that it moves.
     records: Vec<u32>,
 }
 
@@ -19,7 +19,7 @@ impl AnimatedBones {
     /// Looks for the bones whose tracks change along their clips.
     ///
     /// # Errors
-    /// [`InputError`] for other clips than the set's, or a skeleton of other bones.
+    /// [`InputError`] for clips other than the set's, and for a skeleton with another number of bones.
     pub fn new(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
         set.check_clips(clips)?;
         if order.slots.len() != set.bones() {
@@ -39,12 +39,12 @@ impl AnimatedBones {
         Ok(Self { bones: order.slots.len(), words, records })
     }
 
-    /// Bones of the skeleton.
+    /// Number of bones of the skeleton.
     pub fn bones(&self) -> usize {
         self.bones
     }
 
-    /// Words of bits an instance.
+    /// Words of bits per instance.
     pub fn words(&self) -> usize {
         self.words
     }
@@ -97,14 +97,14 @@ impl AnimatedBones {
     }
 }
 
-/// The numbers of a word's bits.
+/// The indices of the bits that are set in a word.
 pub(crate) fn bits_of(word: u32) -> impl Iterator<Item = usize> {
     std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
         .take_while(|rest| *rest != 0)
         .map(|rest| rest.trailing_zeros() as usize)
 }
 
-/// Whether any of a bone's parts changes in a clip.
+/// Whether a clip changes any of a bone's parts.
 fn moves(clip: &Clip, bone: usize) -> bool {
     Part::ALL.iter().any(|part| {
         let track = clip.track(bone, *part);
@@ -120,7 +120,7 @@ fn moves(clip: &Clip, bone: usize) -> bool {
                 if !is_spline {
                     return !same(key[0], clip.key(track, 0));
                 }
-                // The first key's in-tangent and the last one's out-tangent bend nothing.
+                // The in-tangent of the first key and the out-tangent of the last have no effect.
                 let bends = |tangent: [f32; 4], is_used: bool| is_used && tangent != [0.0; 4];
                 key[1] != clip.key(track, 0) || bends(key[0], at > 0) || bends(key[2], at + 1 < keys)
             })

@@ -67,7 +67,7 @@ impl BoundTable {
         Ok(table)
     }
 
-    /// Writes which bones hang below which, leaving out those that a clip does not move.
+    /// Writes the parent of each bone, skipping bones that the clip does not move.
     fn write_tree(&mut self, skeleton: &Skeleton, order: &Order, clip: u32) {
         let slot_of = order.slots_of_bones();
         let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -117,7 +117,7 @@ impl BoundTable {
     /// [`Lod::allowed`](crate::animation::Lod::allowed) for an error in metres in the model's space: divide metres in the
     /// world by the instance's scale.
     pub fn units(&self, metres: f32) -> u32 {
-        // A clip's whole motion is less than everything.
+        // The motion of a whole clip is less than `EVERYTHING`.
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 
@@ -127,7 +127,7 @@ impl BoundTable {
         self.first_above as u32
     }
 
-    /// A slot's motion in a row.
+    /// The motion of a slot in a row.
     pub(crate) fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.motion.motion(row, slot)
     }
@@ -150,28 +150,28 @@ impl BoundTable {
 pub struct ErrorBudget(pub u32);
 
 impl ErrorBudget {
-    /// The bone above is not the one before it in the order.
+    /// Set if the bone above is not the previous one in the order.
     const STARTS: u32 = 1 << 5;
-    /// What it leaves is needed later.
+    /// Set if what the bone leaves is needed later.
     const REMAINING: u32 = 1 << 6;
 
-    /// `quantization_slack`: a power of two, or 0.
+    /// `quantization_slack` is a power of two, or 0.
     pub(super) fn new(fraction: f64, quantization_slack: u32) -> Self {
         let bits = u32::BITS - quantization_slack.leading_zeros();
         Self(((fraction * 65536.0).floor() as u32) << 8 | bits)
     }
 
-    /// Of what the bones above leave, in 65536ths.
+    /// The fraction of what the bones above leave, in 65536ths.
     pub fn fraction(self) -> u32 {
         self.0 >> 8
     }
 
-    /// Units that rounding may hide.
+    /// The number of units that rounding may hide.
     pub fn quantization_slack(self) -> u32 {
         ((1_u64 << (self.0 & 31)) >> 1) as u32
     }
 
-    /// Whether the bone above is another than the one before it in the order.
+    /// Whether the bone above is not the previous one in the order.
     pub fn starts(self) -> bool {
         self.0 & Self::STARTS != 0
     }

@@ -13,11 +13,11 @@ pub(crate) struct TableBuffers {
     pub rows: Buffer<[u32; 2]>,
     /// Entries of a row.
     pub stride: u32,
-    /// Words of bits an instance.
+    /// Words of bits per instance.
     pub words: u32,
     bones: usize,
     clips: usize,
-    /// Of the motion; none without.
+    /// The rotation path of the motion; `None` without motion.
     path: Option<RotationPath>,
 }
 

@@ -3,13 +3,13 @@
 use super::{EVERYTHING, ErrorBudget};
 use crate::animation::motion::{BoneMotion, Path};
 
-/// One bone's motion along a clip.
+/// The motion of one bone along a clip.
 pub(super) struct Column {
     rises: Vec<f64>,
     jumps: Vec<f64>,
     wrap: f64,
     is_boundless: bool,
-    /// Of what bones above leave, 0 to 1.
+    /// The fraction of what the bones above leave, 0 to 1.
     pub(super) fraction: f64,
 }
 
@@ -32,10 +32,12 @@ impl Column {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }
 
-    /// Writes it down a table.
+    /// Writes the column into a table.
     ///
-    /// Starts are rounded to the nearest unit, rises up, and sums down: what two sums differ by is at most 4 units too
-    /// small. Fractions are cut to 16 bits, 2⁻¹⁶ of a stretch, and may be off by rounding of their division: 2⁻¹² of
+    /// Sums at row starts are rounded to the nearest unit, rises up, and interpolated sums down, so that the
+    /// difference of two sums is at most 4 units too small. Fractions are cut to 16 bits, 2⁻¹⁶ of a segment,
+    /// and may be off by the rounding of their division; 2⁻¹² of the steepest segment exceeds both errors for
+    /// two sums. The slack for these errors is a power of two.
     /// the steepest stretch is more than either costs for two sums. What rounding may hide so, the quantization slack, is
     /// a power of two.
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {

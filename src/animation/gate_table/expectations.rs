@@ -51,7 +51,7 @@ impl ExpectationTable {
         &self.0.rows
     }
 
-    /// A slot's motion in a row.
+    /// The motion of a slot in a row.
     pub(crate) fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.0.motion(row, slot)
     }

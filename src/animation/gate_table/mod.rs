@@ -23,16 +23,17 @@ pub(crate) use buffers::TableBuffers;
 pub use expectations::ExpectationTable;
 pub use priorities::PriorityTable;
 
-/// The largest sum of motion of a whole clip, in units.
+/// The largest sum of motion over a whole clip, in units of the table.
 const MAX_MOTION: f64 = (1 << 30) as f64;
 
 /// More units than are ever allowed.
 pub(crate) const EVERYTHING: u32 = 1 << 30;
 
-/// The most entries.
+/// The largest number of entries.
 const MAX_ENTRIES: usize = 1 << 27;
 
-/// Refuses sampling along another path than the one that a table's motion holds for; tables without motion hold for any.
+/// Refuses sampling with another rotation path than the one for which a table's motion was computed. Tables
+/// without motion permit any.
 pub(crate) fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
     match of_table {
         Some(path) if path != sampled => {

@@ -38,7 +38,7 @@ impl MotionTable {
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
 
-    /// Writes the columns of every clip, in the smallest unit that they fit.
+    /// Writes the columns of every clip, in the smallest unit for which they fit.
     pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
@@ -63,7 +63,7 @@ impl MotionTable {
         self.animated_bones.bones()
     }
 
-    /// A slot's motion in a row.
+    /// The motion of a slot in a row.
     pub fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.rows[row as usize * self.stride() + slot]
     }

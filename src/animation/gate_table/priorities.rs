@@ -64,7 +64,7 @@ impl PriorityTable {
         self.stride
     }
 
-    /// A slot's priority in a row, in 65536ths.
+    /// The priority of a slot in a row, in 65536ths.
     pub(crate) fn priority(&self, row: u32, slot: usize) -> u32 {
         self.rows[row as usize * self.stride + slot / 4][slot / 2 % 2] >> (16 * (slot % 2)) & 0xffff
     }

@@ -402,7 +402,7 @@ mod tests {
             features,
             Blocks { cell_rows, levels },
         ) {
-            Err(Error::Input(error)) => (error.field.to_string(), error.value.to_string()),
+            Err(Error::Input(error)) => (error.path.to_string(), error.value.to_string()),
             other => panic!("{other:?}"),
         };
         let [levels, rows] = ["blocks.levels", "blocks.cell_rows"].map(str::to_owned);

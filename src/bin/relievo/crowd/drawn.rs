@@ -227,8 +227,8 @@ impl<'a> Drawing<'a> {
                 let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));
                 let seen = Seen { instance_lods: &instance_lods, levels };
                 look.spread.add(self.stage, self.scene, seen, Skinned { vertices: &own, places }, fresh);
-                let levels = instance_lods.iter().filter(|instance_lod| instance_lod.most > 0);
-                let levels = levels.map(|instance_lod| skin.clusters.level(instance_lod.level));
+                let levels = instance_lods.iter().filter(|instance_lod| instance_lod.max_influences > 0);
+                let levels = levels.map(|instance_lod| skin.clusters.level(instance_lod.mesh_lod));
                 let clusters = match look.way.by {
                     By::All => levels.clone().map(|level| level.clusters).sum(),
                     By::Gate => skin.active.dispatched.read_blocking(self.gpu)?[3],
@@ -377,13 +377,13 @@ impl<'a> World<'a> {
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
-            near,
-            far,
+            fade_start: near,
+            fade_end: far,
             steps: STEPS,
-            most: if let Skinning::All(instance_lod) = skinning {
-                instance_lod.most
+            max_influences: if let Skinning::All(instance_lod) = skinning {
+                instance_lod.max_influences
             } else {
-                InstanceLod::FULL.most
+                InstanceLod::FULL.max_influences
             },
             center,
             radius,

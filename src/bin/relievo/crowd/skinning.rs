@@ -62,7 +62,7 @@ impl Skinning {
             None if text == "fade" => Ok(Self::Fade(range)),
             Some(("truncate", most)) => {
                 InstanceLod::truncate(most.parse().map_err(|_| refused())?).map(Self::All).map_err(|error| {
-                    InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
+                    InputError::new("skinning", text, format!("{} {}", error.path, error.bound))
                 })
             }
             _ => Err(refused()),
@@ -81,7 +81,7 @@ impl fmt::Display for Skinning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::All(InstanceLod::FULL) => f.write_str("full"),
-            Self::All(instance_lod) => write!(f, "truncate:{}", instance_lod.most),
+            Self::All(instance_lod) => write!(f, "truncate:{}", instance_lod.max_influences),
             Self::Fade(_) => f.write_str("fade"),
             Self::Bounded(pixels) => write!(f, "bounded:{pixels}"),
         }
@@ -110,7 +110,7 @@ mod tests {
             "bounded:NaN",
             "bounded:x",
         ] {
-            assert_eq!(Skinning::new(name, range).expect_err("refused").field, "skinning", "{name}");
+            assert_eq!(Skinning::new(name, range).expect_err("refused").path, "skinning", "{name}");
         }
     }
 }

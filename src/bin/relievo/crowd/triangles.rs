@@ -106,7 +106,7 @@ mod tests {
             assert_eq!(Triangles::new(name).expect("valid").to_string(), name);
         }
         for name in ["", "bounded", "bounded:-1", "bounded:NaN", "half", "full:1"] {
-            assert_eq!(Triangles::new(name).expect_err("refused").field, "mesh", "{name}");
+            assert_eq!(Triangles::new(name).expect_err("refused").path, "mesh", "{name}");
         }
     }
 }

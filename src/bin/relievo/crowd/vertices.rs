@@ -76,7 +76,7 @@ impl Spread {
                 let instances = stales.chunks(vertices).zip(freshes.chunks(vertices));
                 for (instance, (stales, freshes)) in (fraction * each..).zip(instances) {
                     let instance_lod = seen.instance_lods[instance];
-                    if instance_lod.most == 0 {
+                    if instance_lod.max_influences == 0 {
                         found.unseen += vertices as u64;
                         continue;
                     }
@@ -84,7 +84,7 @@ impl Spread {
                     let view = View { origin, turn, projection: stage.projection };
                     // Its own level 1 is the first of its levels.
                     let level = seen.levels.and_then(|(levels, own)| {
-                        let own = own.get(instance_lod.level as usize).or(own.last())?;
+                        let own = own.get(instance_lod.mesh_lod as usize).or(own.last())?;
                         Some((levels, (*own as usize).checked_sub(1)?))
                     });
                     let own =
