@@ -1,4 +1,4 @@
-//! Whole frames under a gate on the device at hand, layers included, beside frames in full.
+//! Whole frames under a gate on the device, with layers, compared with frames in full.
 
 use relievo::Error;
 use relievo::animation::active::Active;
@@ -31,7 +31,7 @@ fn furthest(a: &[Affine], b: &[Affine]) -> f32 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// Where nothing may be missed, a gated crowd is the full one: layers fade in and out, clips change, on the suite's
+/// If nothing may be missed, a gated crowd equals the full one: layers fade in and out, clips change, on the suite's
 /// device and on one with WebGPU's default limits.
 #[test]
 fn a_gate_that_misses_nothing_changes_nothing() {
@@ -105,7 +105,8 @@ fn gates(skeleton: &Skeleton, set: &ClipSet, clip: &Clip, path: RotationPath) ->
     [Gate::Uniform(bones), Gate::Bounded(bounds), Gate::Budget { table, bones: 1000 }]
 }
 
-/// What a gated frame leaves of a crowd of characters, every other one at half detail: active bits and palettes.
+/// The state after a gated frame of a crowd of characters, every second one at half detail: active bits and
+/// matrices.
 fn played(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate) -> (Vec<u32>, Vec<Affine>) {
     let buffers = ClipBuffers::new(gpu, set).expect("uploaded");
     let plays: Vec<_> = (0..40).map(|at| Instance::new(0, Wrap::Loop, 0.1 * at as f32, 1.0)).collect();
@@ -123,7 +124,8 @@ fn played(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate) -> (Vec<u32>, Ve
     (bits, crowd.model_matrices().read_blocking(gpu).expect("read"))
 }
 
-/// A device that another program opened, with WebGPU's default limits, decides in several dispatches; to the same end.
+/// A device that another program opened, with WebGPU's default limits, decides in several dispatches, with the
+/// same result.
 #[test]
 fn devices_with_default_limits_play_the_same_frames() {
     let (own, foreign) = (gpu(), foreign());
@@ -138,8 +140,8 @@ fn devices_with_default_limits_play_the_same_frames() {
     }
 }
 
-/// Whatever brings a table's motion and sampling together refuses two paths: a frame in one piece, a decision, and
-/// sampling.
+/// Every object that combines a table's motion with sampling refuses two different paths: a whole frame, a
+/// decision, and sampling.
 #[test]
 fn bounds_of_one_path_meet_no_sampling_of_the_other() {
     let gpu = gpu();

@@ -1,4 +1,4 @@
-//! Documents that are wrong: an error with the path inside the file, and never a panic.
+//! Invalid documents give an error with the path in the file, and never a panic.
 
 use relievo::asset::Model;
 use serde_json::{Value, json};
@@ -218,7 +218,8 @@ fn containers() {
     }
 }
 
-/// Cut off anywhere, and with bytes changed at random: a model or an error, and a model can be played.
+/// Documents that are truncated anywhere or have random bytes changed give a model or an error, and a model can
+/// be played.
 #[test]
 fn nothing_panics() {
     let glb = full().glb();
@@ -251,7 +252,7 @@ fn play(model: &Model) {
     }
 }
 
-/// Every number, string, list and object of the JSON replaced by something else.
+/// Every number, string, list and object of the JSON is replaced by something else.
 #[test]
 fn every_value_may_be_wrong() {
     let scene = full();

@@ -39,7 +39,8 @@ fn keys(times: &[f32], values: Vec<[f32; 4]>, interpolation: Interpolation) -> O
     Some(Keys { times: times.to_vec(), values, interpolation })
 }
 
-/// A root that goes astray in every way, in the armature's centimetres, and tilts if told; a jump at 1.5 s.
+/// A root that moves and rotates in every way, in the armature's centimetres, and optionally tilts; it jumps at
+/// 1.5 s.
 fn astray(case: u32, interpolation: Interpolation, tilt: f32) -> Clip {
     let times = [0.25, 0.5, 1.0, 1.5, 1.5, 1.75];
     let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
@@ -63,7 +64,7 @@ fn delta(motion: &RootMotion, wrap: Wrap, from: f64, to: f64) -> DAffine3 {
     wide(&motion.delta(&Instance::new(0, wrap, 0.0, 1.0), from, to).expect("finite"))
 }
 
-/// How far a point two metres from the root lies from its place.
+/// How far a point two metres from the root is from its position.
 fn distance(a: &DAffine3, b: &DAffine3) -> f64 {
     let points = [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0];
     points.iter().map(|p| a.transform_point3(*p).distance(b.transform_point3(*p))).fold(0.0, f64::max)
@@ -164,7 +165,7 @@ fn loops_clamps_and_reverse_play() {
     assert!((moved(Wrap::Loop, 0.0, 1.0, 1e6, 1e6 + 1.0 / 64.0) - 1.0 / 32.0).abs() < 1e-6);
 }
 
-/// Deltas follow each other without a gap, wherever loops end, and lead back.
+/// Deltas join without a gap wherever loops end, and lead back.
 #[test]
 fn deltas_add_up() {
     for (case, interpolation) in [Interpolation::Linear, Interpolation::CubicSpline].into_iter().enumerate() {
@@ -190,7 +191,7 @@ fn deltas_add_up() {
     }
 }
 
-/// A quarter turn to the left a loop, a metre ahead: back after four.
+/// A quarter turn to the left and a metre ahead per loop leads back after four loops.
 #[test]
 fn four_left_turns_lead_back() {
     let (skeleton, _) = straight();

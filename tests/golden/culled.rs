@@ -1,4 +1,5 @@
-//! A crowd that walks in and out of view: what is not seen is not skinned, and what is seen looks as if all were.
+//! A crowd that walks in and out of view: unseen instances are not skinned, and the picture looks as if all
+//! were.
 
 use glam::{Mat4, Vec3, camera};
 use relievo::animation::ModelMatrices;
@@ -148,7 +149,7 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
             culled.skin.record_updated_bones(encoder);
         })
         .expect("run");
-        // The other one skins and draws everybody, as far faded where that is known.
+        // The other crowd skins and draws every instance, with the same fade where that is known.
         let instance_lods = culled.skin.crowd.instance_lods.read_blocking(gpu).expect("read");
         let full = |instance_lod: &InstanceLod| {
             if instance_lod.max_influences == 0 { InstanceLod::FULL } else { *instance_lod }
@@ -167,7 +168,7 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
             let seen = known[SKINNED_WORDS * at + 3];
             let wanted = if instance_lod.max_influences == 0 { 0 } else { (seen_before[at] + 1).min(2) };
             assert_eq!(seen, wanted, "creature {at} of frame {frame}");
-            // What stands still is skinned when it comes back, or fades.
+            // An instance that stands still is skinned when it comes back or fades.
             if instance_lod.max_influences > 0 && at.is_multiple_of(2) || seen == 1 {
                 expected += clusters;
             }

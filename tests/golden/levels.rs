@@ -37,8 +37,8 @@ const SIZE: [u32; 2] = [2 * 176, 2 * 112];
 /// Where the character's levels begin, world units: as many as its meshes have errors, one more than either has levels.
 const BEGINS: [f32; 4] = [5.0, 6.0, 9.0, 14.0];
 
-/// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with one, that
-/// is less off than any of the limb's.
+/// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with
+/// one level, whose error is less than any of the limb's.
 fn model() -> Model {
     let mut model = limb();
     let level = |step: usize, rings: Range<usize>| {
@@ -136,8 +136,9 @@ impl Crowd {
     }
 }
 
-/// From afar, from near, from aside and from afar again: what a level lacks is skinned when a finer one is used, what it
-/// has is not skinned anew, and the picture is the reference's.
+/// The crowd is seen from afar, from near, from the side and from afar again. Vertices that a level lacks are
+/// skinned when a finer level is used, vertices that it has are not skinned again, and the picture is the
+/// reference's.
 #[test]
 fn a_crowd_with_levels() {
     let crowd = Crowd::new();

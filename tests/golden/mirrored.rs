@@ -1,5 +1,5 @@
-//! Mirrored placements and mirrored views: outside stays outside and lit as such, whether one side is seen or both, on the
-//! device as in the reference.
+//! Mirrored placements and mirrored views: the outside stays the outside and is lit as such, single-sided and
+//! double-sided, on the device as in the reference.
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;

@@ -124,7 +124,8 @@ fn the_full_document_is_right() {
     assert!(peak < 1 << 20, "{peak}");
 }
 
-/// An accessor of some hundred bytes, of which 80 million vectors of zeros were made before anything was looked at.
+/// An accessor of some hundred bytes that claims 80 million vectors of zeros; the count is checked before
+/// anything is allocated.
 #[test]
 fn zeros_are_counted_before_they_are_made() {
     let _alone = alone();
@@ -164,7 +165,7 @@ fn zeros_are_counted_before_they_are_made() {
     assert!(model.meshes[0].targets[0].vertices.is_empty());
 }
 
-/// The same bytes again and again: instances of a mesh, primitives, targets, keys, tracks, buffers, images.
+/// The same bytes used repeatedly: instances of a mesh, primitives, targets, keys, tracks, buffers, images.
 #[test]
 fn what_is_repeated_is_counted_too() {
     let _alone = alone();

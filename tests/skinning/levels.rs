@@ -1,5 +1,5 @@
-//! Levels of detail of a character of two meshes: each is as coarse as it may be, and what is drawn keeps what was promised
-//! in pixels.
+//! Levels of detail of a character with two meshes: each is as coarse as permitted, and the drawn surface keeps
+//! to the error in pixels.
 
 use glam::{Vec3, Vec4, camera};
 use relievo::animation::Projection;

@@ -105,7 +105,7 @@ impl HeightPass {
     /// a point counts once for every window that sees it.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, a reach out of bounds, or
+    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, an apron out of bounds, or
     /// buffers that are too short; [`GpuError`].
     pub fn prepare(
         &self,
