@@ -95,6 +95,14 @@ pub struct Crowd {
 }
 
 impl Crowd {
+    /// Allocates a crowd of instances of a set's clips, with one layer.
+    ///
+    /// # Errors
+    /// [`InputError`] for no instances, and for instances of a clip that the set does not have; [`GpuError`].
+    pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
+        Self::layered(gpu, set, instances, &[])
+    }
+
     /// Allocates a crowd of instances of a set's clips, with layers above them.
     ///
     /// # Errors

@@ -2,10 +2,9 @@
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
-use crate::animation::instance::{Instance, check_elapsed};
+use crate::animation::instance::check_elapsed;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
@@ -148,16 +147,5 @@ impl KeyframeCursorJob {
             Work::All(job) => job.dispatch(pass),
             Work::Active(job) => job.dispatch(pass),
         }
-    }
-}
-
-impl Crowd {
-    /// Allocates a crowd of instances of a set's clips, with one layer.
-    ///
-    /// # Errors
-    /// [`crate::InputError`] for no instances, and for instances of a clip that the set does not have;
-    /// [`GpuError`].
-    pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
-        Self::layered(gpu, set, instances, &[])
     }
 }
