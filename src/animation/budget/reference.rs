@@ -5,11 +5,11 @@ use crate::animation::gate_table::ExpectationTable;
 use crate::animation::gate_table::sums::{motion_at, motion_between};
 use crate::animation::lod::Lod;
 
-/// A bit for each slot of each instance: [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words an instance. `sampled` holds, for each slot of each
-/// instance, the sum of motion when it was sampled last.
+/// One bit per slot of each instance, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words per
+/// instance. `sampled` holds, for each slot of each instance, the sum of motion when it was last sampled.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need.
+/// If there are fewer levels of detail or sums than clip clocks need.
 pub fn budget(
     table: &ExpectationTable,
     budget: u32,

@@ -20,14 +20,14 @@ pub use pass::{GateJob, GatePass};
 use super::gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 use crate::asset::keyframe::RotationPath;
 
-/// How bones are chosen, and from what: each gate has the table that it decides by.
+/// How the bones to be sampled are chosen. Each gate owns the table by which it decides.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gate {
     /// Every bone that moves is sampled.
     Off(AnimatedBones),
-    /// A's rule (section 12.10): a bone *skips* one update each `priority · Ω · period`.
+    /// A's rule (section 12.10): a bone *skips* one update per period of `priority · Ω · period` ticks.
     SkipPeriod {
-        /// The priorities.
+        /// The priorities of each clip's bones.
         table: PriorityTable,
         /// The period in ticks for priority 1 at Ω = 1; A uses one second.
         period: u32,
@@ -37,17 +37,19 @@ pub enum Gate {
     Uniform(AnimatedBones),
     /// A random fraction Ω of all bones, by a hash of frame and bone: on average as many as [`Gate::Uniform`].
     Random(AnimatedBones),
-    /// Bones that may have moved further than the instance allows, parents first: a bone that missed no more than its
-    /// fraction of what is left stays as it is and leaves the rest to the bones below it; one that missed more is sampled,
-    /// and leaves them everything. So bones take turns, and what one does not use another does. No point is ever further
-    /// from its place than [`Lod::allowed`](super::lod::Lod::allowed), nor any vertex that bones blend linearly. Dual
-    /// quaternions are no convex mean, so the promise does not hold for them: skinning refuses them under this gate.
+    /// Bones that may have moved further than the instance permits, parents first. A bone that missed no more
+    /// than its fraction of the remaining error budget is not sampled, and passes the rest on to the bones
+    /// below it. A bone that missed more is sampled, and passes on all of it. Bones thus take turns, and one
+    /// uses what another does not. No point, and no vertex under linear blending, is ever further from its place
+    /// than [`Lod::allowed`](super::lod::Lod::allowed). Dual quaternions are not convex combinations, so that
+    /// the bound does not hold for them; skinning refuses them under this gate.
     Bounded(BoundTable),
-    /// At most so many bones of the crowd, those that are expected to show most: [`super::budget`].
+    /// At most this many bones of the crowd, those whose stale transforms are expected to be most visible: see
+    /// [`super::budget`].
     Budget {
-        /// The motion that is expected to show.
+        /// The motion of each bone as it is expected to be visible.
         table: ExpectationTable,
-        /// The most bones of a frame; instances that have to be sampled in full are in any case.
+        /// The largest number of bones in a frame. Instances that must be sampled in full are in any case.
         bones: u32,
     },
 }
@@ -65,7 +67,7 @@ impl Gate {
         }
     }
 
-    /// Which bones the clips move.
+    /// The bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         match self {
             Self::Off(bones) | Self::Uniform(bones) | Self::Random(bones) => bones,
@@ -75,7 +77,7 @@ impl Gate {
         }
     }
 
-    /// The path between rotation keys whose motion the gate knows, if it decides by motion.
+    /// The rotation path for which the motion was computed by which the gate decides; `None` without motion.
     pub fn path(&self) -> Option<RotationPath> {
         match self {
             Self::Off(_) | Self::Uniform(_) | Self::Random(_) | Self::SkipPeriod { .. } => None,

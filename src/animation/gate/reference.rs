@@ -27,7 +27,7 @@ impl Chosen {
 /// [`Gate::Bounded`] and [`Gate::Budget`] alone use it.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need.
+/// If there are fewer levels of detail or sums than clip clocks need.
 pub fn gate(
     gate: &Gate,
     frame: &Frame,
@@ -59,9 +59,9 @@ struct Word<'a> {
     first: usize,
     lod: &'a Lod,
     clip_clock: &'a ClipClock,
-    /// All of its bones.
+    /// A bit for each of its bones.
     all: u32,
-    /// Those that may have to be sampled.
+    /// The bones that may have to be sampled.
     candidates: u32,
 }
 
@@ -80,7 +80,8 @@ fn words<'a>(
     })
 }
 
-/// What gates leave that decide on each word alone: `thin` of the candidates, where something may be left out.
+/// The decision of a gate that decides on each word alone: `thin` selects from the candidates of a word of an instance
+/// that is not at full detail.
 fn thinned(
     bones: &AnimatedBones,
     lods: &[Lod],
@@ -100,7 +101,7 @@ fn thinned(
     chosen
 }
 
-/// What [`Gate::Bounded`] leaves.
+/// The decision of [`Gate::Bounded`].
 fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled: &mut [u32]) -> Chosen {
     let mut chosen = Chosen::default();
     let bones = table.animated_bones();
@@ -157,7 +158,7 @@ fn at_random(word: &Word<'_>, bones: usize, frame: &Frame) -> u32 {
     bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-/// What is left of the allowed error of an instance.
+/// What is left of the error budget of an instance.
 struct Remaining<'a> {
     /// What the previous bone left.
     last: u32,
@@ -165,9 +166,10 @@ struct Remaining<'a> {
     by_slot: &'a mut [u32],
 }
 
-/// Parents first: a bone that missed no more than its fraction of what is left stays, and leaves the rest to those below it.
-/// One that missed more is sampled, and leaves them everything; or it is sampled ahead, where it moves no more than its
-/// fraction until then. What is sampled, and of this, what is sampled ahead.
+/// Decides for the bones of a word, parents first. A bone that missed no more than its fraction of the
+/// remaining budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is
+/// sampled, and passes on all of it; or it is sampled ahead, if its motion until then is within its fraction
+/// too. Returns the bones that are sampled, and those of them that are sampled ahead.
 fn by_motion(
     table: &BoundTable,
     word: &Word<'_>,
@@ -175,7 +177,8 @@ fn by_motion(
     remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
     let Word { first, lod, clip_clock, all, candidates, .. } = *word;
-    // Sums of motion know of one clip alone; and all are where nothing may be missed.
+    // Sums of motion describe a single clip, so they cannot be used for other reasons to update. If nothing may
+    // be missed, all candidates are sampled too.
     let asked = if clip_clock.reason().forces_motion() { all } else { 0 };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let [mut active, mut ahead] = [forced, 0];

@@ -11,17 +11,18 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Power of the rates of motion that fractions are made of: 1 needs the fewest samples where fractions are all that
-/// counts, 0 takes all moving bones alike.
+/// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
+/// needed if fractions alone decide; with 0, all moving bones get equal fractions.
 const EVENNESS: f64 = 0.5;
 
-/// How many times its fraction a bone may take. The promise holds for any, as bones below take what is left. Bones
-/// seldom miss all of their fractions at once: of 1, 1.6, 2.5 and 4, 1.6 needs the fewest samples on a walk and a run
-/// wherever `uniform` does every 2nd to 4th frame; 1 where it does every 8th.
+/// The factor by which a bone may exceed its fraction. The bound holds for any factor, because bones below use
+/// what is left. Bones seldom miss all of their fractions at once: of 1, 1.6, 2.5 and 4, the factor 1.6 needs
+/// the fewest samples on a walk and a run if `uniform` samples every 2nd to 4th frame, and 1 if it samples
+/// every 8th.
 const FAVOUR: f64 = 1.6;
 
-/// Bounds of the motion that each bone contributes to any point, and the fractions that bones take of the error that is
-/// allowed: what [`Gate::Bounded`](crate::animation::Gate::Bounded) decides by.
+/// Bounds on the motion that each bone contributes to any point, and the fractions of the error budget that bones
+/// take: the table of [`Gate::Bounded`](crate::animation::Gate::Bounded).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundTable {
     motion: MotionTable,
@@ -31,13 +32,14 @@ pub struct BoundTable {
 }
 
 impl BoundTable {
-    /// The table of a set's clips. `bone_radii`: for each bone, how far points that follow it alone lie from its origin,
-    /// metres. `path`: as instances are sampled; crowds that are sampled otherwise are refused, since nlerp turns faster
-    /// than slerp in the middle between two keys.
+    /// Computes the table of a set's clips. `bone_radii` gives, for each bone, the distance from its origin, in
+    /// metres, of points that follow it alone. `path` is the rotation path with which instances are sampled;
+    /// crowds with another path are refused, because nlerp turns faster than slerp in the middle between two
+    /// keys.
     ///
     /// # Errors
-    /// As [`AnimatedBones::new`]; [`InputError`] for other than one reach a bone, or one that is negative or not finite,
-    /// and a table of more than 2²⁷ entries.
+    /// As [`AnimatedBones::new`]; [`InputError`] also for a number of radii that is not one per bone, for radii
+    /// that are negative or not finite, and for a table of more than 2²⁷ entries.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -92,30 +94,30 @@ impl BoundTable {
         }
     }
 
-    /// Which bones the clips move.
+    /// The bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.motion.animated_bones
     }
 
-    /// The path between rotation keys whose motion it holds.
+    /// The rotation path for which the motion was computed.
     pub fn path(&self) -> RotationPath {
         self.motion.path
     }
 
-    /// The entries, row by row: a sum of motion at the row's time and its rise to the next. In a clip's last row stand its
-    /// sum over the whole clip, and an [`ErrorBudget`]. Behind all others is one row a clip more: for each slot that the
-    /// clip moves, the next slot above it that the clip moves, or [`NO_PARENT`].
+    /// The entries, row by row: the sum of motion at the row's time and its rise to the next row. A clip's last
+    /// row holds the sum over the whole clip and an [`ErrorBudget`]. After all others follows one more row per
+    /// clip: for each slot that the clip moves, the nearest slot above it that the clip moves, or [`NO_PARENT`].
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.motion.rows
     }
 
-    /// A bound of how far any point lies from the model's origin in any clip, metres.
+    /// A bound on the distance of any point from the model's origin in any clip, in metres.
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// [`Lod::allowed`](crate::animation::Lod::allowed) for an error in metres in the model's space: divide metres in the
-    /// world by the instance's scale.
+    /// Converts a distance in metres in the model's space to [`Lod::allowed`](crate::animation::Lod::allowed);
+    /// divide metres in the world by the instance's scale.
     pub fn units(&self, metres: f32) -> u32 {
         // The motion of a whole clip is less than `EVERYTHING`.
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32

@@ -10,8 +10,8 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// The motion that each bone contributes to points at and below it, as a root of the sum of squares: what
-/// [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones by.
+/// The expected motion that each bone contributes to points at and below it, as a root of the sum of squares, by
+/// which [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationTable(MotionTable);
 
@@ -35,12 +35,12 @@ impl ExpectationTable {
         Ok(Self(table))
     }
 
-    /// Which bones the clips move.
+    /// The bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.0.animated_bones
     }
 
-    /// The path between rotation keys whose motion it holds.
+    /// The rotation path for which the motion was computed.
     pub fn path(&self) -> RotationPath {
         self.0.path
     }

@@ -48,7 +48,7 @@ impl PriorityTable {
         Ok(Self { animated_bones, stride, rows })
     }
 
-    /// Which bones the clips move.
+    /// The bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.animated_bones
     }
