@@ -182,10 +182,9 @@ fn characters(
     add_levels(&mut fox, &[run], poses)?;
     let albedos = Albedo::of_meshes(&gpu, &fox, &plain, ColorTexture::new)?;
     let extent = Extent::of_model(&fox, &[run], poses)?;
-    let fade = extent.fade_range(&projection, 0.25);
+    let fade_range = extent.fade_range(&projection, 0.25);
     let levels = &extent.level_ranges(&projection, 0.25, level_errors(&fox.meshes));
-    let foxes =
-        Character { model: &fox, matrices, placements, fade_range: fade, levels, blend, albedos: &albedos };
+    let foxes = Character { model: &fox, matrices, placements, fade_range, levels, blend, albedos: &albedos };
     crowd.add(&gpu, &foxes)?;
     crowd.set_camera(&gpu, clip_from_world, eye)?;
     crowd.record(&mut encoder);

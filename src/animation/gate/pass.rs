@@ -61,23 +61,33 @@ impl GatePass {
             }
         };
         let time = GateTime::new(gpu, gate, crowd, state, active)?;
-        let group = bindings::Group {
-            lods: state.lods.slice(),
-            clip_clocks: state.clip_clocks.slice(),
-            gate_params: &time.uniform,
-            animated_bones: gate.table.animated_bones.slice(),
-            table: gate.table.rows.slice(),
-            sampled: state.sampled.slice(),
-            remaining: time.remaining.slice(),
-            bits: active.bits.slice(),
-        };
+        let group = group(&time, &gate.table, state, active).bind(gpu, kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, kernel)?],
+            groups: vec![group],
             workgroups: kernel.spread(gpu, time.threads(gate.mode)),
             kernel: kernel.clone(),
         };
         let job = Job::new(gpu, "animation/gate", vec![step])?;
         Ok(GateJob { work: Work::Gate { time, job } })
+    }
+}
+
+/// What a gate decides from, and its decision.
+pub(crate) fn group<'a>(
+    time: &'a GateTime,
+    table: &'a TableBuffers,
+    state: &'a GateState,
+    active: &'a Active,
+) -> bindings::Group<'a> {
+    bindings::Group {
+        lods: state.lods.slice(),
+        clip_clocks: state.clip_clocks.slice(),
+        gate_params: &time.uniform,
+        animated_bones: table.animated_bones.slice(),
+        table: table.rows.slice(),
+        sampled: state.sampled.slice(),
+        remaining: time.remaining.slice(),
+        bits: active.bits.slice(),
     }
 }
 
@@ -150,9 +160,9 @@ pub(crate) struct UploadedGate {
 #[derive(Debug, Clone)]
 pub(crate) struct GateTime {
     params: GateParams,
-    pub(crate) uniform: Uniform<GateParams>,
-    /// For each slot of each instance, what it leaves of the allowed error, where bones below need it in the same frame.
-    pub(crate) remaining: Buffer<u32>,
+    uniform: Uniform<GateParams>,
+    /// For each slot of each instance, what it leaves of the error budget, where bones below need it in the same frame.
+    remaining: Buffer<u32>,
 }
 
 impl GateTime {

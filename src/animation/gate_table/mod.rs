@@ -15,6 +15,7 @@ use super::clip_set::ClipSet;
 use crate::InputError;
 use crate::asset::keyframe::RotationPath;
 
+pub(crate) use crate::shared::animation::gate::EVERYTHING;
 pub use animated_bones::AnimatedBones;
 pub(crate) use animated_bones::bits_of;
 pub use bounds::{BoundTable, ErrorBudget};
@@ -24,10 +25,7 @@ pub use expectations::ExpectationTable;
 pub use priorities::PriorityTable;
 
 /// The largest sum of motion over a whole clip, in units of the table.
-const MAX_MOTION: f64 = (1 << 30) as f64;
-
-/// More units than are ever allowed.
-pub(crate) const EVERYTHING: u32 = 1 << 30;
+const MAX_MOTION: f64 = EVERYTHING as f64;
 
 /// The largest number of entries.
 const MAX_ENTRIES: usize = 1 << 27;

@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(refused(LodView { max_influences: 0, ..view() }), "view.max_influences");
         assert_eq!(refused(LodView { max_influences: 9, ..view() }), "view.max_influences");
         assert_eq!(refused(LodView { fade_start: 30.0, ..view() }), "view.fade_start");
-        assert_eq!(refused(LodView { fade_end: f32::INFINITY, ..view() }), "view.far");
+        assert_eq!(refused(LodView { fade_end: f32::INFINITY, ..view() }), "view.fade_end");
     }
 
     #[test]
