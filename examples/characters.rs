@@ -16,7 +16,7 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-use relievo::animation::local_to_model::{LocalToModelPass, Walk};
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{ClipSet, Projection};
 use relievo::asset::Light;
@@ -70,8 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let clips = ClipBuffers::new(&gpu, &set)?;
         let place = KeyframeCursorPass::new(&gpu)?.prepare(&gpu, &clips, &posed)?;
         let sample = SamplePass::new(&gpu, RotationPath::Slerp)?.prepare(&gpu, &clips, &posed)?;
-        let local_to_model =
-            LocalToModelPass::new(&gpu, Walk::of(&gpu))?.prepare(&gpu, &model.skeleton, &posed)?;
+        let local_to_model = LocalToModelPass::new(&gpu)?.prepare(&gpu, &model.skeleton, &posed)?;
         let placements = Buffer::from_slice(&gpu, "placements", &places(model, index, characters))?;
         let albedos = Albedo::of_meshes(&gpu, model, &clay, ColorTexture::new)?;
         crowd.add(

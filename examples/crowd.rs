@@ -7,7 +7,7 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Lod, Projection};
+use relievo::animation::{BoundTable, ClipSet, Frame, Gate, Lod, Projection};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::bone_radii;
 use relievo::gpu::{Gpu, Options};
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let clips: Vec<_> = model.clips.iter().collect();
     let set = ClipSet::new(&clips)?;
     let bone_radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
-    let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
+    let table = BoundTable::new(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
 
     // A thousand instances, each at a time of its own in the clip, 10 to 110 m away.
     let count = 1000;
@@ -34,8 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let crowd = Crowd::new(&gpu, &set, &instances)?;
 
     // Once: pipelines and bind groups.
-    let choice = Choice::Gate(Gate::Bounded);
-    let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &table, choice)?;
+    let gate = Gate::Bounded(table.clone());
+    let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &gate)?;
 
     // Every frame: the distance of each instance, and the pixels that may be missed.
     let projection = Projection::new(1080, 1.0, 0.1);
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     for number in 0..60 {
         let elapsed = number as f32 / 60.0;
-        frame.gate_state.lods.write(&gpu, &lods)?;
+        frame.state.lods.write(&gpu, &lods)?;
         frame.set(
             &gpu,
             &Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 },

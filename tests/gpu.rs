@@ -14,7 +14,7 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-use relievo::animation::local_to_model::{LocalToModelPass, Walk};
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::sample::SamplePass;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{
@@ -241,7 +241,7 @@ fn a_frame_of_a_crowd_allocates_nothing() {
         KeyframeCursorPass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("prepared");
     let sample = sampling.prepare(&gpu, &clips, &crowd).expect("prepared");
     let some = sampling.prepare_active(&gpu, &clips, &crowd, &active).expect("prepared");
-    let local_to_model = LocalToModelPass::new(&gpu, Walk::Levels).expect("compiled");
+    let local_to_model = LocalToModelPass::new(&gpu).expect("compiled");
     let local_to_model = local_to_model.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
     for frame in 0..4 {
         let (known, _) = census(&instance, &gpu);

@@ -97,7 +97,7 @@ fn kernels_have_one_compute_entry_and_render_passes_none() {
     }
 }
 
-/// Shaders that need more than WebGPU's default limits: `Dispatches::of` takes this one only where a device allows it.
+/// Shaders that need more than WebGPU's default limits: `DecidePass::new` takes this one only where a device allows it.
 const OPTIONAL: &[&str] = &["animation/decide"];
 
 /// `Gpu::headless` opens devices that permit more bindings, so nothing else would notice.

@@ -89,10 +89,20 @@ pub struct Crowd {
     pub bones: usize,
     /// Number of layers, the base included: 1 if each instance plays one clip.
     pub layers: usize,
+    /// Clips of the set.
+    pub(crate) clips: usize,
     path: RotationPath,
 }
 
 impl Crowd {
+    /// Allocates a crowd of instances of a set's clips, with one layer.
+    ///
+    /// # Errors
+    /// [`InputError`] for no instances, and for instances of a clip that the set does not have; [`GpuError`].
+    pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
+        Self::layered(gpu, set, instances, &[])
+    }
+
     /// Allocates a crowd of instances of a set's clips, with layers above them.
     ///
     /// # Errors
@@ -125,6 +135,7 @@ impl Crowd {
             previous: None,
             bones,
             layers: 1 + layers.len(),
+            clips: set.clips().len(),
             path: RotationPath::default(),
         })
     }

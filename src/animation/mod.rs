@@ -38,9 +38,10 @@ pub mod verify;
 pub use crate::asset::keyframe::RotationPath;
 pub use bounds::Bounds;
 pub use clip_set::ClipSet;
-pub use decide::Choice;
 pub use gate::{Frame, Gate};
-pub use gate_table::GateTable;
+#[cfg(feature = "gpu")]
+pub use gate_state::GateState;
+pub use gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 pub use instance::{Instance, Wrap};
 pub use layers::Layer;
 pub use lod::{Lod, Projection, Range};

@@ -134,7 +134,7 @@ pub struct Shader {
     /// Its pipeline-overridable constants.
     pub overrides: &'static [Override],
     /// The limits that it needs raised above WebGPU's defaults. Empty for every shader but `animation/decide`,
-    /// which [`Dispatches::of`](crate::animation::decide::Dispatches::of) uses only where a device permits it.
+    /// which [`DecidePass`](crate::animation::decide::DecidePass) uses only where a device permits it.
     pub limits: &'static [Limit],
     /// The structs that its bindings and functions use.
     pub structs: &'static [Struct],

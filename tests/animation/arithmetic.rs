@@ -1,7 +1,7 @@
 //! The shaders' integer arithmetic on the adapter, against wider integers.
 
 use relievo::animation::budget::reference::rank_of;
-use relievo::animation::gate::reference::{motion_at, motion_between, scale_by_fraction};
+use relievo::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
 use relievo::animation::verify::Draw;
 use relievo::gpu::shaders::{ANIMATION_BUDGET, ANIMATION_GATE};
 

@@ -1,12 +1,11 @@
 //! The bound of `bounded`, on clips that are designed to break it.
 
-use relievo::animation::Choice;
 use relievo::animation::frame::reference::Crowd;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
 use relievo::animation::verify::Draw;
-use relievo::animation::{ClipSet, Frame, Gate, GateTable};
+use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate};
 use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Bone, Clip, Skeleton, Transform};
@@ -45,11 +44,11 @@ impl Run<'_> {
     ) -> f64 {
         let clips: Vec<&Clip> = self.clips.iter().collect();
         let (set, order) = (ClipSet::new(&clips).expect("fits"), Order::new(self.skeleton));
-        let bounds =
-            GateTable::of_bounds(self.skeleton, &set, &clips, self.bone_radii, self.path).expect("fits");
-        let animated_bones = GateTable::of_animated_bones(&order, &set, &clips).expect("fits");
-        let crowd = |table| Crowd::new(&order, &set, table, self.path, instances.to_vec()).expect("one path");
-        let (mut lazy, mut full) = (crowd(&bounds), crowd(&animated_bones));
+        let bounds = BoundTable::new(self.skeleton, &set, &clips, self.bone_radii, self.path).expect("fits");
+        let off = Gate::Off(AnimatedBones::new(&order, &set, &clips).expect("fits"));
+        let bounded = Gate::Bounded(bounds.clone());
+        let crowd = |gate| Crowd::new(&order, &set, gate, self.path, instances.to_vec()).expect("one path");
+        let (mut lazy, mut full) = (crowd(&bounded), crowd(&off));
         lazy.lods.iter_mut().for_each(|lod| lod.allowed = bounds.units(self.allowed));
         let (mut worst, mut elapsed) = (0.0_f64, 0.0);
         for number in 0..frames {
@@ -59,8 +58,8 @@ impl Run<'_> {
             // Sometimes by more or less than a frame, back in time, or not at all.
             let ahead = [1.0, 0.0, 2.0, 1.0, 0.3, -1.0][number as usize % 6] * seconds;
             let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
-            lazy.advance(Choice::Gate(Gate::Bounded), &frame, elapsed);
-            full.advance(Choice::Gate(Gate::Off), &frame, elapsed);
+            lazy.advance(&frame, elapsed);
+            full.advance(&frame, elapsed);
             worst =
                 worst.max(self.error(&lazy.model_matrices, &full.model_matrices) / f64::from(self.allowed));
         }

@@ -1,7 +1,7 @@
 //! Crowds on the device.
 
 use relievo::Error;
-use relievo::animation::bounds::{BoundsPass, Share, bone_radii};
+use relievo::animation::bounds::{BoundsPass, bone_radii};
 use relievo::animation::chosen::ChosenBones;
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::instance::Instance;
@@ -10,7 +10,7 @@ use relievo::animation::keyframe_cursor::KeyframeCursorPass;
 use relievo::animation::keyframe_cursor::reference::cursors;
 use relievo::animation::layers::{MAX_LAYERS, all_instances};
 use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass, Walk};
+use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
 use relievo::animation::sample::reference::sample_layers;
 use relievo::animation::sample::{SAMPLE_BOUND, SamplePass};
 use relievo::animation::{ClipSet, Layer};
@@ -118,7 +118,7 @@ fn layered_crowds_are_concatenated() {
         .flatten()
         .flatten()
         .collect();
-    let pass = LocalToModelPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
+    let pass = LocalToModelPass::new(&gpu).expect("compiled");
     let job = pass.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
     gpu.run("test", |encoder| job.record(encoder)).expect("run");
     let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
@@ -199,7 +199,7 @@ fn chosen_bones_are_those_of_the_whole() {
 fn bounds_that_do_not_fit_are_refused() {
     let (gpu, (model, set)) = (gpu(), scene());
     let crowd = Crowd::new(&gpu, &set, &plays(0, 3)).expect("fits");
-    let pass = BoundsPass::new(&gpu, Share::of(&gpu)).expect("compiled");
+    let pass = BoundsPass::new(&gpu).expect("compiled");
     let refused = |bone_radii: &[f32], room| {
         let bounds = Buffer::new(&gpu, "bounds", room).expect("allocated");
         field(pass.prepare(&gpu, &crowd, bone_radii, &bounds).expect_err("refused"))

@@ -4,14 +4,13 @@
 use relievo::Error;
 use relievo::animation::active::Active;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::decide::{DecidePass, Dispatches};
+use relievo::animation::decide::DecidePass;
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::gate::GatePass;
-use relievo::animation::gate_state::GateState;
 use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::local_to_model::{LocalToModelPass, Walk};
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::sample::SamplePass;
-use relievo::animation::{Choice, ClipSet, Gate, GateTable, ModelMatrices, Order};
+use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Gate, GateState, ModelMatrices, Order};
 use relievo::asset::Light;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
@@ -35,7 +34,8 @@ struct Rig {
     set: ClipSet,
     order: Order,
     clips: ClipBuffers,
-    table: GateTable,
+    bounded: Gate,
+    uniform: Gate,
     palette: PalettePass,
     gate: GatePass,
 }
@@ -46,13 +46,16 @@ impl Rig {
         let clips = [&model.clips[0]];
         let set = ClipSet::new(&clips).expect("one skeleton");
         let bone_radii = vec![0.1; model.skeleton.len()];
-        let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
+        let order = Order::new(&model.skeleton);
+        let table = BoundTable::new(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
+        let bounded = Gate::Bounded(table.expect("fits"));
         Self {
-            order: Order::new(&model.skeleton),
             clips: ClipBuffers::new(&gpu, &set).expect("uploaded"),
-            table: table.expect("fits"),
+            uniform: Gate::Uniform(AnimatedBones::new(&order, &set, &clips).expect("fits")),
             palette: PalettePass::new(&gpu).expect("compiled"),
-            gate: GatePass::new(&gpu, Gate::Bounded).expect("compiled"),
+            gate: GatePass::new(&gpu, &bounded).expect("compiled"),
+            order,
+            bounded,
             set,
             gpu,
             model,
@@ -69,25 +72,24 @@ impl Rig {
         Active::new(&self.gpu, &self.order, crowd).expect("fits")
     }
 
-    fn gate_state(&self, crowd: &Crowd) -> GateState {
-        GateState::new(&self.gpu, &self.table, crowd).expect("fits")
+    fn state(&self, crowd: &Crowd) -> GateState {
+        GateState::new(&self.gpu, crowd).expect("allocated")
     }
 
-    fn framed(&self, crowd: &Crowd, choice: Choice) -> Result<GatedFrame, Error> {
-        GatedFrame::new(&self.gpu, &self.model.skeleton, &self.clips, crowd, &self.table, choice)
+    fn framed(&self, crowd: &Crowd, gate: &Gate) -> Result<GatedFrame, Error> {
+        GatedFrame::new(&self.gpu, &self.model.skeleton, &self.clips, crowd, gate)
     }
 
     /// Every way to put a crowd under `bounded`.
     fn bound(&self, way: usize, crowd: &Crowd) -> Option<Result<(), Error>> {
-        let (gpu, bounded) = (&self.gpu, Choice::Gate(Gate::Bounded));
-        let (active, gate_state) = (self.active(crowd), self.gate_state(crowd));
+        let (gpu, bounded) = (&self.gpu, &self.bounded);
+        let (active, state) = (self.active(crowd), self.state(crowd));
         Some(match way {
             0 => self.framed(crowd, bounded).map(drop),
-            1 => self.gate.prepare(gpu, crowd, &gate_state, &active).map(drop),
+            1 => self.gate.prepare(gpu, crowd, &state, &active).map(drop),
             2 => {
-                let decide = DecidePass::new(gpu, bounded, Dispatches::of(gpu, bounded, &active));
-                let decide = decide.expect("compiled");
-                decide.prepare(gpu, &self.clips, crowd, &gate_state, &active).map(drop)
+                let decide = DecidePass::new(gpu, bounded, crowd).expect("compiled");
+                decide.prepare(gpu, &self.clips, crowd, &state, &active).map(drop)
             }
             3 => self.framed(&crowd.clone(), bounded).map(drop),
             _ => return None,
@@ -186,9 +188,9 @@ fn nothing_else_is_excluded() {
     let own = Buffer::new(&rig.gpu, "own", crowd.pairs()).expect("allocated");
     rig.blended(&ModelMatrices::new(&own), Blend::DualQuaternion).expect("matrices of one's own");
     let crowd = rig.crowd();
-    let uniform = rig.framed(&crowd, Choice::Gate(Gate::Uniform)).expect("prepared");
+    let uniform = rig.framed(&crowd, &rig.uniform).expect("prepared");
     rig.skinned(uniform.model_matrices(), Blend::DualQuaternion).expect("no bound is promised");
-    rig.framed(&crowd, Choice::Gate(Gate::Random)).expect("no bound is promised");
+    rig.framed(&crowd, &rig.uniform).expect("no bound is promised");
     // A refused preparation excludes nothing: here there are fewer matrices than instances need.
     let crowd = rig.crowd();
     let two = SkinFrame::new(&rig.gpu, &rig.model, 0, crowd.model_matrices(), 2, Blend::DualQuaternion);
@@ -203,10 +205,10 @@ fn lists_of_active_bones_are_of_one_crowd() {
     let (gpu, crowd, other) = (&rig.gpu, rig.crowd(), rig.crowd());
     let active = rig.active(&crowd);
     let sample = SamplePass::new(gpu, RotationPath::Slerp).expect("compiled");
-    let local_to_model = LocalToModelPass::new(gpu, Walk::of(gpu)).expect("compiled");
+    let local_to_model = LocalToModelPass::new(gpu).expect("compiled");
     let prepared = |crowd: &Crowd| {
         [
-            rig.gate.prepare(gpu, crowd, &rig.gate_state(crowd), &active).map(drop),
+            rig.gate.prepare(gpu, crowd, &rig.state(crowd), &active).map(drop),
             sample.prepare_active(gpu, &rig.clips, crowd, &active.pairs).map(drop),
             local_to_model.prepare_active(gpu, &rig.model.skeleton, crowd, &active).map(drop),
         ]

@@ -1,6 +1,5 @@
 //! The guarantees of gates, on random clips and on the creature's.
 
-use relievo::animation::Choice;
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::compact::reference::Work;
 use relievo::animation::frame::reference::Crowd;
@@ -10,7 +9,9 @@ use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::verify::{Draw, random_clips, random_skeleton};
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Lod};
+use relievo::animation::{
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable,
+};
 use relievo::asset::clip::BoneKeys;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
@@ -49,16 +50,28 @@ impl Stage {
         self.clips.iter().collect()
     }
 
-    fn bounds(&self, path: RotationPath) -> GateTable {
-        GateTable::of_bounds(&self.skeleton, &self.set, &self.clips(), &self.bone_radii, path).expect("fits")
+    fn bounds(&self, path: RotationPath) -> BoundTable {
+        BoundTable::new(&self.skeleton, &self.set, &self.clips(), &self.bone_radii, path).expect("fits")
     }
 
-    fn animated_bones(&self) -> GateTable {
-        GateTable::of_animated_bones(&self.order, &self.set, &self.clips()).expect("fits")
+    fn bounded(&self, path: RotationPath) -> Gate {
+        Gate::Bounded(self.bounds(path))
     }
 
-    fn crowd<'a>(&'a self, table: &'a GateTable, path: RotationPath, instances: &[Instance]) -> Crowd<'a> {
-        Crowd::new(&self.order, &self.set, table, path, instances.to_vec()).expect("one path")
+    fn expectations(&self, path: RotationPath) -> ExpectationTable {
+        ExpectationTable::new(&self.skeleton, &self.set, &self.clips(), &self.bone_radii, path).expect("fits")
+    }
+
+    fn animated_bones(&self) -> AnimatedBones {
+        AnimatedBones::new(&self.order, &self.set, &self.clips()).expect("fits")
+    }
+
+    fn off(&self) -> Gate {
+        Gate::Off(self.animated_bones())
+    }
+
+    fn crowd<'a>(&'a self, gate: &'a Gate, path: RotationPath, instances: &[Instance]) -> Crowd<'a> {
+        Crowd::new(&self.order, &self.set, gate, path, instances.to_vec()).expect("one path")
     }
 
     /// The largest distance between a point that follows one bone only and its position under full evaluation,
@@ -94,9 +107,10 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
         Instance::new(clip, wrap, 2.0 * draw.signed(), [1.0, -1.0, 0.25, 2.5][draw.word() as usize % 4])
     };
     let instances: Vec<Instance> = (0..6).map(|_| instance(&mut draw)).collect();
-    let (bounds, animated_bones) = (stage.bounds(path), stage.animated_bones());
-    let mut lazy = stage.crowd(&bounds, path, &instances);
-    let mut full = stage.crowd(&animated_bones, path, &instances);
+    let (bounds, off) = (stage.bounds(path), stage.off());
+    let bounded = Gate::Bounded(bounds.clone());
+    let mut lazy = stage.crowd(&bounded, path, &instances);
+    let mut full = stage.crowd(&off, path, &instances);
     lazy.lods.iter_mut().for_each(|lod| lod.allowed = times * bounds.units(allowed));
     let (mut elapsed, mut worst, mut sampled) = (0.0, 0.0_f64, 0);
     let frames = 150;
@@ -108,8 +122,8 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
             let (at, new) = (draw.word() as usize % instances.len(), instance(&mut draw));
             (lazy.instances[at], full.instances[at]) = (new, new);
         }
-        sampled += lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed).pairs.len();
-        full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
+        sampled += lazy.advance(&frame(number), elapsed).pairs.len();
+        full.advance(&frame(number), elapsed);
         worst = worst.max(stage.error(&lazy.model_matrices, &full.model_matrices));
     }
     let pairs = frames as usize * instances.len() * stage.skeleton.len();
@@ -146,15 +160,15 @@ fn a_gate_that_allows_too_much_is_seen() {
 #[test]
 fn nothing_allowed_is_nothing_missed() {
     let stage = Stage::creature();
-    let (bounds, animated_bones) = (stage.bounds(RotationPath::Slerp), stage.animated_bones());
+    let (bounded, off) = (stage.bounded(RotationPath::Slerp), stage.off());
     let instances: Vec<_> =
         (0..5).map(|at| Instance::new(at % 3, Wrap::Loop, 0.3 * at as f32, 1.0)).collect();
-    let mut lazy = stage.crowd(&bounds, RotationPath::Slerp, &instances);
-    let mut full = stage.crowd(&animated_bones, RotationPath::Slerp, &instances);
+    let mut lazy = stage.crowd(&bounded, RotationPath::Slerp, &instances);
+    let mut full = stage.crowd(&off, RotationPath::Slerp, &instances);
     for number in 0..90 {
         let elapsed = number as f32 / 60.0;
-        lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed);
-        full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
+        lazy.advance(&frame(number), elapsed);
+        full.advance(&frame(number), elapsed);
         assert!(lazy.model_matrices == full.model_matrices, "frame {number}");
     }
 }
@@ -163,11 +177,10 @@ fn nothing_allowed_is_nothing_missed() {
 #[test]
 fn bones_that_never_move_are_sampled_once() {
     let stage = Stage::creature();
-    let animated_bones = stage.animated_bones();
-    let mut crowd =
-        stage.crowd(&animated_bones, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
-    let first = crowd.advance(Choice::Gate(Gate::Off), &frame(0), 0.0);
-    let next = crowd.advance(Choice::Gate(Gate::Off), &frame(1), 0.4);
+    let off = stage.off();
+    let mut crowd = stage.crowd(&off, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
+    let first = crowd.advance(&frame(0), 0.0);
+    let next = crowd.advance(&frame(1), 0.4);
     assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
     let locals = relievo::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
     assert_eq!(
@@ -176,34 +189,31 @@ fn bones_that_never_move_are_sampled_once() {
     );
 }
 
-fn pairs_a_frame(stage: &Stage, table: &GateTable, choice: Choice, lod: Lod, frames: u32) -> Vec<Work> {
+fn pairs_a_frame(stage: &Stage, gate: &Gate, lod: Lod, frames: u32) -> Vec<Work> {
     let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
-    let mut crowd = stage.crowd(table, RotationPath::Slerp, &instances);
+    let mut crowd = stage.crowd(gate, RotationPath::Slerp, &instances);
     crowd.lods.fill(lod);
-    (0..frames).map(|number| crowd.advance(choice, &frame(number), number as f32 / 60.0)).collect()
+    (0..frames).map(|number| crowd.advance(&frame(number), number as f32 / 60.0)).collect()
 }
 
 #[test]
 fn uniform_and_random_take_their_share_of_the_bones() {
     let stage = Stage::creature();
-    let table = stage.animated_bones();
-    let moving = pairs_a_frame(&stage, &table, Choice::Gate(Gate::Off), Lod::FULL, 2)[1].pairs.len();
+    let bones = stage.animated_bones();
+    let moving = pairs_a_frame(&stage, &stage.off(), Lod::FULL, 2)[1].pairs.len();
     for fraction in [0.0, 0.1, 0.33, 0.75, 1.0] {
         let lod = Lod { omega: (fraction * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
-        for mode in [Gate::Uniform, Gate::Random] {
-            let done = pairs_a_frame(&stage, &table, Choice::Gate(mode), lod, 121);
+        for gate in [Gate::Uniform(bones.clone()), Gate::Random(bones.clone())] {
+            let done = pairs_a_frame(&stage, &gate, lod, 121);
             assert_eq!(done[0].pairs.len(), 20 * 153, "a first frame is full");
             let mean = done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / 120.0;
             let found = mean / moving as f64;
-            assert!((found - fraction).abs() < 0.01, "{mode:?}: {found} of {fraction}");
+            assert!((found - fraction).abs() < 0.01, "{}: {found} of {fraction}", gate.name());
             // Together, or each for itself.
             let is_whole = |work: &Work| work.pairs.len() == work.instances.len() * moving / 20;
             let whole = done[1..].iter().all(is_whole);
-            assert_eq!(
-                whole,
-                mode == Gate::Uniform || fraction == 0.0 || fraction == 1.0,
-                "{mode:?} {fraction}"
-            );
+            let is_together = matches!(gate, Gate::Uniform(_)) || fraction == 0.0 || fraction == 1.0;
+            assert_eq!(whole, is_together, "{} {fraction}", gate.name());
         }
     }
 }
@@ -228,12 +238,11 @@ fn skip_period_skips_once_a_period() {
     let user = vec![USER_DEFAULT; stage.skeleton.len()];
     let of = |clip| Priorities::new(&stage.skeleton, clip, true, &Weights::default(), &user).expect("fits");
     let priorities: Vec<_> = stage.clips.iter().map(of).collect();
-    let table =
-        GateTable::of_priorities(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
+    let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
     // A second, of 65,536 ticks.
-    let mode = Choice::Gate(Gate::SkipPeriod { period: 65536 });
+    let gate = Gate::SkipPeriod { table, period: 65536 };
     let fraction = |omega: u32| {
-        let done = pairs_a_frame(&stage, &table, mode, Lod { omega, ..Lod::FULL }, 241);
+        let done = pairs_a_frame(&stage, &gate, Lod { omega, ..Lod::FULL }, 241);
         done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
     };
     let moving = fraction(OMEGA_ONE);
@@ -248,14 +257,12 @@ fn skip_period_skips_once_a_period() {
 #[test]
 fn hidden_instances_cost_nothing_and_come_back_whole() {
     let stage = Stage::creature();
-    for (table, mode) in
-        [(stage.animated_bones(), Gate::Uniform), (stage.bounds(RotationPath::Slerp), Gate::Bounded)]
-    {
+    for gate in [Gate::Uniform(stage.animated_bones()), stage.bounded(RotationPath::Slerp)] {
         let instances = [Instance::new(0, Wrap::Loop, 0.0, 1.0); 2];
-        let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
+        let mut crowd = stage.crowd(&gate, RotationPath::Slerp, &instances);
         crowd.lods.fill(Lod { omega: 1000, allowed: u32::MAX >> 1, ..Lod::FULL });
         let done = |crowd: &mut Crowd<'_>, number: u32| {
-            crowd.advance(Choice::Gate(mode), &frame(number), number as f32 / 60.0).pairs.len()
+            crowd.advance(&frame(number), number as f32 / 60.0).pairs.len()
         };
         assert_eq!(done(&mut crowd, 0), 2 * 153);
         crowd.lods[0].flags = Lod::HIDDEN;
@@ -274,29 +281,24 @@ fn hidden_instances_cost_nothing_and_come_back_whole() {
 #[test]
 fn budgets_are_kept_and_spent_on_what_missed_most() {
     let stage = Stage::creature();
-    let table = GateTable::of_expectations(
-        &stage.skeleton,
-        &stage.set,
-        &stage.clips(),
-        &stage.bone_radii,
-        RotationPath::Slerp,
-    )
-    .expect("fits");
-    let moving = pairs_a_frame(&stage, &table, Choice::Budget(u32::MAX), Lod::FULL, 2)[1].pairs.len();
+    let table = stage.expectations(RotationPath::Slerp);
+    let budget = |bones| Gate::Budget { table: table.clone(), bones };
+    let moving = pairs_a_frame(&stage, &budget(u32::MAX), Lod::FULL, 2)[1].pairs.len();
     for most in [0, 1, 500, 1500] {
-        let done = pairs_a_frame(&stage, &table, Choice::Budget(most), Lod::FULL, 60);
+        let done = pairs_a_frame(&stage, &budget(most), Lod::FULL, 60);
         // Every bone that moves has missed something.
         assert!(done[1..].iter().all(|work| work.pairs.len() == (most as usize).min(moving)), "{most}");
     }
     // An instance twice as large on screen gets more samples.
     let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
-    let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
+    let gate = budget(600);
+    let mut crowd = stage.crowd(&gate, RotationPath::Slerp, &instances);
     for (at, lod) in crowd.lods.iter_mut().enumerate() {
         lod.weight = if at < 10 { 65535 } else { 20000 };
     }
     let mut near = [0; 2];
     for number in 0..60 {
-        let work = crowd.advance(Choice::Budget(600), &frame(number), number as f32 / 60.0);
+        let work = crowd.advance(&frame(number), number as f32 / 60.0);
         for pair in work.pairs.iter().filter(|_| number > 0) {
             near[usize::from(*pair >= 10 * 153)] += 1;
         }
@@ -325,51 +327,50 @@ fn ranks_are_logarithms() {
 fn tables_of_motion_hold_for_their_own_path_alone() {
     let stage = Stage::creature();
     let instances = [Instance::new(0, Wrap::Loop, 0.0, 1.0)];
-    let refused = |table: &GateTable, path| {
-        Crowd::new(&stage.order, &stage.set, table, path, instances.to_vec()).err().map(|error| {
-            assert!(error.bound.contains(&format!("{:?}", table.path().expect("has motion"))), "{error}");
+    let refused = |gate: &Gate, path| {
+        Crowd::new(&stage.order, &stage.set, gate, path, instances.to_vec()).err().map(|error| {
+            assert!(error.bound.contains(&format!("{:?}", gate.path().expect("has motion"))), "{error}");
             (error.path, error.value)
         })
     };
     let wrong = |path| Some(("crowd.path".to_owned(), format!("{path:?}")));
     let (slerp, nlerp) = (RotationPath::Slerp, RotationPath::Nlerp);
     for (path, other) in [(slerp, nlerp), (nlerp, slerp)] {
-        let (bounds, bone_radii) = (stage.bounds(path), &stage.bone_radii);
-        let expected =
-            GateTable::of_expectations(&stage.skeleton, &stage.set, &stage.clips(), bone_radii, path);
-        for table in [bounds, expected.expect("fits")] {
-            assert_eq!((refused(&table, path), refused(&table, other)), (None, wrong(other)));
+        let budget = Gate::Budget { table: stage.expectations(path), bones: 9 };
+        for gate in [stage.bounded(path), budget] {
+            assert_eq!((refused(&gate, path), refused(&gate, other)), (None, wrong(other)));
         }
     }
-    let animated_bones = stage.animated_bones();
-    assert_eq!(animated_bones.path(), None);
-    assert_eq!([slerp, nlerp].map(|path| refused(&animated_bones, path)), [None, None]);
+    let off = stage.off();
+    assert_eq!(off.path(), None);
+    assert_eq!([slerp, nlerp].map(|path| refused(&off, path)), [None, None]);
 }
 
 /// A table of another clip, and invalid radii, are refused by name.
 #[test]
 fn tables_refuse_what_does_not_fit() {
     let stage = Stage::creature();
-    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").path;
+    fn field<T: std::fmt::Debug>(result: Result<T, relievo::InputError>) -> String {
+        result.expect_err("refused").path
+    }
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
-    assert_eq!(field(GateTable::of_animated_bones(&stage.order, &stage.set, &clips[..1])), "clips.len");
+    assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &clips[..1])), "clips.len");
     // As many clips, but in another order, or another one among them.
     let slow: Vec<BoneKeys> = (0..stage.skeleton.len()).map(|_| BoneKeys::default()).collect();
     let slow = Clip::new("slow", &stage.skeleton, &slow, clips[1].duration()).expect("valid");
     for (others, wrong) in
         [([clips[1], clips[0], clips[2]], "clips[0]"), ([clips[0], &slow, clips[2]], "clips[1]")]
     {
-        assert_eq!(field(GateTable::of_animated_bones(&stage.order, &stage.set, &others)), wrong);
+        assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &others)), wrong);
     }
-    assert_eq!(field(GateTable::of_priorities(&stage.order, &stage.set, &clips, &[])), "priorities.len");
-    let bounds =
-        |bone_radii: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, bone_radii, path);
+    assert_eq!(field(PriorityTable::new(&stage.order, &stage.set, &clips, &[])), "priorities.len");
+    let bounds = |bone_radii: &[f32]| BoundTable::new(&stage.skeleton, &stage.set, &clips, bone_radii, path);
     assert_eq!(field(bounds(&[])), "bone_radii.len");
     let mut bone_radii = stage.bone_radii.clone();
     bone_radii[3] = f32::NAN;
     assert_eq!(field(bounds(&bone_radii)), "bone_radii[3]");
     let other = Stage::random(0, 7);
-    assert_eq!(field(GateTable::of_animated_bones(&other.order, &stage.set, &clips)), "skeleton.len");
-    // The reference alone, without clip clocks, has nothing to decide.
-    assert!(gate(&stage.animated_bones(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
+    assert_eq!(field(AnimatedBones::new(&other.order, &stage.set, &clips)), "skeleton.len");
+    // The reference alone, without phases, has nothing to decide.
+    assert!(gate(&stage.off(), &frame(0), &[], &[], &mut []).bits.is_empty());
 }

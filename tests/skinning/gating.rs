@@ -1,11 +1,10 @@
 //! The guarantee of the `bounded` gate for vertices: a largest error on screen.
 
-use relievo::animation::Choice;
 use relievo::animation::frame::reference::Crowd;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Projection};
+use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate, Projection};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::bone_radii;
 use relievo::asset::transform::Affine;
@@ -29,8 +28,9 @@ struct Stage {
     model: Model,
     set: ClipSet,
     order: Order,
-    bounds: GateTable,
-    animated_bones: GateTable,
+    bounds: BoundTable,
+    bounded: Gate,
+    off: Gate,
 }
 
 impl Stage {
@@ -40,13 +40,14 @@ impl Stage {
         let set = ClipSet::new(&clips).expect("one skeleton");
         let order = Order::new(&model.skeleton);
         let bone_radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
-        let bounds = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
-        let animated_bones = GateTable::of_animated_bones(&order, &set, &clips).expect("fits");
-        Self { bounds: bounds.expect("fits"), animated_bones, set, order, model }
+        let bounds = BoundTable::new(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
+        let bounds = bounds.expect("fits");
+        let off = Gate::Off(AnimatedBones::new(&order, &set, &clips).expect("fits"));
+        Self { bounded: Gate::Bounded(bounds.clone()), bounds, off, set, order, model }
     }
 
-    fn crowd<'a>(&'a self, table: &'a GateTable, instances: &[Instance]) -> Crowd<'a> {
-        Crowd::new(&self.order, &self.set, table, RotationPath::Slerp, instances.to_vec()).expect("one path")
+    fn crowd<'a>(&'a self, gate: &'a Gate, instances: &[Instance]) -> Crowd<'a> {
+        Crowd::new(&self.order, &self.set, gate, RotationPath::Slerp, instances.to_vec()).expect("one path")
     }
 
     fn vertices(&self, models: &[Affine]) -> Vec<Vertex> {
@@ -81,8 +82,8 @@ fn no_vertex_is_further_off_than_the_pixels_allow() {
             Instance::new(clip as u32 % 3, wrap, 0.3 * at as f32, [1.0, -1.0, 0.5, 1.0, 1.75][at])
         };
         let instances: Vec<_> = (0..PLACES.len()).map(|at| play(at, at + case)).collect();
-        let mut lazy = stage.crowd(&stage.bounds, &instances);
-        let mut full = stage.crowd(&stage.animated_bones, &instances);
+        let mut lazy = stage.crowd(&stage.bounded, &instances);
+        let mut full = stage.crowd(&stage.off, &instances);
         for (lod, place) in lazy.lods.iter_mut().zip(PLACES) {
             lod.allowed = stage.bounds.units(projection.allowed(place, stage.bounds.radius(), pixels));
             assert!(lod.allowed > 0, "{place:?} is too near");
@@ -95,8 +96,8 @@ fn no_vertex_is_further_off_than_the_pixels_allow() {
             }
             let ahead = [0.016, 0.05, 0.0, 0.016][case % 4];
             let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
-            lazy.advance(Choice::Gate(Gate::Bounded), &frame, elapsed);
-            full.advance(Choice::Gate(Gate::Off), &frame, elapsed);
+            lazy.advance(&frame, elapsed);
+            full.advance(&frame, elapsed);
             // Every instance once in some frames: skinning takes longest.
             let at = number as usize % PLACES.len();
             let own = at * stage.model.skeleton.len()..(at + 1) * stage.model.skeleton.len();
@@ -121,13 +122,13 @@ fn clusters_without_a_dirty_bone_stay() {
     let stage = Stage::new();
     let mesh = &stage.model.meshes[0];
     let clusters = Clusters::new(mesh, &stage.model.skins, &stage.model.skeleton).expect("fits");
-    let mut crowd = stage.crowd(&stage.bounds, &[Instance::new(2, Wrap::Loop, 0.0, 1.0)]);
+    let mut crowd = stage.crowd(&stage.bounded, &[Instance::new(2, Wrap::Loop, 0.0, 1.0)]);
     crowd.lods[0].allowed = stage.bounds.units(0.2);
     let mut before: Option<Vec<Vertex>> = None;
     let mut skipped = 0;
     for number in 0..60_u32 {
         let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 };
-        let work = crowd.advance(Choice::Gate(Gate::Bounded), &frame, number as f32 / 60.0);
+        let work = crowd.advance(&frame, number as f32 / 60.0);
         let now = stage.vertices(&crowd.model_matrices);
         let current =
             Now { updated_bones: &work.updated_bones, instance_lods: &[InstanceLod::FULL], weights: &[] };

@@ -1,7 +1,7 @@
 //! Levels of detail of a model that is larger or smaller, or was bound in other units.
 
 use relievo::animation::priority::{Priorities, Weights};
-use relievo::animation::{ClipSet, GateTable, Order};
+use relievo::animation::{BoundTable, ClipSet, ExpectationTable, Order, PriorityTable};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, Part};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::{Bone, Skeleton};
@@ -208,21 +208,21 @@ fn tables_of_models_of_any_size_are_the_same() {
         let (weights, user) = (Weights::default(), vec![0.5; skeleton.len()]);
         let priorities = [Priorities::new(skeleton, clips[0], true, &weights, &user).expect("valid")];
         let path = RotationPath::Slerp;
-        [
-            GateTable::of_priorities(&order, &set, &clips, &priorities).expect("valid"),
-            GateTable::of_bounds(skeleton, &set, &clips, &bone_radii, path).expect("valid"),
-            GateTable::of_expectations(skeleton, &set, &clips, &bone_radii, path).expect("valid"),
-        ]
+        (
+            PriorityTable::new(&order, &set, &clips, &priorities).expect("valid"),
+            BoundTable::new(skeleton, &set, &clips, &bone_radii, path).expect("valid"),
+            ExpectationTable::new(skeleton, &set, &clips, &bone_radii, path).expect("valid"),
+        )
     };
-    let wanted = tables(In::Units, 1.0);
+    let (priorities, bounds, expectations) = tables(In::Units, 1.0);
     for (fade_fraction, scale) in
         ALL.into_iter().flat_map(|fade_fraction| [1.0 / 128.0, 64.0].map(|scale| (fade_fraction, scale)))
     {
-        for (found, wanted) in tables(fade_fraction, scale).iter().zip(&wanted) {
-            assert!(found.rows() == wanted.rows(), "{:?}: {scale} in {fade_fraction:?}", wanted.kind());
-        }
-        let radius =
-            tables(fade_fraction, scale)[1].radius() / (fade_fraction.of_model(scale) * wanted[1].radius());
+        let found = tables(fade_fraction, scale);
+        assert!(found.0.rows() == priorities.rows(), "priorities: {scale} in {fade_fraction:?}");
+        assert!(found.1.rows() == bounds.rows(), "bounds: {scale} in {fade_fraction:?}");
+        assert!(found.2.rows() == expectations.rows(), "expectations: {scale} in {fade_fraction:?}");
+        let radius = found.1.radius() / (fade_fraction.of_model(scale) * bounds.radius());
         assert!((radius - 1.0).abs() < 1e-6, "{radius}: {scale} in {fade_fraction:?}");
     }
 }

@@ -8,7 +8,7 @@ use crate::Error;
 use crate::animation::keyframe_cursor::reference::cursors_into;
 use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
 use crate::animation::local_to_model::reference::local_to_model_into;
-use crate::animation::local_to_model::{LocalToModelJob, LocalToModelPass, Walk};
+use crate::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
 use crate::animation::sample::SamplePass;
 use crate::animation::sample::reference::sample_set_into;
 use crate::asset::keyframe::KeyframeCursor;
@@ -32,11 +32,7 @@ impl DeviceFrame {
         Ok(Self {
             cursor,
             sample: SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &scene.crowd)?,
-            local_to_model: LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(
-                gpu,
-                &scene.skeleton,
-                &scene.crowd,
-            )?,
+            local_to_model: LocalToModelPass::new(gpu)?.prepare(gpu, &scene.skeleton, &scene.crowd)?,
             copies: [scene.gathered(gpu, Reads::Everything)?, scene.copied(gpu)?],
         })
     }

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
 use crate::animation::bounds::reference::bounds;
-use crate::animation::bounds::{BoundsPass, Share, bone_radii};
+use crate::animation::bounds::{BoundsPass, bone_radii};
 use crate::animation::keyframe_cursor::reference::cursors;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample_set;
@@ -18,7 +18,7 @@ use crate::terrain::bench::copy_of;
 /// What the device reports.
 pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = BoundsPass::new(gpu, Share::of(gpu))?;
+    let pass = BoundsPass::new(gpu)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
         let found = cursors(&scene.set, &scene.instances, 0.4);

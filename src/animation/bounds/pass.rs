@@ -12,7 +12,7 @@ impl SeenAs<[f32; 4]> for Bounds {}
 
 /// The threads that handle the bones of one instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Share {
+pub(crate) enum Share {
     /// A workgroup, which gives enough threads to hardware.
     Workgroup,
     /// A single thread, without barriers, which are slow on adapters with few processors.
@@ -34,11 +34,19 @@ pub struct BoundsPass {
 }
 
 impl BoundsPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipeline that is fastest on this kind of adapter.
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_share(gpu, Share::of(gpu))
+    }
+
+    /// Compiles the pipeline for what takes the bones of an instance together.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub(crate) fn with_share(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
         let whole = share == Share::Whole;
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, share })
     }

@@ -25,7 +25,8 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let expected = bounds(&model_matrices, &bone_radii);
         for fraction in [Share::Workgroup, Share::Whole] {
             let output = Poisoned::<Bounds>::new(gpu, count)?;
-            let job = BoundsPass::new(gpu, fraction)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
+            let job =
+                BoundsPass::with_share(gpu, fraction)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
             let name = format!("{bones} bones × {count}, {fraction:?}");
             let comparison = output.check(gpu, |actual| {

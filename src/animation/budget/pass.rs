@@ -4,7 +4,7 @@ use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::Kind;
+use crate::animation::gate_table::{ExpectationTable, TableBuffers};
 use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM, TIES};
@@ -13,51 +13,53 @@ use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTL
 #[derive(Debug, Clone)]
 pub struct BudgetPass {
     stages: [Kernel; 5],
+    table: TableBuffers,
+    bones: u32,
 }
 
 impl BudgetPass {
-    /// Compiles the pipelines.
+    /// Uploads a table and compiles the pipelines. `bones`: the budget until a job sets another.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, table: &ExpectationTable, bones: u32) -> Result<Self, GpuError> {
         let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
-        Ok(Self { stages: [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?] })
+        let stages = [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?];
+        Ok(Self { stages, table: TableBuffers::of_expectations(gpu, table)?, bones })
     }
 
-    /// Prepares the decision from a crowd's clip clocks. The table must be one of expectations. Until it is
-    /// set, the budget is the number of all bones.
+    /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a table of another kind, and for one of another rotation path than the
-    /// crowd's; [`GpuError`].
+    /// [`crate::InputError`] for a crowd of other bones or clips than the table, for motion along another path than the
+    /// crowd's rotations take, and for another crowd than the active bones are listed of; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
-        gate_state: &GateState,
+        state: &GateState,
         active: &Active,
     ) -> Result<BudgetJob, Error> {
-        gate_state.check(Some(Kind::Expectations), crowd)?;
+        self.table.check(crowd)?;
         active.pairs.check_crowd(crowd)?;
         let params = BudgetParams {
-            instances: gate_state.lods.len() as u32,
+            instances: state.lods.len() as u32,
             bones: crowd.bones as u32,
-            words: gate_state.words,
-            stride: gate_state.stride,
-            budget: u32::MAX,
+            words: self.table.words,
+            stride: self.table.stride,
+            budget: self.bones,
         };
         let words = params.instances * params.words;
         let uniform = Uniform::new(gpu, "budget", &params)?;
         let ranks: Buffer<u32> = Buffer::new(gpu, "ranks", 17 * words as usize)?;
-        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TIES as usize + gate_state.lods.len())?;
+        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TIES as usize + state.lods.len())?;
         let group = bindings::Group {
             params: &uniform,
-            lods: gate_state.lods.slice(),
-            clip_clocks: gate_state.clip_clocks.slice(),
-            animated_bones: gate_state.animated_bones.slice(),
-            table: gate_state.table.slice(),
-            sampled: gate_state.sampled.slice(),
+            lods: state.lods.slice(),
+            clip_clocks: state.clip_clocks.slice(),
+            animated_bones: self.table.animated_bones.slice(),
+            table: self.table.rows.slice(),
+            sampled: state.sampled.slice(),
             bits: active.bits.slice(),
             ranks: ranks.slice(),
             tally: tally.slice(),

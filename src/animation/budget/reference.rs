@@ -1,23 +1,23 @@
 //! Selection of bones within a budget: the CPU reference of `kernels/animation/budget.wgsl`.
 
 use crate::animation::clip_clock::{ClipClock, UpdateReason};
-use crate::animation::gate::reference::{bits_of, motion_at, motion_between};
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate_table::ExpectationTable;
+use crate::animation::gate_table::sums::{motion_at, motion_between};
 use crate::animation::lod::Lod;
 
-/// One bit per slot of each instance, in [`GateTable::words`] words per instance. `sampled` holds, for each
-/// slot of each instance, the sum of motion when it was last sampled.
+/// One bit per slot of each instance, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words per
+/// instance. `sampled` holds, for each slot of each instance, the sum of motion when it was last sampled.
 ///
 /// # Panics
-/// With fewer levels of detail or sums than clip clocks need, and with a table without motion.
+/// If there are fewer levels of detail or sums than clip clocks need.
 pub fn budget(
-    table: &GateTable,
+    table: &ExpectationTable,
     budget: u32,
     lods: &[Lod],
     clip_clocks: &[ClipClock],
     sampled: &mut [u32],
 ) -> Vec<u32> {
-    let (bones, words) = (table.bones(), table.words());
+    let (bones, words) = (table.animated_bones().bones(), table.animated_bones().words());
     let mut chosen = Vec::new();
     let mut ranked: Vec<(u32, usize)> = Vec::new();
     let is_unlimited = budget as usize >= clip_clocks.len() * bones;
@@ -29,7 +29,7 @@ pub fn budget(
         if clip_clock.reason() != UpdateReason::Free {
             continue;
         }
-        for slot in animated_bones(table, clip_clock) {
+        for slot in table.animated_bones().slots(clip_clock.clip) {
             let missed = missed_by(table, clip_clock, slot, sampled[first + slot]);
             if missed > 0 || is_unlimited {
                 ranked.push((rank_of(missed, lod.weight), first + slot));
@@ -49,20 +49,12 @@ pub fn budget(
     bits
 }
 
-/// The slots that the clip moves.
-fn animated_bones(table: &GateTable, clip_clock: &ClipClock) -> impl Iterator<Item = usize> {
-    let (_, animated_bones) = table.record(clip_clock.clip);
-    animated_bones.iter().enumerate().flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
-}
-
-fn motion_now(table: &GateTable, clip_clock: &ClipClock, slot: usize) -> u32 {
+fn motion_now(table: &ExpectationTable, clip_clock: &ClipClock, slot: usize) -> u32 {
     motion_at(table.motion(clip_clock.row, slot), clip_clock.fraction())
 }
 
-fn missed_by(table: &GateTable, clip_clock: &ClipClock, slot: usize, last: u32) -> u32 {
-    let (periods, _) = table.record(clip_clock.clip);
-    let [period, _] = table.motion(periods, slot);
-    motion_between(motion_now(table, clip_clock, slot), last, period)
+fn missed_by(table: &ExpectationTable, clip_clock: &ClipClock, slot: usize, last: u32) -> u32 {
+    motion_between(motion_now(table, clip_clock, slot), last, table.period(clip_clock.clip, slot))
 }
 
 /// The rank, 1 to 768, by the logarithm of `missed · weight`: sixteen ranks per octave.

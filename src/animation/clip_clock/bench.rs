@@ -5,7 +5,6 @@ use crate::animation::bench::{CROWDS, Scene};
 use crate::animation::clip_clock::ClipClockPass;
 use crate::animation::clip_clock::reference::clip_clocks;
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::GateTable;
 use crate::animation::keyframe_cursor::reference::cursors;
 use crate::animation::lod::Lod;
 use crate::harness::{Backend, Bench, Contender};
@@ -20,11 +19,10 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = ClipClockPass::new(gpu)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
-        let table = GateTable::of_animated_bones(&scene.order(), &scene.set, &[&scene.clip])?;
-        let gate_state = GateState::new(gpu, &table, &scene.crowd)?;
+        let state = GateState::new(gpu, &scene.crowd)?;
         let found = cursors(&scene.set, &scene.instances, 0.4);
         scene.crowd.cursors.write(gpu, &found)?;
-        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gate_state)?;
+        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &state)?;
         job.set(gpu, 0.4, 0.0)?;
         // The kernel reads 12 words and writes 6 per instance.
         let copied = copy_of(gpu, 9 * count)?;

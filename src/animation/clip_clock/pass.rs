@@ -26,16 +26,16 @@ impl ClipClockPass {
     /// Prepares the clip clocks of a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of other clips; [`GpuError`].
+    /// [`InputError`] for clips of another set than the crowd's; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gate_state: &GateState,
+        state: &GateState,
     ) -> Result<ClipClockJob, Error> {
-        let time = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
-        let group = group(&time, clips, crowd, gate_state).bind(gpu, &self.kernel)?;
+        let time = ClipClockTime::new(gpu, clips, crowd, state)?;
+        let group = group(&time, clips, crowd, state).bind(gpu, &self.kernel)?;
         let step = Step {
             groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.params.instances),
@@ -73,14 +73,13 @@ pub(crate) struct ClipClockTime {
 }
 
 impl ClipClockTime {
-    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, gate_state: &GateState) -> Result<Self, Error> {
-        let clips_len = gate_state.animated_bones.len() / (gate_state.words as usize + 1);
-        if clips_len != clips.clips.len() {
-            let bound = format!("must be {}, those of the set", clips.clips.len());
-            return Err(InputError::new("table.clips", clips_len, bound).into());
+    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, state: &GateState) -> Result<Self, Error> {
+        if clips.clips.len() != crowd.clips {
+            let bound = format!("must be {}, as the crowd's", crowd.clips);
+            return Err(InputError::new("clips.len", clips.clips.len(), bound).into());
         }
         let params = ClipClockParams {
-            instances: gate_state.lods.len() as u32,
+            instances: state.lods.len() as u32,
             elapsed: 0.0,
             layers: crowd.layers as u32 - 1,
             ahead: 0.0,

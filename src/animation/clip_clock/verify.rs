@@ -5,11 +5,9 @@ use crate::animation::clip_clock::reference::clip_clocks;
 use crate::animation::clip_clock::{ClipClock, ClipClockPass};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::GateTable;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
-use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
@@ -25,7 +23,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = ClipClockPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let mut draw = Draw::new(case as u32 ^ 0xfa5e);
-        let (skeleton, set, mut instances) = random_crowd(case as u32, bones, count)?;
+        let (_, set, mut instances) = random_crowd(case as u32, bones, count)?;
         // Every third case has layers.
         let layer = |draw: &mut Draw| {
             Layer::new(instances.clone(), (0..count).map(|_| (draw.word() % 3) as f32 / 2.0).collect())
@@ -33,12 +31,9 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut layers: Vec<Layer> = (0..case % 3).map(|_| layer(&mut draw)).collect();
         let crowd = Crowd::layered(gpu, &set, &instances, &layers)?;
         let clips = ClipBuffers::new(gpu, &set)?;
-        let clips_of = crate::animation::verify::random_clips(case as u32, &skeleton, 3)?;
-        let table =
-            GateTable::of_animated_bones(&Order::new(&skeleton), &set, &clips_of.iter().collect::<Vec<_>>())?;
-        let mut gate_state = GateState::new(gpu, &table, &crowd)?;
+        let mut state = GateState::new(gpu, &crowd)?;
         let output = Poisoned::<ClipClock>::new(gpu, count)?;
-        gate_state.clip_clocks = output.buffer.clone();
+        state.clip_clocks = output.buffer.clone();
         let mut history = vec![[0; 4]; count];
         for (frame, elapsed) in [0.0, 0.25, 0.5, 300.0, 300.25].into_iter().enumerate() {
             let choose = |draw: &mut Draw| match draw.word() % 8 {
@@ -60,9 +55,9 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 crowd.set_weights(gpu, at + 1, &layer.weights)?;
             }
             crowd.instances.write_at(gpu, 0, &instances)?;
-            gate_state.lods.write(gpu, &lods)?;
+            state.lods.write(gpu, &lods)?;
             output.poison(gpu)?;
-            let job = pass.prepare(gpu, &clips, &crowd, &gate_state)?;
+            let job = pass.prepare(gpu, &clips, &crowd, &state)?;
             let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];
             job.set(gpu, elapsed, ahead)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
@@ -71,7 +66,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 output.check(gpu, |actual| compare::exact(&settled(actual, &expected), &expected))?;
             cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
         }
-        let kept = compare::exact(&gate_state.history.read_blocking(gpu)?, &history);
+        let kept = compare::exact(&state.history.read_blocking(gpu)?, &history);
         cases.add(format!("{bones} bones × {count}, history"), kept);
     }
     Ok(())

@@ -3,8 +3,8 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
+use crate::animation::compact::CompactPass;
 use crate::animation::compact::reference::compact;
-use crate::animation::compact::{CompactPass, Stages};
 use crate::animation::gate::reference::Chosen;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
@@ -29,7 +29,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
                 .for_each(|word| *word &= u32::MAX >> unused);
             active.bits.write(gpu, &bits)?;
             let bits = Chosen { ahead: vec![0; bits.len()], bits };
-            let job = pass.prepare(gpu, &scene.crowd, &active, Stages::of(gpu, &active))?;
+            let job = pass.prepare(gpu, &scene.crowd, &active)?;
             let chosen: u32 = bits.bits.iter().map(|word| word.count_ones()).sum();
             // The kernel reads bits twice and writes them once, and writes a pair and its slot.
             let words = (3 * bits.bits.len() + 2 * chosen as usize) / 2;

@@ -11,4 +11,6 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{CompactJob, CompactPass, Stages};
+pub(crate) use pass::Stages;
+#[cfg(feature = "gpu")]
+pub use pass::{CompactJob, CompactPass};

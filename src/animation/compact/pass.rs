@@ -9,7 +9,7 @@ use crate::shared::animation::compact::{ALL, CompactParams, SCAN, SCATTER, SPREA
 
 /// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stages {
+pub(crate) enum Stages {
     /// Three dispatches: one spreads, one sums, one lists.
     Three,
     /// One workgroup does everything. On lavapipe, where a dispatch takes 20 µs and more, this is faster for up
@@ -22,12 +22,9 @@ impl Stages {
     const FEW: usize = 2048;
 
     /// The faster choice for a crowd on this kind of adapter.
-    pub fn of(gpu: &Gpu, active: &Active) -> Self {
-        if gpu.adapter().kind == "cpu" && active.updated_bones.len() <= Self::FEW {
-            Self::One
-        } else {
-            Self::Three
-        }
+    pub fn of(gpu: &Gpu, crowd: &Crowd) -> Self {
+        let words = crowd.len() * crowd.bones.div_ceil(32);
+        if gpu.adapter().kind == "cpu" && words <= Self::FEW { Self::One } else { Self::Three }
     }
 }
 
@@ -55,7 +52,15 @@ impl CompactPass {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn prepare(
+    pub fn prepare(&self, gpu: &Gpu, crowd: &Crowd, active: &Active) -> Result<CompactJob, Error> {
+        self.prepare_stages(gpu, crowd, active, Stages::of(gpu, crowd))
+    }
+
+    /// The same in so many stages.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub(crate) fn prepare_stages(
         &self,
         gpu: &Gpu,
         crowd: &Crowd,

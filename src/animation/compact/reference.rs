@@ -1,7 +1,8 @@
 //! Lists from bits: the CPU reference of `kernels/animation/compact.wgsl`.
 
 use crate::animation::active::PAIR_AHEAD;
-use crate::animation::gate::reference::{Chosen, bits_of};
+use crate::animation::gate::reference::Chosen;
+use crate::animation::gate_table::bits_of;
 use crate::animation::order::Order;
 
 /// The work of a frame.

@@ -74,7 +74,7 @@ fn add(
     active.updated_bones = updated_bones.buffer.clone();
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
-    let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active, stages)?;
+    let job = CompactPass::new(gpu)?.prepare_stages(gpu, crowd, &active, stages)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected = compact(order, chosen);
     let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;

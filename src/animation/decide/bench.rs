@@ -4,9 +4,9 @@ use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, ELAPSED, Scene};
 use crate::animation::compact::reference::compact;
+use crate::animation::decide::DecidePass;
 use crate::animation::decide::reference::Decider;
-use crate::animation::decide::{Choice, DecidePass, Dispatches};
-use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate::Frame;
 use crate::animation::gate_state::GateState;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::harness::{Backend, Bench, Contender};
@@ -28,22 +28,21 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
 fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, count)?;
-    let (order, choice) = (scene.order(), Choice::Gate(Gate::Uniform));
-    let table = scene.table(Gate::Uniform)?;
-    let gate_state = GateState::new(gpu, &table, &scene.crowd)?;
+    let (order, gate) = (scene.order(), scene.uniform()?);
+    let state = GateState::new(gpu, &scene.crowd)?;
     let active = Active::new(gpu, &order, &scene.crowd)?;
     let lods = vec![Lod { omega, ..Lod::FULL }; count];
-    gate_state.lods.write(gpu, &lods)?;
-    let pass = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
-    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gate_state, &active)?;
+    state.lods.write(gpu, &lods)?;
+    let pass = DecidePass::new(gpu, &gate, &scene.crowd)?;
+    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame, ELAPSED)?;
-    let mut decider = Decider::new(&scene.set, &table, count);
+    let mut decider = Decider::new(&scene.set, &gate, count);
     // In the first frame no pose is stored, so nothing can be skipped.
     gpu.run("first", |encoder| job.record(encoder))?;
     let mut decide = || {
         let clip_clocks = decider.clip_clocks(&scene.instances, &[], &lods, ELAPSED, 0.0);
-        compact(&order, &decider.bits(choice, &frame, &lods, &clip_clocks))
+        compact(&order, &decider.bits(&frame, &lods, &clip_clocks))
     };
     decide();
     let chosen = decide().pairs.len();

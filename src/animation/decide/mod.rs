@@ -1,9 +1,7 @@
-//! The first half of a frame: from the time to the lists of what is sampled and concatenated. It consists of
-//! `clip_clock`, `gate` (or `budget`) and `compact`, one after another. For a gate and a small crowd all of
-//! them run in one dispatch, if a dispatch costs more than further processors gain and the device permits that
-//! many buffer bindings in a shader. Both ways leave the same contents in every buffer.
-
-use super::gate::{Frame, Gate};
+//! The first half of a frame: from the time to lists of what is sampled and concatenated. It is `clip_clock`, `gate` (or
+//! `budget`) and `compact`, one after another; for a small crowd under another gate than a budget all in one dispatch,
+//! where a dispatch costs more than other processors gain and the device lets a shader bind that many buffers. Both ways
+//! leave the same in every buffer.
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
@@ -13,21 +11,7 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 
+#[cfg(feature = "verify")]
+pub(crate) use pass::Dispatches;
 #[cfg(feature = "gpu")]
-pub use pass::{DecideJob, DecidePass, Dispatches};
-
-/// How the bones to be sampled are chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice {
-    /// By a gate.
-    Gate(Gate),
-    /// By visibility, at most this many bones of the crowd.
-    Budget(u32),
-}
-
-impl Choice {
-    /// The seconds by which bones may be sampled ahead in a frame; only [`Gate::Bounded`] does so.
-    pub fn ahead(self, frame: &Frame) -> f32 {
-        if self == Self::Gate(Gate::Bounded) { frame.ahead } else { 0.0 }
-    }
-}
+pub use pass::{DecideJob, DecidePass};

@@ -1,25 +1,23 @@
 //! The GPU pass of `kernels/animation/decide.wgsl`, and of the separate kernels that it replaces.
 
-use super::Choice;
+use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::budget::{BudgetJob, BudgetPass};
 use crate::animation::clip_clock::pass::{self as clip_clock, ClipClockTime};
 use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
 use crate::animation::compact::pass as compact;
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gate::pass::{self as gate, GateTime};
+use crate::animation::gate::pass::{self as gate_pass, Decider, GateTime, Mode, UploadedGate, no_budget};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
 use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::CompactParams;
-use crate::{Error, InputError};
 
 /// How many dispatches divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dispatches {
+pub(crate) enum Dispatches {
     /// One workgroup does all of it.
     One,
     /// At least one dispatch for each step.
@@ -28,10 +26,9 @@ pub enum Dispatches {
 
 impl Dispatches {
     /// The faster choice for a crowd on this device.
-    pub fn of(gpu: &Gpu, choice: Choice, active: &Active) -> Self {
-        let is_gate = matches!(choice, Choice::Gate(_));
-        let is_small = Stages::of(gpu, active) == Stages::One;
-        if is_gate && is_small && needed() <= available(gpu) { Self::One } else { Self::Each }
+    fn of(gpu: &Gpu, crowd: &Crowd) -> Self {
+        let is_small = Stages::of(gpu, crowd) == Stages::One;
+        if is_small && needed() <= available(gpu) { Self::One } else { Self::Each }
     }
 }
 
@@ -49,75 +46,84 @@ fn available(gpu: &Gpu) -> u32 {
 /// Decides which bones are sampled, and lists them.
 #[derive(Debug, Clone)]
 pub struct DecidePass {
-    choice: Choice,
+    /// Whether bones may be sampled ahead of their time.
+    leads: bool,
     kernels: Kernels,
 }
 
 #[derive(Debug, Clone)]
 enum Kernels {
-    One(Kernel, Gate),
+    One(UploadedGate, Kernel),
     Each(Box<Steps>),
 }
 
 #[derive(Debug, Clone)]
 struct Steps {
     clip_clock: ClipClockPass,
-    decider: Decider,
+    gate: GatePass,
     compact: CompactPass,
 }
 
-#[derive(Debug, Clone)]
-enum Decider {
-    Gate(GatePass),
-    Budget(BudgetPass, u32),
-}
-
 impl DecidePass {
-    /// Compiles the pipelines. A budget always takes one dispatch for each step.
+    /// Uploads a gate's table and compiles the pipelines that are fastest for a crowd of this size.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, gate: &Gate, crowd: &Crowd) -> Result<Self, GpuError> {
+        Self::with_dispatches(gpu, gate, Dispatches::of(gpu, crowd))
+    }
+
+    /// The same with so many dispatches. A budget takes a dispatch for each step in any case.
     ///
     /// # Errors
     /// [`GpuError::Limit`] for a single dispatch on a device that does not permit enough buffers in a shader;
     /// errors of the driver's compiler.
-    pub fn new(gpu: &Gpu, choice: Choice, dispatches: Dispatches) -> Result<Self, GpuError> {
-        let steps = |decider| {
-            let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
-            Ok::<_, GpuError>(Kernels::Each(Box::new(Steps { clip_clock, decider, compact })))
+    pub(crate) fn with_dispatches(gpu: &Gpu, gate: &Gate, dispatches: Dispatches) -> Result<Self, GpuError> {
+        let leads = matches!(gate, Gate::Bounded(_));
+        let kernels = match dispatches {
+            Dispatches::One => match Decider::new(gpu, gate, |mode| whole(gpu, mode))? {
+                Decider::Gate(gate, kernel) => Kernels::One(gate, kernel),
+                Decider::Budget(pass) => Kernels::each(gpu, GatePass::of_budget(pass))?,
+            },
+            Dispatches::Each => Kernels::each(gpu, GatePass::new(gpu, gate)?)?,
         };
-        let kernels = match (choice, dispatches) {
-            (Choice::Gate(gate), Dispatches::One) => Kernels::One(whole(gpu, gate)?, gate),
-            (Choice::Gate(gate), Dispatches::Each) => steps(Decider::Gate(GatePass::new(gpu, gate)?))?,
-            (Choice::Budget(most), _) => steps(Decider::Budget(BudgetPass::new(gpu)?, most))?,
-        };
-        Ok(Self { choice, kernels })
+        Ok(Self { leads, kernels })
     }
 
     /// Prepares the decision for a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of other clips or of a kind that the choice cannot use, and as
-    /// [`GatePass::prepare`]; [`GpuError`].
+    /// [`InputError`](crate::InputError) for clips of another set than the crowd's, and as [`GatePass::prepare`];
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gate_state: &GateState,
+        state: &GateState,
         active: &Active,
     ) -> Result<DecideJob, Error> {
         let work = match &self.kernels {
-            Kernels::One(kernel, gate) => one(kernel, *gate, gpu, clips, crowd, gate_state, active)?,
+            Kernels::One(gate, kernel) => one(gate, kernel, gpu, clips, crowd, state, active)?,
             Kernels::Each(steps) => Work::Each {
-                clip_clock: steps.clip_clock.prepare(gpu, clips, crowd, gate_state)?,
-                decision: steps.decider.prepare(gpu, crowd, gate_state, active)?,
-                lists: steps.compact.prepare(gpu, crowd, active, Stages::of(gpu, active))?,
+                clip_clock: steps.clip_clock.prepare(gpu, clips, crowd, state)?,
+                gate: steps.gate.prepare(gpu, crowd, state, active)?,
+                lists: steps.compact.prepare(gpu, crowd, active)?,
             },
         };
-        Ok(DecideJob { choice: self.choice, work })
+        Ok(DecideJob { leads: self.leads, work })
+    }
+}
+
+impl Kernels {
+    fn each(gpu: &Gpu, gate: GatePass) -> Result<Self, GpuError> {
+        let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
+        Ok(Self::Each(Box::new(Steps { clip_clock, gate, compact })))
     }
 }
 
 /// The kernel that performs all steps.
-fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
+fn whole(gpu: &Gpu, mode: Mode) -> Result<Kernel, GpuError> {
     let (needed, available) = (needed(), available(gpu));
     if needed > available {
         return Err(GpuError::Limit {
@@ -125,27 +131,28 @@ fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
             limit: "maxStorageBuffersPerShaderStage",
             needed: needed.into(),
             available: available.into(),
-            remedy: "take Dispatches::Each, as Dispatches::of would",
+            remedy: "take several dispatches, as DecidePass::new does",
         });
     }
-    bindings::decide::kernel(gpu, &bindings::decide::Constants { mode: gate::mode(gate) })
+    bindings::decide::kernel(gpu, &bindings::decide::Constants { mode: mode.constant() })
 }
 
 fn one(
+    gate: &UploadedGate,
     kernel: &Kernel,
-    gate: Gate,
     gpu: &Gpu,
     clips: &ClipBuffers,
     crowd: &Crowd,
-    gate_state: &GateState,
+    state: &GateState,
     active: &Active,
 ) -> Result<Work, Error> {
-    let clip_clock = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
-    let gate = GateTime::new(gpu, gate, crowd, gate_state, active)?;
+    let table = &gate.table;
+    let clip_clock = ClipClockTime::new(gpu, clips, crowd, state)?;
+    let gate = GateTime::new(gpu, gate, crowd, state, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
     let group = group(
-        clip_clock::group(&clip_clock, clips, crowd, gate_state),
-        gate::group(&gate, gate_state, active),
+        clip_clock::group(&clip_clock, clips, crowd, state),
+        gate_pass::group(&gate, table, state, active),
         compact::group(&compact, active),
     );
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
@@ -185,42 +192,17 @@ fn group<'a>(
     }
 }
 
-impl Decider {
-    fn prepare(
-        &self,
-        gpu: &Gpu,
-        crowd: &Crowd,
-        gate_state: &GateState,
-        active: &Active,
-    ) -> Result<Decision, Error> {
-        match self {
-            Self::Gate(pass) => Ok(Decision::Gate(pass.prepare(gpu, crowd, gate_state, active)?)),
-            Self::Budget(pass, most) => {
-                let job = pass.prepare(gpu, crowd, gate_state, active)?;
-                job.set(gpu, *most)?;
-                Ok(Decision::Budget(job))
-            }
-        }
-    }
-}
-
 /// A prepared decision: set time and frame, then record.
 #[derive(Debug, Clone)]
 pub struct DecideJob {
-    choice: Choice,
+    leads: bool,
     work: Work,
 }
 
 #[derive(Debug, Clone)]
 enum Work {
     One { clip_clock: ClipClockTime, gate: GateTime, job: Job },
-    Each { clip_clock: ClipClockJob, decision: Decision, lists: CompactJob },
-}
-
-#[derive(Debug, Clone)]
-enum Decision {
-    Gate(GateJob),
-    Budget(BudgetJob),
+    Each { clip_clock: ClipClockJob, gate: GateJob, lists: CompactJob },
 }
 
 impl DecideJob {
@@ -228,19 +210,17 @@ impl DecideJob {
     /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does.
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite; [`GpuError`].
+    /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
-        let ahead = self.choice.ahead(frame);
+        let ahead = if self.leads { frame.ahead } else { 0.0 };
         match &self.work {
             Work::One { clip_clock, gate, .. } => {
                 clip_clock.set(gpu, elapsed, ahead)?;
                 gate.set(gpu, frame)?;
             }
-            Work::Each { clip_clock, decision, .. } => {
+            Work::Each { clip_clock, gate, .. } => {
                 clip_clock.set(gpu, elapsed, ahead)?;
-                if let Decision::Gate(job) = decision {
-                    job.set(gpu, frame)?;
-                }
+                gate.set(gpu, frame)?;
             }
         }
         Ok(())
@@ -249,14 +229,11 @@ impl DecideJob {
     /// Sets the number of bones that may be sampled from the next submission on.
     ///
     /// # Errors
-    /// [`InputError`] if a gate decides; [`GpuError`].
-    pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
+    /// [`InputError`](crate::InputError) unless the gate is [`Gate::Budget`]; [`GpuError`].
+    pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
         match &self.work {
-            Work::Each { decision: Decision::Budget(job), .. } => Ok(job.set(gpu, most)?),
-            _ => {
-                Err(InputError::new("budget", most, "must be of a crowd that is under one, not a gate")
-                    .into())
-            }
+            Work::One { .. } => Err(no_budget(bones).into()),
+            Work::Each { gate, .. } => gate.set_budget(gpu, bones),
         }
     }
 
@@ -269,14 +246,69 @@ impl DecideJob {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         match &self.work {
             Work::One { job, .. } => job.dispatch(pass),
-            Work::Each { clip_clock, decision, lists } => {
+            Work::Each { clip_clock, gate, lists } => {
                 clip_clock.dispatch(pass);
-                match decision {
-                    Decision::Gate(job) => job.dispatch(pass),
-                    Decision::Budget(job) => job.dispatch(pass),
-                }
+                gate.dispatch(pass);
                 lists.dispatch(pass);
             }
         }
+    }
+}
+
+#[cfg(all(test, feature = "samples"))]
+mod tests {
+    use super::*;
+    use crate::animation::clip_set::ClipSet;
+    use crate::animation::gate_table::{AnimatedBones, ExpectationTable};
+    use crate::animation::instance::{Instance, Wrap};
+    use crate::animation::order::Order;
+    use crate::asset::keyframe::RotationPath;
+    use crate::gpu::Options;
+
+    /// One dispatch is chosen for small crowds on processors alone, and never for a budget.
+    #[test]
+    fn small_crowds_on_processors_are_decided_in_one_dispatch() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let model = crate::samples::creature().expect("valid");
+        let clips = [&model.clips[0]];
+        let set = ClipSet::new(&clips).expect("one skeleton");
+        let (skeleton, bone_radii) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
+        let bones = AnimatedBones::new(&Order::new(skeleton), &set, &clips).expect("fits");
+        let table = ExpectationTable::new(skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
+        let (gate, budget) = (Gate::Off(bones), Gate::Budget { table: table.expect("fits"), bones: 5 });
+        let has_room = available(&gpu) >= needed();
+        for (instances, is_few) in [(100, true), (1000, false)] {
+            let plays = vec![Instance::new(0, Wrap::Loop, 0.0, 1.0); instances];
+            let crowd = Crowd::new(&gpu, &set, &plays).expect("fits");
+            let is_small = is_few && gpu.adapter().is_software();
+            assert_eq!(Stages::of(&gpu, &crowd) == Stages::One, is_small);
+            for (gate, is_budget) in [(&gate, false), (&budget, true)] {
+                let pass = DecidePass::new(&gpu, gate, &crowd).expect("compiled");
+                let is_one = matches!(pass.kernels, Kernels::One(..));
+                assert_eq!(is_one, is_small && has_room && !is_budget, "{instances}, {}", gate.name());
+            }
+        }
+        // A budget has no kernel of all steps.
+        let one = DecidePass::with_dispatches(&gpu, &budget, Dispatches::One).expect("in several");
+        assert!(matches!(one.kernels, Kernels::Each(_)));
+    }
+    /// A device that another program opened, with WebGPU's default limits, is not asked for more.
+    #[test]
+    fn one_dispatch_needs_a_device_that_allows_it() {
+        let own = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+        let is_own = |adapter: &wgpu::Adapter| adapter.get_info().name == own.adapter().name;
+        let adapter = all.into_iter().find(is_own).expect("the suite's");
+        let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
+        let (device, queue) = opened.expect("a device");
+        let foreign = Gpu::from_wgpu(device, queue);
+        let model = crate::samples::creature().expect("valid");
+        let clips = [&model.clips[0]];
+        let set = ClipSet::new(&clips).expect("one skeleton");
+        let bones = AnimatedBones::new(&Order::new(&model.skeleton), &set, &clips).expect("fits");
+        let gate = Gate::Off(bones);
+        let refused = DecidePass::with_dispatches(&foreign, &gate, Dispatches::One).expect_err("too many");
+        assert!(matches!(refused, GpuError::Limit { available: 8, .. }), "{refused}");
     }
 }

@@ -1,14 +1,11 @@
 //! The decisions of a frame: the CPU reference of `kernels/animation/decide.wgsl` and of the separate kernels
 //! that it replaces.
 
-use crate::animation::budget::reference::budget;
 use crate::animation::clip_clock::ClipClock;
 use crate::animation::clip_clock::reference::clip_clocks;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::decide::Choice;
-use crate::animation::gate::Frame;
 use crate::animation::gate::reference::{Chosen, gate};
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate::{Frame, Gate};
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
@@ -18,8 +15,8 @@ use crate::animation::lod::Lod;
 pub struct Decider<'a> {
     /// The clips.
     pub set: &'a ClipSet,
-    /// The gate's table.
-    pub table: &'a GateTable,
+    /// What decides.
+    pub gate: &'a Gate,
     /// For each instance, what it played when it was last decided; see [`clip_clocks`].
     pub history: Vec<[u32; 4]>,
     /// For each slot of each instance, the sum of motion when it was last sampled; see [`gate`].
@@ -28,8 +25,8 @@ pub struct Decider<'a> {
 
 impl<'a> Decider<'a> {
     /// The state of `instances` instances before the first frame.
-    pub fn new(set: &'a ClipSet, table: &'a GateTable, instances: usize) -> Self {
-        Self { set, table, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
+    pub fn new(set: &'a ClipSet, gate: &'a Gate, instances: usize) -> Self {
+        Self { set, gate, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
     }
 
     /// The clip clocks of instances; see [`clip_clocks`].
@@ -51,16 +48,8 @@ impl<'a> Decider<'a> {
     /// lists.
     ///
     /// # Panics
-    /// If there are fewer levels of detail than clip clocks, and with a table of a kind that the choice cannot
-    /// use.
-    pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], clip_clocks: &[ClipClock]) -> Chosen {
-        let Self { table, sampled, .. } = self;
-        match choice {
-            Choice::Gate(mode) => gate(table, mode, frame, lods, clip_clocks, sampled),
-            Choice::Budget(most) => {
-                let bits = budget(table, most, lods, clip_clocks, sampled);
-                Chosen { ahead: vec![0; bits.len()], bits }
-            }
-        }
+    /// With fewer levels than phases.
+    pub fn bits(&mut self, frame: &Frame, lods: &[Lod], clip_clocks: &[ClipClock]) -> Chosen {
+        gate(self.gate, frame, lods, clip_clocks, &mut self.sampled)
     }
 }

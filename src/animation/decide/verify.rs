@@ -9,11 +9,10 @@ use crate::animation::compact::reference::compact as lists;
 use crate::animation::compact::verify as compact;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::decide::reference::Decider;
-use crate::animation::decide::{Choice, DecidePass, Dispatches};
-use crate::animation::gate::verify::table;
+use crate::animation::decide::{DecidePass, Dispatches};
+use crate::animation::gate::verify::gates;
 use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::GateTable;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::{Lod, OMEGA_ONE};
@@ -32,26 +31,23 @@ use crate::harness::poison::Poisoned;
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
     for (case, [bones, count]) in SIZES.into_iter().chain([[5, 400]]).enumerate() {
         let case = case as u32;
         let (skeleton, set, instances) = random_crowd(case, bones, count)?;
         let clips = random_clips(case, &skeleton, 3)?;
         let order = Order::new(&skeleton);
-        for mode in modes {
-            let table = table(mode, &skeleton, &set, &clips.iter().collect::<Vec<_>>())?;
+        for gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
             for dispatches in [Dispatches::One, Dispatches::Each] {
-                let name = format!("{bones} bones × {count}, {}, {dispatches:?}", mode.name());
-                let pass = match DecidePass::new(cases.gpu, Choice::Gate(mode), dispatches) {
+                let name = format!("{bones} bones × {count}, {}, {dispatches:?}", gate.name());
+                let pass = match DecidePass::with_dispatches(cases.gpu, &gate, dispatches) {
                     Err(error @ GpuError::Limit { .. }) => {
                         cases.skip(name, error.to_string());
                         continue;
                     }
                     pass => pass?,
                 };
-                let play =
-                    Play { case, name, order: &order, set: &set, table: &table, instances: &instances };
-                play.add(cases, &pass, Choice::Gate(mode))?;
+                let play = Play { case, name, order: &order, set: &set, gate: &gate, instances: &instances };
+                play.add(cases, &pass)?;
             }
         }
     }
@@ -64,7 +60,7 @@ struct Play<'a> {
     name: String,
     order: &'a Order,
     set: &'a ClipSet,
-    table: &'a GateTable,
+    gate: &'a Gate,
     instances: &'a [Instance],
 }
 
@@ -78,7 +74,7 @@ struct Outputs {
 }
 
 impl Play<'_> {
-    fn add(&self, cases: &mut Cases<'_>, pass: &DecidePass, choice: Choice) -> Result<(), Error> {
+    fn add(&self, cases: &mut Cases<'_>, pass: &DecidePass) -> Result<(), Error> {
         let (gpu, count) = (cases.gpu, self.instances.len());
         let mut draw = Draw::new(self.case ^ 0xdec1);
         let mut instances = self.instances.to_vec();
@@ -89,14 +85,14 @@ impl Play<'_> {
         };
         let crowd = Crowd::layered(gpu, self.set, &instances, &layers)?;
         let clips = ClipBuffers::new(gpu, self.set)?;
-        let mut gate_state = GateState::new(gpu, self.table, &crowd)?;
+        let mut state = GateState::new(gpu, &crowd)?;
         let mut active = Active::new(gpu, self.order, &crowd)?;
-        let outputs = self.poison(cases, &crowd, &mut gate_state, &mut active)?;
-        let mut decider = Decider::new(self.set, self.table, count);
-        let job = pass.prepare(gpu, &clips, &crowd, &gate_state, &active)?;
+        let outputs = self.poison(cases, &crowd, &mut state, &mut active)?;
+        let mut decider = Decider::new(self.set, self.gate, count);
+        let job = pass.prepare(gpu, &clips, &crowd, &state, &active)?;
         for (number, elapsed) in [0.0, 0.25, 0.5, 300.0].into_iter().enumerate() {
             let lods = random_lods(&mut draw, count, number == 0);
-            gate_state.lods.write(gpu, &lods)?;
+            state.lods.write(gpu, &lods)?;
             for instance in &mut instances {
                 instance.start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
                 instance.rate = [1.0, -1.0, 0.5][draw.word() as usize % 3];
@@ -108,12 +104,12 @@ impl Play<'_> {
             job.set(gpu, &frame, elapsed)?;
             outputs.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = decider.clip_clocks(&instances, &layers, &lods, elapsed, choice.ahead(&frame));
+            let expected = decider.clip_clocks(&instances, &layers, &lods, elapsed, self.gate.ahead(&frame));
             let name = |what| format!("{}, frame {number}: {what}", self.name);
             let same = |actual: &[ClipClock]| exact(&clip_clock::settled(actual, &expected), &expected);
             cases.add(name("clip_clocks"), outputs.clip_clocks.check(gpu, same)?);
-            let actual = gate_state.clip_clocks.read_blocking(gpu)?;
-            let chosen = decider.bits(choice, &frame, &lods, &actual[..count]);
+            let actual = state.clip_clocks.read_blocking(gpu)?;
+            let chosen = decider.bits(&frame, &lods, &actual[..count]);
             let bits = chosen.words();
             cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
             let work = lists(self.order, &chosen);
@@ -127,9 +123,9 @@ impl Play<'_> {
             );
             cases.add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work)?);
         }
-        let kept = exact(&gate_state.history.read_blocking(gpu)?, &decider.history);
+        let kept = exact(&state.history.read_blocking(gpu)?, &decider.history);
         cases.add(format!("{}: history", self.name), kept);
-        let kept = exact(&gate_state.sampled.read_blocking(gpu)?, &decider.sampled);
+        let kept = exact(&state.sampled.read_blocking(gpu)?, &decider.sampled);
         cases.add(format!("{}: sums of motion", self.name), kept);
         Ok(())
     }
@@ -138,7 +134,7 @@ impl Play<'_> {
         &self,
         cases: &Cases<'_>,
         crowd: &Crowd,
-        gate_state: &mut GateState,
+        state: &mut GateState,
         active: &mut Active,
     ) -> Result<Outputs, Error> {
         let (gpu, words) = (cases.gpu, active.updated_bones.len());
@@ -149,7 +145,7 @@ impl Play<'_> {
             pairs: Poisoned::new(gpu, crowd.pairs())?,
             instances: Poisoned::new(gpu, crowd.len())?,
         };
-        gate_state.clip_clocks = outputs.clip_clocks.buffer.clone();
+        state.clip_clocks = outputs.clip_clocks.buffer.clone();
         active.bits = outputs.bits.buffer.clone();
         active.updated_bones = outputs.updated_bones.buffer.clone();
         active.pairs.pairs = outputs.pairs.buffer.clone();

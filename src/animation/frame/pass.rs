@@ -5,12 +5,11 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::decide::{Choice, DecideJob, DecidePass, Dispatches};
-use crate::animation::gate::Frame;
+use crate::animation::decide::{DecideJob, DecidePass};
+use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::GateTable;
 use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use crate::animation::local_to_model::{LocalToModelActiveJob, LocalToModelPass, Walk};
+use crate::animation::local_to_model::{LocalToModelActiveJob, LocalToModelPass};
 use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
 use crate::animation::sample::{SampleActiveJob, SamplePass};
@@ -21,7 +20,7 @@ use crate::gpu::{Gpu, compute_pass};
 #[derive(Debug, Clone)]
 pub struct GatedFrame {
     /// The gate's state; levels of detail may be written between frames.
-    pub gate_state: GateState,
+    pub state: GateState,
     /// The work of the frame that was recorded last.
     pub active: Active,
     model_matrices: ModelMatrices,
@@ -36,33 +35,30 @@ impl GatedFrame {
     /// Rotations use the crowd's path.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, for a table of other bones or clips,
-    /// of a kind that the choice cannot use or of another rotation path than the crowd's ([`Crowd::path`]), and
-    /// for [`Gate::Bounded`](crate::animation::gate::Gate::Bounded) over model matrices that are prepared for
-    /// dual quaternions; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a crowd of another skeleton, a gate of other bones or clips, or of motion along
+    /// another path than the crowd's ([`Crowd::path`]), and for [`Gate::Bounded`] over model matrices that dual
+    /// quaternions were prepared to blend; [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        table: &GateTable,
-        choice: Choice,
+        gate: &Gate,
     ) -> Result<Self, Error> {
-        let gate_state = GateState::new(gpu, table, crowd)?;
+        let state = GateState::new(gpu, crowd)?;
         let active = Active::new(gpu, &Order::new(skeleton), crowd)?;
-        let decide = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
+        let decide = DecidePass::new(gpu, gate, crowd)?;
         let sample = match crowd.layers {
             1 => SamplePass::new(gpu, crowd.path())?,
             _ => SamplePass::layered(gpu, crowd.path())?,
         };
         Ok(Self {
-            decide: decide.prepare(gpu, clips, crowd, &gate_state, &active)?,
-            cursor: KeyframeCursorPass::new(gpu)?.prepare_active(gpu, clips, crowd, &gate_state, &active)?,
+            decide: decide.prepare(gpu, clips, crowd, &state, &active)?,
+            cursor: KeyframeCursorPass::new(gpu)?.prepare_active(gpu, clips, crowd, &state, &active)?,
             sample: sample.prepare_active(gpu, clips, crowd, &active.pairs)?,
-            local_to_model: LocalToModelPass::new(gpu, Walk::of(gpu))?
-                .prepare_active(gpu, skeleton, crowd, &active)?,
+            local_to_model: LocalToModelPass::new(gpu)?.prepare_active(gpu, skeleton, crowd, &active)?,
             model_matrices: crowd.model_matrices.with_updated_bones(&active.updated_bones),
-            gate_state,
+            state,
             active,
         })
     }
@@ -86,9 +82,9 @@ impl GatedFrame {
     /// As [`DecideJob::set_budget`].
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) if a gate decides; [`GpuError`](crate::gpu::GpuError).
-    pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
-        self.decide.set_budget(gpu, most)
+    /// [`InputError`](crate::InputError) unless the gate is [`Gate::Budget`]; [`GpuError`](crate::gpu::GpuError).
+    pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
+        self.decide.set_budget(gpu, bones)
     }
 
     /// Records the frame. Afterwards the crowd's model matrices are those of the set time.

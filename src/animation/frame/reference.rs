@@ -4,10 +4,9 @@ use crate::InputError;
 use crate::animation::active::PAIR_AHEAD;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::{Work, compact};
-use crate::animation::decide::Choice;
 use crate::animation::decide::reference::Decider;
-use crate::animation::gate::Frame;
-use crate::animation::gate_table::{GateTable, check_path};
+use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate_table::check_path;
 use crate::animation::instance::Instance;
 use crate::animation::keyframe_cursor::reference::cursors;
 use crate::animation::local_to_model::reference::local_to_model_updated;
@@ -38,15 +37,15 @@ impl<'a> Crowd<'a> {
     /// A crowd before its first frame, with the given path of rotations between keys.
     ///
     /// # Errors
-    /// [`InputError`] for a table of another rotation path.
+    /// [`InputError`] for a gate that decides by motion along another path.
     pub fn new(
         order: &'a Order,
         set: &'a ClipSet,
-        table: &'a GateTable,
+        gate: &'a Gate,
         path: RotationPath,
         instances: Vec<Instance>,
     ) -> Result<Self, InputError> {
-        check_path(table.path(), path)?;
+        check_path(gate.path(), path)?;
         let (count, pairs) = (instances.len(), instances.len() * set.bones());
         Ok(Self {
             order,
@@ -55,19 +54,19 @@ impl<'a> Crowd<'a> {
             lods: vec![Lod::FULL; count],
             locals: vec![Transform::IDENTITY; pairs],
             model_matrices: vec![AFFINE_IDENTITY; pairs],
-            decider: Decider::new(set, table, count),
+            decider: Decider::new(set, gate, count),
         })
     }
 
     /// Advances the crowd to a time, and returns the work that was done.
-    pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
+    pub fn advance(&mut self, frame: &Frame, elapsed: f32) -> Work {
         let set = self.decider.set;
-        let lead = choice.ahead(frame);
+        let lead = self.decider.gate.ahead(frame);
         let now = cursors(set, &self.instances, elapsed);
         // Without a lead nothing is sampled ahead.
         let ahead = if lead == 0.0 { Vec::new() } else { cursors(set, &self.instances, elapsed + lead) };
         let clip_clocks = self.decider.clip_clocks(&self.instances, &[], &self.lods, elapsed, lead);
-        let bits = self.decider.bits(choice, frame, &self.lods, &clip_clocks);
+        let bits = self.decider.bits(frame, &self.lods, &clip_clocks);
         let work = compact(self.order, &bits);
         let (bones, timelines) = (set.bones(), set.timelines_a_clip());
         for listed in &work.pairs {

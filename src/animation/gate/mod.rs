@@ -17,43 +17,78 @@ pub(crate) mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{GateJob, GatePass};
 
-/// How the bones to be sampled are chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+use super::gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
+use crate::asset::keyframe::RotationPath;
+
+/// How the bones to be sampled are chosen. Each gate owns the table by which it decides.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Gate {
     /// Every bone that moves is sampled.
-    Off,
-    /// A's rule (section 12.10): a bone *skips* one update per period of `priority · Ω · period` ticks. It
-    /// needs the table [`GateTable::of_priorities`](super::gate_table::GateTable::of_priorities).
+    Off(AnimatedBones),
+    /// A's rule (section 12.10): a bone *skips* one update per period of `priority · Ω · period` ticks.
     SkipPeriod {
+        /// The priorities of each clip's bones.
+        table: PriorityTable,
         /// The period in ticks for priority 1 at Ω = 1; A uses one second.
         period: u32,
     },
     /// All bones of an instance together, in a fraction Ω of the frames; engines call this update-rate
     /// optimization.
-    Uniform,
+    Uniform(AnimatedBones),
     /// A random fraction Ω of all bones, by a hash of frame and bone: on average as many as [`Gate::Uniform`].
-    Random,
+    Random(AnimatedBones),
     /// Bones that may have moved further than the instance permits, parents first. A bone that missed no more
     /// than its fraction of the remaining error budget is not sampled, and passes the rest on to the bones
     /// below it. A bone that missed more is sampled, and passes on all of it. Bones thus take turns, and one
-    /// uses what another does not. It needs the table
-    /// [`GateTable::of_bounds`](super::gate_table::GateTable::of_bounds). No point, and no vertex under linear
-    /// blending, is ever further from its place than [`Lod::allowed`](super::lod::Lod::allowed). Dual
-    /// quaternions are not convex combinations, so that the bound does not hold for them; skinning refuses them
-    /// under this gate.
-    Bounded,
+    /// uses what another does not. No point, and no vertex under linear blending, is ever further from its place
+    /// than [`Lod::allowed`](super::lod::Lod::allowed). Dual quaternions are not convex combinations, so that
+    /// the bound does not hold for them; skinning refuses them under this gate.
+    Bounded(BoundTable),
+    /// At most this many bones of the crowd, those whose stale transforms are expected to be most visible: see
+    /// [`super::budget`].
+    Budget {
+        /// The motion of each bone as it is expected to be visible.
+        table: ExpectationTable,
+        /// The largest number of bones in a frame. Instances that must be sampled in full are in any case.
+        bones: u32,
+    },
 }
 
 impl Gate {
     /// The gate's name on the command line and in reports.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
-            Self::Off => "off",
+            Self::Off(_) => "off",
             Self::SkipPeriod { .. } => "skip-period",
-            Self::Uniform => "uniform",
-            Self::Random => "random",
-            Self::Bounded => "bounded",
+            Self::Uniform(_) => "uniform",
+            Self::Random(_) => "random",
+            Self::Bounded(_) => "bounded",
+            Self::Budget { .. } => "budget",
         }
+    }
+
+    /// The bones that each clip moves.
+    pub fn animated_bones(&self) -> &AnimatedBones {
+        match self {
+            Self::Off(bones) | Self::Uniform(bones) | Self::Random(bones) => bones,
+            Self::SkipPeriod { table, .. } => table.animated_bones(),
+            Self::Bounded(table) => table.animated_bones(),
+            Self::Budget { table, .. } => table.animated_bones(),
+        }
+    }
+
+    /// The rotation path for which the motion was computed by which the gate decides; `None` without motion.
+    pub fn path(&self) -> Option<RotationPath> {
+        match self {
+            Self::Off(_) | Self::Uniform(_) | Self::Random(_) | Self::SkipPeriod { .. } => None,
+            Self::Bounded(table) => Some(table.path()),
+            Self::Budget { table, .. } => Some(table.path()),
+        }
+    }
+
+    /// The seconds by which bones may be sampled ahead in a frame; only [`Gate::Bounded`] does so.
+    pub(crate) fn ahead(&self, frame: &Frame) -> f32 {
+        if matches!(self, Self::Bounded(_)) { frame.ahead } else { 0.0 }
     }
 }
 

@@ -1,84 +1,159 @@
-//! The GPU pass of `kernels/animation/gate.wgsl`.
+//! `kernels/animation/gate.wgsl`; a budget's kernels are those of `animation::budget`.
 
 use super::{Frame, Gate};
-use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::budget::{BudgetJob, BudgetPass};
 use crate::animation::crowd::Crowd;
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::Kind;
+use crate::animation::gate_table::TableBuffers;
 use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::animation::gate as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::gate as modes;
 use crate::shared::animation::gate::GateParams;
+use crate::{Error, InputError};
 
 /// Decides which bones are sampled.
 #[derive(Debug, Clone)]
 pub struct GatePass {
-    kernel: Kernel,
-    gate: Gate,
+    decider: Decider<Kernel>,
+}
+
+/// What decides: the gate's kernel, with `K` to run it by, or a budget's.
+#[derive(Debug, Clone)]
+pub(crate) enum Decider<K> {
+    Gate(UploadedGate, K),
+    Budget(BudgetPass),
 }
 
 impl GatePass {
-    /// Compiles the pipeline of a gate.
+    /// Uploads a gate's table and compiles its pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, gate: Gate) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { mode: mode(gate) })?, gate })
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, gate: &Gate) -> Result<Self, GpuError> {
+        let kernel = |mode: Mode| bindings::kernel(gpu, &bindings::Constants { mode: mode.constant() });
+        Ok(Self { decider: Decider::new(gpu, gate, kernel)? })
+    }
+
+    /// A gate that is a budget, by its pass.
+    pub(crate) fn of_budget(pass: BudgetPass) -> Self {
+        Self { decider: Decider::Budget(pass) }
     }
 
     /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a table of a kind that the gate cannot use or of another rotation
-    /// path than the crowd's, for a crowd other than that of the active bones, and for [`Gate::Bounded`] over
-    /// model matrices that are prepared for dual quaternions; [`GpuError`].
+    /// [`InputError`] for a crowd of other bones or clips than the gate's table, for motion along another path than the
+    /// crowd's rotations take, for another crowd than the active bones are listed of, and for [`Gate::Bounded`] over
+    /// model matrices that dual quaternions were prepared to blend; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
-        gate_state: &GateState,
+        state: &GateState,
         active: &Active,
     ) -> Result<GateJob, Error> {
-        let time = GateTime::new(gpu, self.gate, crowd, gate_state, active)?;
-        let group = group(&time, gate_state, active).bind(gpu, &self.kernel)?;
+        let (gate, kernel) = match &self.decider {
+            Decider::Gate(gate, kernel) => (gate, kernel),
+            Decider::Budget(pass) => {
+                return Ok(GateJob { work: Work::Budget(pass.prepare(gpu, crowd, state, active)?) });
+            }
+        };
+        let time = GateTime::new(gpu, gate, crowd, state, active)?;
+        let group = group(&time, &gate.table, state, active).bind(gpu, kernel)?;
         let step = Step {
             groups: vec![group],
-            workgroups: self.kernel.spread(gpu, time.threads(self.gate)),
-            kernel: self.kernel.clone(),
+            workgroups: kernel.spread(gpu, time.threads(gate.mode)),
+            kernel: kernel.clone(),
         };
-        Ok(GateJob { time, job: Job::new(gpu, "animation/gate", vec![step])? })
+        let job = Job::new(gpu, "animation/gate", vec![step])?;
+        Ok(GateJob { work: Work::Gate { time, job } })
     }
 }
 
 /// What a gate decides from, and its decision.
 pub(crate) fn group<'a>(
     time: &'a GateTime,
-    gate_state: &'a GateState,
+    table: &'a TableBuffers,
+    state: &'a GateState,
     active: &'a Active,
 ) -> bindings::Group<'a> {
     bindings::Group {
-        lods: gate_state.lods.slice(),
-        clip_clocks: gate_state.clip_clocks.slice(),
+        lods: state.lods.slice(),
+        clip_clocks: state.clip_clocks.slice(),
         gate_params: &time.uniform,
-        animated_bones: gate_state.animated_bones.slice(),
-        table: gate_state.table.slice(),
-        sampled: gate_state.sampled.slice(),
-        remaining: gate_state.remaining.slice(),
+        animated_bones: table.animated_bones.slice(),
+        table: table.rows.slice(),
+        sampled: state.sampled.slice(),
+        remaining: time.remaining.slice(),
         bits: active.bits.slice(),
     }
 }
 
-/// The kernel's `MODE`.
-pub(crate) fn mode(gate: Gate) -> u32 {
-    match gate {
-        Gate::Off => modes::OFF,
-        Gate::SkipPeriod { .. } => modes::SKIP_PERIOD,
-        Gate::Uniform => modes::UNIFORM,
-        Gate::Random => modes::RANDOM,
-        Gate::Bounded => modes::BOUNDED,
+impl<K> Decider<K> {
+    /// Uploads a gate, and compiles the kernel of its mode by `kernel`, where it is not a budget.
+    pub fn new(
+        gpu: &Gpu,
+        gate: &Gate,
+        kernel: impl FnOnce(Mode) -> Result<K, GpuError>,
+    ) -> Result<Self, GpuError> {
+        let (mode, table) = match gate {
+            Gate::Off(bones) => (Mode::Off, TableBuffers::of_animated_bones(gpu, bones)?),
+            Gate::SkipPeriod { table, period } => {
+                (Mode::SkipPeriod { period: *period }, TableBuffers::of_priorities(gpu, table)?)
+            }
+            Gate::Uniform(bones) => (Mode::Uniform, TableBuffers::of_animated_bones(gpu, bones)?),
+            Gate::Random(bones) => (Mode::Random, TableBuffers::of_animated_bones(gpu, bones)?),
+            Gate::Bounded(table) => {
+                let mode = Mode::Bounded { first_above: table.first_above() };
+                (mode, TableBuffers::of_bounds(gpu, table)?)
+            }
+            Gate::Budget { table, bones } => {
+                return Ok(Self::Budget(BudgetPass::new(gpu, table, *bones)?));
+            }
+        };
+        Ok(Self::Gate(UploadedGate { mode, table }, kernel(mode)?))
     }
+}
+
+/// How the gate's kernel decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mode {
+    Off,
+    SkipPeriod {
+        period: u32,
+    },
+    Uniform,
+    Random,
+    Bounded {
+        /// The table's first row of bones above.
+        first_above: u32,
+    },
+}
+
+impl Mode {
+    /// The kernel's `MODE`.
+    pub fn constant(self) -> u32 {
+        match self {
+            Self::Off => modes::OFF,
+            Self::SkipPeriod { .. } => modes::SKIP_PERIOD,
+            Self::Uniform => modes::UNIFORM,
+            Self::Random => modes::RANDOM,
+            Self::Bounded { .. } => modes::BOUNDED,
+        }
+    }
+
+    fn is_bounded(self) -> bool {
+        matches!(self, Self::Bounded { .. })
+    }
+}
+
+/// A gate on the device.
+#[derive(Debug, Clone)]
+pub(crate) struct UploadedGate {
+    pub mode: Mode,
+    pub table: TableBuffers,
 }
 
 /// The frame of the next submission.
@@ -86,43 +161,43 @@ pub(crate) fn mode(gate: Gate) -> u32 {
 pub(crate) struct GateTime {
     params: GateParams,
     uniform: Uniform<GateParams>,
+    /// For each slot of each instance, what it leaves of the error budget, where bones below need it in the same frame.
+    remaining: Buffer<u32>,
 }
 
 impl GateTime {
     pub fn new(
         gpu: &Gpu,
-        gate: Gate,
+        gate: &UploadedGate,
         crowd: &Crowd,
-        gate_state: &GateState,
+        state: &GateState,
         active: &Active,
     ) -> Result<Self, Error> {
-        let needed = match gate {
-            Gate::SkipPeriod { .. } => Some(Kind::Priorities),
-            Gate::Bounded => Some(Kind::Bounds),
-            Gate::Off | Gate::Uniform | Gate::Random => None,
-        };
-        gate_state.check(needed, crowd)?;
+        let UploadedGate { mode, table } = gate;
+        table.check(crowd)?;
         active.pairs.check_crowd(crowd)?;
-        if gate == Gate::Bounded {
-            crowd.model_matrices.consumer().claim(Consumer::BoundedGate)?;
-        }
         let params = GateParams {
-            instances: gate_state.lods.len() as u32,
+            instances: state.lods.len() as u32,
             bones: crowd.bones as u32,
-            words: gate_state.words,
-            stride: gate_state.stride,
-            first_above: gate_state.first_above,
+            words: table.words,
+            stride: table.stride,
+            first_above: if let Mode::Bounded { first_above } = mode { *first_above } else { 0 },
             ticks: 0,
             frame_ticks: 0,
-            period: if let Gate::SkipPeriod { period } = gate { period } else { 0 },
+            period: if let Mode::SkipPeriod { period } = mode { *period } else { 0 },
             frame: 0,
         };
-        Ok(Self { params, uniform: Uniform::new(gpu, "gate", &params)? })
+        let remaining = Buffer::new(gpu, "remaining", if mode.is_bounded() { crowd.pairs() } else { 0 })?;
+        let uniform = Uniform::new(gpu, "gate", &params)?;
+        if mode.is_bounded() {
+            crowd.model_matrices.consumer().claim(Consumer::BoundedGate)?;
+        }
+        Ok(Self { params, uniform, remaining })
     }
 
     /// One thread per word of bits, or per instance if words depend on each other.
-    fn threads(&self, gate: Gate) -> u32 {
-        self.params.instances * if gate == Gate::Bounded { 1 } else { self.params.words }
+    fn threads(&self, mode: Mode) -> u32 {
+        self.params.instances * if mode.is_bounded() { 1 } else { self.params.words }
     }
 
     /// As [`GateJob::set`].
@@ -135,26 +210,56 @@ impl GateTime {
 /// A prepared decision: set the frame, then record.
 #[derive(Debug, Clone)]
 pub struct GateJob {
-    time: GateTime,
-    job: Job,
+    work: Work,
+}
+
+#[derive(Debug, Clone)]
+enum Work {
+    Gate { time: GateTime, job: Job },
+    Budget(BudgetJob),
 }
 
 impl GateJob {
-    /// Sets the frame of the next submission.
+    /// Chooses the frame of the next submission; it means nothing to a budget.
     ///
     /// # Errors
     /// [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
-        self.time.set(gpu, frame)
+        match &self.work {
+            Work::Gate { time, .. } => time.set(gpu, frame),
+            Work::Budget(_) => Ok(()),
+        }
+    }
+
+    /// Sets the number of bones that may be sampled from the next submission on.
+    ///
+    /// # Errors
+    /// [`InputError`] unless the gate is [`Gate::Budget`]; [`GpuError`].
+    pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
+        match &self.work {
+            Work::Gate { .. } => Err(no_budget(bones).into()),
+            Work::Budget(job) => Ok(job.set(gpu, bones)?),
+        }
     }
 
     /// Records the decision.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
+        match &self.work {
+            Work::Gate { job, .. } => job.record(encoder),
+            Work::Budget(job) => job.record(encoder),
+        }
     }
 
     /// Adds the decision to a compute pass that is being recorded.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.job.dispatch(pass);
+        match &self.work {
+            Work::Gate { job, .. } => job.dispatch(pass),
+            Work::Budget(job) => job.dispatch(pass),
+        }
     }
+}
+
+/// What a gate without a budget says of one.
+pub(crate) fn no_budget(bones: u32) -> InputError {
+    InputError::new("budget", bones, "must be of a crowd that is under one, not another gate")
 }

@@ -1,15 +1,16 @@
 //! Gates: the CPU reference of `kernels/animation/gate.wgsl`.
 
+use crate::animation::budget::reference::budget;
 use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::{Frame, Gate};
-use crate::animation::gate_table::{EVERYTHING, ErrorBudget, GateTable};
+use crate::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
+use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, PriorityTable, bits_of};
 use crate::animation::lod::{Lod, OMEGA_ONE};
-use crate::animation::order::NO_PARENT;
 
 /// The bones that are sampled.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chosen {
-    /// One bit per slot of each instance, in [`GateTable::words`] words per instance.
+    /// A bit for each slot of each instance: [`AnimatedBones::words`] words an instance.
     pub bits: Vec<u32>,
     /// In the same layout: those of them that are sampled ahead.
     pub ahead: Vec<u32>,
@@ -22,62 +23,101 @@ impl Chosen {
     }
 }
 
-/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was
-/// last sampled; only [`Gate::Bounded`] uses it.
+/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was sampled last;
+/// [`Gate::Bounded`] and [`Gate::Budget`] alone use it.
 ///
 /// # Panics
-/// If there are fewer levels of detail or sums than clip clocks need, and with a table of a kind that the gate
-/// cannot use.
+/// If there are fewer levels of detail or sums than clip clocks need.
 pub fn gate(
-    table: &GateTable,
-    gate: Gate,
+    gate: &Gate,
     frame: &Frame,
     lods: &[Lod],
     clip_clocks: &[ClipClock],
     sampled: &mut [u32],
 ) -> Chosen {
+    match gate {
+        Gate::Off(bones) => thinned(bones, lods, clip_clocks, |word| word.candidates),
+        Gate::SkipPeriod { table, period } => thinned(table.animated_bones(), lods, clip_clocks, |word| {
+            by_priority(table, word, frame, *period)
+        }),
+        Gate::Uniform(bones) => thinned(bones, lods, clip_clocks, |word| all_or_none(word, frame)),
+        Gate::Random(bones) => {
+            thinned(bones, lods, clip_clocks, |word| at_random(word, bones.bones(), frame))
+        }
+        Gate::Bounded(table) => bounded(table, lods, clip_clocks, sampled),
+        Gate::Budget { table, bones } => {
+            let bits = budget(table, *bones, lods, clip_clocks, sampled);
+            Chosen { ahead: vec![0; bits.len()], bits }
+        }
+    }
+}
+
+/// Up to 32 bones of an instance.
+struct Word<'a> {
+    instance: u32,
+    /// The first bone's slot.
+    first: usize,
+    lod: &'a Lod,
+    clip_clock: &'a ClipClock,
+    /// A bit for each of its bones.
+    all: u32,
+    /// The bones that may have to be sampled.
+    candidates: u32,
+}
+
+/// The words of bits of an instance.
+fn words<'a>(
+    bones: &'a AnimatedBones,
+    instance: usize,
+    lod: &'a Lod,
+    clip_clock: &'a ClipClock,
+) -> impl Iterator<Item = Word<'a>> {
+    bones.of(clip_clock.clip).iter().enumerate().map(move |(word, moving)| {
+        let first = 32 * word;
+        let all = u32::MAX >> (32 - (bones.bones() - first).min(32));
+        let candidates = if clip_clock.reason() == UpdateReason::Blended { all } else { *moving };
+        Word { instance: instance as u32, first, lod, clip_clock, all, candidates }
+    })
+}
+
+/// The decision of a gate that decides on each word alone: `thin` selects from the candidates of a word of an instance
+/// that is not at full detail.
+fn thinned(
+    bones: &AnimatedBones,
+    lods: &[Lod],
+    clip_clocks: &[ClipClock],
+    thin: impl Fn(&Word<'_>) -> u32,
+) -> Chosen {
     let mut chosen = Chosen::default();
-    let mut remaining = vec![0; table.bones()];
     for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
-        let animated_bones = table.record(clip_clock.clip).1;
-        let mut accumulated = AccumulatedMotion { left: 0, remaining: &mut remaining };
-        for (word, animated_bones) in animated_bones.iter().enumerate() {
-            let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
-            let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
-            let candidates = if clip_clock.reason() == UpdateReason::Blended { all } else { *animated_bones };
-            let mut ahead = 0;
-            chosen.bits.push(match (clip_clock.reason(), gate) {
-                (UpdateReason::Hidden, _) => 0,
-                (reason, Gate::Bounded) => {
-                    // Sums of motion describe a single clip, so they cannot be used for other reasons to
-                    // update.
-                    let forced = if reason.forces_motion() { all } else { 0 };
-                    let sampled = &mut sampled[instance * table.bones()..];
-                    let [active, early] =
-                        by_motion(table, &at, lod, candidates, forced, clip_clock, sampled, &mut accumulated);
-                    ahead = early;
-                    active
-                }
-                (UpdateReason::Forced, _) => all,
-                (_, Gate::Off) => candidates,
-                _ if lod.omega >= OMEGA_ONE => candidates,
-                (_, Gate::SkipPeriod { period }) => {
-                    by_priority(table, &at, lod, candidates, clip_clock, frame, period)
-                }
-                (_, Gate::Uniform) => all_or_none(&at, lod, candidates, frame),
-                (_, Gate::Random) => at_random(&at, lod, candidates, frame),
-            });
+        chosen.bits.extend(words(bones, instance, lod, clip_clock).map(|word| match clip_clock.reason() {
+            UpdateReason::Hidden => 0,
+            UpdateReason::Forced => word.all,
+            _ if lod.omega >= OMEGA_ONE => word.candidates,
+            _ => thin(&word),
+        }));
+    }
+    chosen.ahead.resize(chosen.bits.len(), 0);
+    chosen
+}
+
+/// The decision of [`Gate::Bounded`].
+fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled: &mut [u32]) -> Chosen {
+    let mut chosen = Chosen::default();
+    let bones = table.animated_bones();
+    let mut by_slot = vec![0; bones.bones()];
+    for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
+        let mut remaining = Remaining { last: 0, by_slot: &mut by_slot };
+        for word in words(bones, instance, lod, clip_clock) {
+            let [active, ahead] = match clip_clock.reason() {
+                UpdateReason::Hidden => [0; 2],
+                _ => by_motion(table, &word, &mut sampled[instance * bones.bones()..], &mut remaining),
+            };
+            chosen.bits.push(active);
             chosen.ahead.push(ahead);
         }
     }
     chosen
-}
-
-/// The position of a word.
-struct At {
-    instance: u32,
-    first: usize,
-    bones: usize,
 }
 
 /// Wellons' "lowbias32".
@@ -87,124 +127,88 @@ pub fn scramble(word: u32) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// The indices of the bits that are set in a word.
-pub fn bits_of(word: u32) -> impl Iterator<Item = usize> {
-    std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
-        .take_while(|rest| *rest != 0)
-        .map(|rest| rest.trailing_zeros() as usize)
-}
-
 /// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
 /// frame in which the clock passes a multiple of the period.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
 
-fn by_priority(
-    table: &GateTable,
-    at: &At,
-    lod: &Lod,
-    candidates: u32,
-    clip_clock: &ClipClock,
-    frame: &Frame,
-    longest: u32,
-) -> u32 {
-    let ticks = frame.ticks.wrapping_add(scramble(at.instance) & 0xffff);
+fn by_priority(table: &PriorityTable, word: &Word<'_>, frame: &Frame, longest: u32) -> u32 {
+    let ticks = frame.ticks.wrapping_add(scramble(word.instance) & 0xffff);
     let is_active = |bit: &usize| {
-        let level = (table.priority(clip_clock.row, at.first + bit) * lod.omega) >> 16;
+        let level = (table.priority(word.clip_clock.row, word.first + bit) * word.lod.omega) >> 16;
         let period = (longest >> 16) * level + (((longest & 0xffff) * level) >> 16);
         !is_skipped(period, ticks, frame.frame_ticks)
     };
-    bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
+    bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-fn all_or_none(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
-    let frame = frame.frame.wrapping_add(scramble(at.instance)) & 0xffff;
-    let is_due = (frame * lod.omega) >> 16 != ((frame + 1) * lod.omega) >> 16;
-    if is_due { candidates } else { 0 }
+fn all_or_none(word: &Word<'_>, frame: &Frame) -> u32 {
+    let frame = frame.frame.wrapping_add(scramble(word.instance)) & 0xffff;
+    let omega = word.lod.omega;
+    let is_due = (frame * omega) >> 16 != ((frame + 1) * omega) >> 16;
+    if is_due { word.candidates } else { 0 }
 }
 
-fn at_random(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
+fn at_random(word: &Word<'_>, bones: usize, frame: &Frame) -> u32 {
     let first = scramble(frame.frame)
-        .wrapping_add(at.instance.wrapping_mul(at.bones as u32))
-        .wrapping_add(at.first as u32);
-    let is_active = |bit: &usize| scramble(first.wrapping_add(*bit as u32)) >> 16 < lod.omega;
-    bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
+        .wrapping_add(word.instance.wrapping_mul(bones as u32))
+        .wrapping_add(word.first as u32);
+    let is_active = |bit: &usize| scramble(first.wrapping_add(*bit as u32)) >> 16 < word.lod.omega;
+    bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
 /// What is left of the error budget of an instance.
-struct AccumulatedMotion<'a> {
+struct Remaining<'a> {
     /// What the previous bone left.
-    left: u32,
+    last: u32,
     /// What bones with several children left.
-    remaining: &'a mut [u32],
+    by_slot: &'a mut [u32],
 }
 
 /// Decides for the bones of a word, parents first. A bone that missed no more than its fraction of the
 /// remaining budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is
 /// sampled, and passes on all of it; or it is sampled ahead, if its motion until then is within its fraction
 /// too. Returns the bones that are sampled, and those of them that are sampled ahead.
-#[allow(clippy::too_many_arguments, reason = "the shader's own")]
 fn by_motion(
-    table: &GateTable,
-    at: &At,
-    lod: &Lod,
-    candidates: u32,
-    asked: u32,
-    clip_clock: &ClipClock,
+    table: &BoundTable,
+    word: &Word<'_>,
     sampled: &mut [u32],
-    accumulated: &mut AccumulatedMotion<'_>,
+    remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
-    // If nothing may be missed, all bones are forced too.
+    let Word { first, lod, clip_clock, all, candidates, .. } = *word;
+    // Sums of motion describe a single clip, so they cannot be used for other reasons to update. If nothing may
+    // be missed, all candidates are sampled too.
+    let asked = if clip_clock.reason().forces_motion() { all } else { 0 };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
-    let last_row = table.record(clip_clock.clip).0;
     let [mut active, mut ahead] = [forced, 0];
     for bit in bits_of(candidates | forced) {
-        let slot = at.first + bit;
-        let [period, granted] = table.motion(last_row, slot);
-        let granted = ErrorBudget(granted);
-        if granted.starts() {
-            accumulated.left = match table.motion(table.above(clip_clock.clip), slot)[0] {
-                NO_PARENT => lod.allowed.min(EVERYTHING - 1),
-                above => accumulated.remaining[above as usize],
+        let slot = first + bit;
+        let (period, budget) = table.of_clip(clip_clock.clip, slot);
+        if budget.starts() {
+            remaining.last = match table.above(clip_clock.clip, slot) {
+                None => lod.allowed.min(EVERYTHING - 1),
+                Some(above) => remaining.by_slot[above],
             };
         }
-        let own_budget = scale_by_fraction(accumulated.left, granted.fraction());
+        let granted = scale_by_fraction(remaining.last, budget.fraction());
         let now = motion_at(table.motion(clip_clock.row, slot), clip_clock.fraction());
-        let missed = motion_between(now, sampled[slot], period) + granted.quantization_slack();
+        let missed = motion_between(now, sampled[slot], period) + budget.quantization_slack();
         let is_forced = forced >> bit & 1 != 0;
-        if is_forced || missed > own_budget {
+        if is_forced || missed > granted {
             active |= 1 << bit;
             sampled[slot] = now;
             let later = motion_at(table.motion(clip_clock.ahead_row, slot), clip_clock.ahead_fraction);
-            let early = motion_between(later, now, period) + granted.quantization_slack();
-            if clip_clock.is_ahead() && !is_forced && early <= own_budget {
+            let early = motion_between(later, now, period) + budget.quantization_slack();
+            if clip_clock.is_ahead() && !is_forced && early <= granted {
                 ahead |= 1 << bit;
                 sampled[slot] = later;
-                accumulated.left -= early;
+                remaining.last -= early;
             }
         } else {
-            accumulated.left -= missed;
+            remaining.last -= missed;
         }
-        accumulated.remaining[slot] = accumulated.left;
+        remaining.by_slot[slot] = remaining.last;
     }
     [active, ahead]
-}
-
-/// `value · fraction / 65536`; the fraction is at most 65536.
-pub fn scale_by_fraction(value: u32, fraction: u32) -> u32 {
-    ((u64::from(value) * u64::from(fraction)) >> 16) as u32
-}
-
-/// The sum of motion at a time, given the sum at a row's start, its rise to the next row, and the fraction of
-/// the way there.
-pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
-    start.wrapping_add(scale_by_fraction(rise, fraction))
-}
-
-/// The smaller difference of two sums: directly, or across the clip's end. `period` is the sum of the whole
-/// clip.
-pub fn motion_between(now: u32, last: u32, period: u32) -> u32 {
-    let direct = now.abs_diff(last);
-    direct.min(period.max(direct) - direct)
 }

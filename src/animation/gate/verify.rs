@@ -8,7 +8,7 @@ use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::gate;
 use crate::animation::gate::{Frame, Gate, GatePass};
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::GateTable;
+use crate::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::Order;
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
@@ -26,68 +26,61 @@ use crate::harness::{Cases, compare};
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let modes = [Gate::Off, Gate::SkipPeriod { period: 65536 }, Gate::Uniform, Gate::Random, Gate::Bounded];
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let case = case as u32;
         let (skeleton, set, instances) = random_crowd(case, bones, count)?;
         let clips = random_clips(case, &skeleton, 3)?;
         let crowd = Crowd::new(cases.gpu, &set, &instances)?;
-        for mode in modes {
-            let table = table(mode, &skeleton, &set, &clips.iter().collect::<Vec<_>>())?;
-            add(cases, case, mode, &Order::new(&skeleton), &set, &crowd, &table)?;
+        for gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
+            add(cases, case, &gate, &Order::new(&skeleton), &set, &crowd)?;
         }
     }
     Ok(())
 }
 
-pub(crate) fn table(
-    mode: Gate,
-    skeleton: &Skeleton,
-    set: &ClipSet,
-    clips: &[&Clip],
-) -> Result<GateTable, Error> {
+/// Every gate but a budget, of clips.
+pub(crate) fn gates(skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Result<[Gate; 5], Error> {
     let order = Order::new(skeleton);
     let weights = Weights::default();
     let user = vec![USER_DEFAULT; skeleton.len()];
-    Ok(match mode {
-        Gate::SkipPeriod { .. } => {
-            let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
-            let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-            GateTable::of_priorities(&order, set, clips, &priorities)?
-        }
-        Gate::Bounded => {
-            GateTable::of_bounds(skeleton, set, clips, &vec![0.5; skeleton.len()], RotationPath::Slerp)?
-        }
-        _ => GateTable::of_animated_bones(&order, set, clips)?,
-    })
+    let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
+    let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let bones = AnimatedBones::new(&order, set, clips)?;
+    let bone_radii = vec![0.5; skeleton.len()];
+    Ok([
+        Gate::Off(bones.clone()),
+        Gate::SkipPeriod { table: PriorityTable::new(&order, set, clips, &priorities)?, period: 65536 },
+        Gate::Uniform(bones.clone()),
+        Gate::Random(bones),
+        Gate::Bounded(BoundTable::new(skeleton, set, clips, &bone_radii, RotationPath::Slerp)?),
+    ])
 }
 
 fn add(
     cases: &mut Cases<'_>,
     case: u32,
-    mode: Gate,
+    mode: &Gate,
     order: &Order,
     set: &ClipSet,
     crowd: &Crowd,
-    table: &GateTable,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let count = crowd.len();
-    let mut gate_state = GateState::new(gpu, table, crowd)?;
+    let mut state = GateState::new(gpu, crowd)?;
     let mut active = Active::new(gpu, order, crowd)?;
-    let output = Poisoned::<u32>::new(gpu, 2 * count * table.words())?;
+    let output = Poisoned::<u32>::new(gpu, 2 * count * order.words())?;
     active.bits = output.buffer.clone();
     let sums = Poisoned::<u32>::new(gpu, crowd.pairs())?;
-    gate_state.sampled = sums.buffer.clone();
+    state.sampled = sums.buffer.clone();
     let pass = GatePass::new(gpu, mode)?;
-    let job = pass.prepare(gpu, crowd, &gate_state, &active)?;
+    let job = pass.prepare(gpu, crowd, &state, &active)?;
     let mut draw = Draw::new(case ^ 0x9a7e);
     let mut sampled = vec![0; crowd.pairs()];
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
         let (lods, clip_clocks) = random_state(&mut draw, set, count, number == 0);
-        gate_state.lods.write(gpu, &lods)?;
-        gate_state.clip_clocks.write(gpu, &clip_clocks)?;
+        state.lods.write(gpu, &lods)?;
+        state.clip_clocks.write(gpu, &clip_clocks)?;
         let frame = Frame {
             ticks,
             frame_ticks: 1092,
@@ -97,7 +90,7 @@ fn add(
         job.set(gpu, &frame)?;
         output.poison(gpu)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
-        let expected = gate(table, mode, &frame, &lods, &clip_clocks, &mut sampled).words();
+        let expected = gate(mode, &frame, &lods, &clip_clocks, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
         cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
     }

@@ -2,10 +2,10 @@
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::clip_set::{ClipSet, Timeline};
+use crate::animation::clip_set::Timeline;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
-use crate::animation::instance::{Instance, check_elapsed};
+use crate::animation::instance::check_elapsed;
 use crate::asset::keyframe::KeyframeCursor;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
@@ -61,16 +61,13 @@ impl KeyframeCursorPass {
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gate_state: &GateState,
+        state: &GateState,
         active: &Active,
     ) -> Result<KeyframeCursorJob, Error> {
         let params = KeyframeCursorParams::new(clips, crowd);
         let uniform = Uniform::new(gpu, "keyframe cursor", &params)?;
-        let listed = Listed {
-            instances: &active.instances,
-            dispatches: &active.dispatches,
-            history: &gate_state.history,
-        };
+        let listed =
+            Listed { instances: &active.instances, dispatches: &active.dispatches, history: &state.history };
         let group = bind(&self.compacted, gpu, &uniform, clips, crowd, &listed)?;
         let offset = 16 * (active.dispatches.len() as u64 - 1);
         let arguments = active.dispatches.raw();
@@ -156,16 +153,5 @@ impl KeyframeCursorJob {
             Work::All(job) => job.dispatch(pass),
             Work::Active(job) => job.dispatch(pass),
         }
-    }
-}
-
-impl Crowd {
-    /// Allocates a crowd of instances of a set's clips, with one layer.
-    ///
-    /// # Errors
-    /// [`crate::InputError`] for no instances, and for instances of a clip that the set does not have;
-    /// [`GpuError`].
-    pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
-        Self::layered(gpu, set, instances, &[])
     }
 }

@@ -4,7 +4,6 @@ use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
-use crate::animation::gate_table::GateTable;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::animation::keyframe_cursor::reference::{cursors, inside_clip};
@@ -12,7 +11,7 @@ use crate::animation::keyframe_cursor::{KEYFRAME_CURSOR_BOUND, KeyframeCursorPas
 use crate::animation::layers::{Layer, all_instances};
 use crate::animation::order::Order;
 use crate::animation::verify::edges::{ELAPSED, edges};
-use crate::animation::verify::{SIZES, random_clips, random_crowd, random_instances};
+use crate::animation::verify::{SIZES, random_crowd, random_instances};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
@@ -67,9 +66,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
         let output = Poisoned::<KeyframeCursor>::new(gpu, rooms)?;
         crowd.cursors = output.buffer.clone();
         let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
-        let model_clips = random_clips(case as u32, &skeleton, 3)?;
-        let table = GateTable::of_animated_bones(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
-        let gate_state = GateState::new(gpu, &table, &crowd)?;
+        let state = GateState::new(gpu, &crowd)?;
         let active = Active::new(gpu, &order, &crowd)?;
         // Every third instance is listed, and the times that the gate saw differ from the clock.
         let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
@@ -89,8 +86,8 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
             .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
             .collect();
         let history = seen.iter().zip(&ahead).map(|(now, later)| [1, 0, now.to_bits(), later.to_bits()]);
-        gate_state.history.write(gpu, &history.collect::<Vec<_>>())?;
-        let job = pass.prepare_active(gpu, &clips, &crowd, &gate_state, &active)?;
+        state.history.write(gpu, &history.collect::<Vec<_>>())?;
+        let job = pass.prepare_active(gpu, &clips, &crowd, &state, &active)?;
         job.set(gpu, 0.5)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let all = all_instances(&base, &layers);

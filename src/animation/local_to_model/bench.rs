@@ -7,8 +7,8 @@ use crate::animation::bench::frame::{DeviceFrame, PlainFrame, ReferenceFrame};
 use crate::animation::bench::plain_soa::PlainSoa;
 use crate::animation::bench::{CROWDS, Scene, host};
 use crate::animation::crowd::packed;
+use crate::animation::local_to_model::LocalToModelPass;
 use crate::animation::local_to_model::reference::local_to_model_into;
-use crate::animation::local_to_model::{LocalToModelPass, Walk};
 use crate::animation::sample::reference::sample_set;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::AFFINE_IDENTITY;
@@ -33,7 +33,7 @@ fn alone(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     let (pairs, bones) = (scene.pairs(), scene.skeleton.len());
     let locals = sample_set(&scene.set, &scene.instances, &scene.cursors, RotationPath::Slerp);
     scene.crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
-    let job = LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &scene.skeleton, &scene.crowd)?;
+    let job = LocalToModelPass::new(gpu)?.prepare(gpu, &scene.skeleton, &scene.crowd)?;
     let copied = scene.copied(gpu)?;
     let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
     let soa = scene.cursors.iter().map(|cursor| {

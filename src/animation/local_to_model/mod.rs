@@ -18,8 +18,10 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 
+#[cfg(feature = "verify")]
+pub(crate) use pass::Walk;
 #[cfg(feature = "gpu")]
-pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass, Walk};
+pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass};
 
 /// The largest difference allowed between a component and the reference, on any device, relative to the number
 /// of bones of the longest chain times the largest component (at least 1). A local matrix carries 10ε of its

@@ -15,7 +15,7 @@ impl SeenAs<[u32; 2]> for Chain {}
 
 /// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Walk {
+pub(crate) enum Walk {
     /// One thread per chain and one dispatch per level of chains, which gives enough threads to hardware.
     Levels,
     /// One thread per instance, in one dispatch: the bones of an instance stay in a processor's cache. On
@@ -46,11 +46,19 @@ pub type LocalToModelJob = Job;
 pub type LocalToModelActiveJob = IndirectJob;
 
 impl LocalToModelPass {
-    /// Compiles the pipelines.
+    /// Compiles the pipelines that are fastest on this kind of adapter.
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_walk(gpu, Walk::of(gpu))
+    }
+
+    /// Compiles the pipelines of a walk.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub(crate) fn with_walk(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
         let whole = walk == Walk::Whole;
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { whole, compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)?, walk })

@@ -54,7 +54,7 @@ fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count:
     for walk in [Walk::Levels, Walk::Whole] {
         let output = Poisoned::<Affine>::new(gpu, bones * count)?;
         crowd.model_matrices = ModelMatrices::new(&output.buffer);
-        let job = LocalToModelPass::new(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
+        let job = LocalToModelPass::with_walk(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let comparison =
             output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound))?;
@@ -105,8 +105,8 @@ fn add_updated(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usi
         crowd.model_matrices = ModelMatrices::new(&output.buffer);
         let active = Active::new(gpu, &order, &crowd)?;
         active.bits.write(gpu, &chosen.bits)?;
-        let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active, Stages::Three)?;
-        let job = LocalToModelPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
+        let lists = CompactPass::new(gpu)?.prepare_stages(gpu, &crowd, &active, Stages::Three)?;
+        let job = LocalToModelPass::with_walk(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
         gpu.run("verify", |encoder| {
             lists.record(encoder);
             job.record(encoder);

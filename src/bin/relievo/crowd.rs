@@ -31,7 +31,7 @@ use crate::terrain::Backend;
 use gates::Mode;
 use plan::Plan;
 #[cfg(feature = "gpu")]
-use {relievo::animation::Choice, skinning::Drawn};
+use skinning::Drawn;
 
 /// Files of `--scene`, besides pictures.
 const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];

@@ -1,5 +1,5 @@
-//! Slerps of several bones at once, component by component, so that compilers vectorize them. Each result
-//! equals that of [`super::slerp`] to the bit.
+//! The reference's slerp, in the kernel's order, of one bone or of several at once: component by component, so that
+//! compilers vectorize it. Every lane is computed alike, whatever their number.
 
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::transform::Transform;
@@ -59,9 +59,10 @@ impl Arcs {
     }
 }
 
-/// Computes [`super::slerp`] in each lane.
-fn slerps(a: &[[f32; LANES]; 4], b: &[[f32; LANES]; 4], t: &[f32; LANES]) -> [[f32; LANES]; 4] {
-    let each = |value: &dyn Fn(usize) -> f32| -> [f32; LANES] { std::array::from_fn(value) };
+/// In each lane the rotation at the fraction `t` of the way from `a` to `b`: see [`super::slerp`]. The arc is halved: from
+/// the nearer end towards the unit quaternion in the middle, `(a + b)·inverse`.
+pub(super) fn slerps<const N: usize>(a: &[[f32; N]; 4], b: &[[f32; N]; 4], t: &[f32; N]) -> [[f32; N]; 4] {
+    let each = |value: &dyn Fn(usize) -> f32| -> [f32; N] { std::array::from_fn(value) };
     let cosine = each(&|l| a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l] + a[3][l] * b[3][l]);
     let inverse = each(&|l| 1.0 / (2.0 + 2.0 * cosine[l]).sqrt());
     let less_one = each(&|l| (1.0 + cosine[l]) * inverse[l] - 1.0);
@@ -79,10 +80,10 @@ fn slerps(a: &[[f32; LANES]; 4], b: &[[f32; LANES]; 4], t: &[f32; LANES]) -> [[f
 }
 
 /// `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
-fn weights(t: &[f32; LANES], less_one: &[f32; LANES]) -> [f32; LANES] {
-    let mut sums = [1.0; LANES];
+fn weights<const N: usize>(t: &[f32; N], less_one: &[f32; N]) -> [f32; N] {
+    let mut sums = [1.0; N];
     for (u, v) in SLERP_U.iter().zip(SLERP_V).rev() {
-        for l in 0..LANES {
+        for l in 0..N {
             sums[l] = 1.0 + (u * (t[l] * t[l]) - v) * less_one[l] * sums[l];
         }
     }

@@ -3,7 +3,6 @@
 use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
 use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, all_instances};
-use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::clip::{Clip, Interpolation, Part, Track};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
@@ -104,22 +103,8 @@ fn normalized(q: [f32; 4]) -> [f32; 4] {
 /// The rotation at the fraction `t` of the way from `a` to `b`, both unit, with `dot(a, b) ≥ 0` as clips store
 /// them.
 pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
-    let cosine = dot(a, b);
-    // The arc is halved: from the nearer end towards the unit quaternion in the middle, (a + b)·inverse.
-    let inverse = 1.0 / (2.0 + 2.0 * cosine).sqrt();
-    let less_one = (1.0 + cosine) * inverse - 1.0;
-    let (nearer, farther) = if t < 0.5 { (a, b) } else { (b, a) };
-    let way = if t < 0.5 { 2.0 * t } else { 2.0 - 2.0 * t };
-    let of_middle = slerp_weight(way, less_one) * inverse;
-    let of_nearer = slerp_weight(1.0 - way, less_one) + of_middle;
-    std::array::from_fn(|i| nearer[i] * of_nearer + farther[i] * of_middle)
-}
-
-/// `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
-fn slerp_weight(t: f32, less_one: f32) -> f32 {
-    let square = t * t;
-    let terms = SLERP_U.iter().zip(SLERP_V).rev();
-    t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * square - v) * less_one * sum)
+    arcs::slerps(&a.map(|component| [component]), &b.map(|component| [component]), &[t])
+        .map(|[component]| component)
 }
 
 /// Every bone's local transform of every instance, at their cursors, as the kernel computes it.

@@ -4,9 +4,9 @@ use relievo::Error;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass, Walk};
+use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
 use relievo::animation::sample::SamplePass;
-use relievo::animation::{Choice, GateTable, Lod};
+use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
 use relievo::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
 
@@ -40,19 +40,13 @@ pub(super) struct Full {
 }
 
 impl Device {
-    pub fn new(
-        gpu: &Gpu,
-        stage: &Stage<'_>,
-        table: &GateTable,
-        choice: Choice,
-        lods: &[Lod],
-    ) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, stage: &Stage<'_>, gate: &Gate, lods: &[Lod]) -> Result<Self, Error> {
         let clips = ClipBuffers::new(gpu, &stage.set)?;
         Ok(Self {
             gpu: gpu.clone(),
             timer: Timer::new(gpu)?,
             rate: stage.plan.rate,
-            gated: Gated::new(gpu, stage, &clips, table, choice, lods)?,
+            gated: Gated::new(gpu, stage, &clips, gate, lods)?,
             full: Full::new(gpu, stage, &clips)?,
             stale: Vec::new(),
             fresh: Vec::new(),
@@ -146,14 +140,13 @@ impl Gated {
         gpu: &Gpu,
         stage: &Stage<'_>,
         clips: &ClipBuffers,
-        table: &GateTable,
-        choice: Choice,
+        gate: &Gate,
         lods: &[Lod],
     ) -> Result<Self, Error> {
         let skeleton = &stage.plan.model.skeleton;
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
-        let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, table, choice)?;
-        frame.gate_state.lods.write(gpu, lods)?;
+        let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, gate)?;
+        frame.state.lods.write(gpu, lods)?;
         Ok(Self { crowd, frame })
     }
 }
@@ -164,11 +157,7 @@ impl Full {
         Ok(Self {
             place: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
-            local_to_model: LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(
-                gpu,
-                &stage.plan.model.skeleton,
-                &crowd,
-            )?,
+            local_to_model: LocalToModelPass::new(gpu)?.prepare(gpu, &stage.plan.model.skeleton, &crowd)?,
             crowd,
         })
     }

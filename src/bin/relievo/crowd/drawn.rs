@@ -3,8 +3,7 @@
 
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
-use relievo::animation::Choice;
-use relievo::animation::{GateTable, Lod};
+use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
 use relievo::asset::Light;
 use relievo::gpu::{Buffer, Gpu, TimedBy, Timer};
@@ -108,10 +107,10 @@ impl<'a> Drawing<'a> {
         gpu: &'a Gpu,
         stage: &'a Stage<'a>,
         scene: &'a Scene,
-        (table, choice, lods): (&GateTable, Choice, &[Lod]),
+        (gate, lods): (&Gate, &[Lod]),
         ways: &[Way],
     ) -> Result<Self, Error> {
-        let device = Device::new(gpu, stage, table, choice, lods)?;
+        let device = Device::new(gpu, stage, gate, lods)?;
         let world = World::new(gpu, stage, scene)?;
         Ok(Self {
             looks: ways.iter().map(|way| world.look(&device, *way)).collect::<Result<_, Error>>()?,

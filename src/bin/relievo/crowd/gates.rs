@@ -2,10 +2,9 @@
 
 use clap::ValueEnum;
 use relievo::InputError;
-use relievo::animation::Choice;
 use relievo::animation::order::Order;
 use relievo::animation::priority::{self, USER_DEFAULT, Weights};
-use relievo::animation::{ClipSet, Frame, Gate, GateTable};
+use relievo::animation::{AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, PriorityTable};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Clip, Skeleton};
 use serde::Serialize;
@@ -40,18 +39,6 @@ impl Mode {
             Self::Bounded => "bounded",
         }
     }
-
-    /// The gate itself; `period` in seconds, `budget` in bones.
-    pub fn choice(self, period: f64, budget: u32) -> Choice {
-        Choice::Gate(match self {
-            Self::Budget => return Choice::Budget(budget),
-            Self::Off => Gate::Off,
-            Self::SkipPeriod => Gate::SkipPeriod { period: (period * f64::from(TICKS)).round() as u32 },
-            Self::Uniform => Gate::Uniform,
-            Self::Random => Gate::Random,
-            Self::Bounded => Gate::Bounded,
-        })
-    }
 }
 
 /// What gates are made from.
@@ -66,20 +53,26 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// What a gate decides by.
-    pub fn table(&self, mode: Mode) -> Result<GateTable, InputError> {
+    /// The gate itself, with its table; `period` in seconds, `budget` in bones.
+    pub fn gate(&self, mode: Mode, period: f64, budget: u32) -> Result<Gate, InputError> {
         let Self { skeleton, clip, order, set, bone_radii, weights } = self;
         let clips = [*clip];
-        match mode {
-            Mode::Off | Mode::Uniform | Mode::Random => GateTable::of_animated_bones(order, set, &clips),
+        Ok(match mode {
+            Mode::Off => Gate::Off(AnimatedBones::new(order, set, &clips)?),
+            Mode::Uniform => Gate::Uniform(AnimatedBones::new(order, set, &clips)?),
+            Mode::Random => Gate::Random(AnimatedBones::new(order, set, &clips)?),
             Mode::SkipPeriod => {
                 let user = vec![USER_DEFAULT; skeleton.len()];
                 let priorities = priority::Priorities::new(skeleton, clip, true, weights, &user)?;
-                GateTable::of_priorities(order, set, &clips, &[priorities])
+                let table = PriorityTable::new(order, set, &clips, &[priorities])?;
+                Gate::SkipPeriod { table, period: (period * f64::from(TICKS)).round() as u32 }
             }
-            Mode::Budget => GateTable::of_expectations(skeleton, set, &clips, bone_radii, PATH),
-            Mode::Bounded => GateTable::of_bounds(skeleton, set, &clips, bone_radii, PATH),
-        }
+            Mode::Budget => {
+                let table = ExpectationTable::new(skeleton, set, &clips, bone_radii, PATH)?;
+                Gate::Budget { table, bones: budget }
+            }
+            Mode::Bounded => Gate::Bounded(BoundTable::new(skeleton, set, &clips, bone_radii, PATH)?),
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use relievo::Error;
-use relievo::animation::{GateTable, lod::OMEGA_ONE};
+use relievo::animation::{Gate, lod::OMEGA_ONE};
 use relievo::files::Staged;
 use serde::Serialize;
 
@@ -71,7 +71,7 @@ pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
         clip: plan.clip.name(),
         instances: plan.instances,
         bones: stage.set.bones(),
-        moving_bones: moving_bones(&stage.table(Mode::Off)?),
+        moving_bones: moving_bones(&stage.gate(Mode::Off, 0)?),
         frames: plan.frames,
         rate: plan.rate,
         period: plan.period,
@@ -115,17 +115,20 @@ fn parameters(mode: Mode) -> Vec<f64> {
 }
 
 fn points(stage: &Stage<'_>) -> Result<Vec<Point>, Error> {
-    let animated_bones = stage.table(Mode::Off)?;
+    let off = stage.gate(Mode::Off, 0)?;
     let scene = stage.line_up();
-    let tables = MODES.map(|mode| stage.table(mode));
+    let moving = stage.instances.len() * moving_bones(&off);
     let mut settings = Vec::new();
-    for (mode, table) in MODES.into_iter().zip(tables) {
-        let table = std::sync::Arc::new(table?);
-        settings.extend(parameters(mode).into_iter().map(|parameter| (mode, parameter, table.clone())));
+    for mode in MODES {
+        let gate = stage.gate(mode, 0)?;
+        settings.extend(parameters(mode).into_iter().map(|parameter| {
+            let bones = (parameter * moving as f64).round() as u32;
+            (mode, parameter, with_budget(gate.clone(), bones))
+        }));
     }
     let progress = bar(settings.len() as u64, "comparing");
-    let points = settings.par_iter().map(|(mode, parameter, table)| {
-        let point = point(stage, &scene, *mode, *parameter, table, &animated_bones);
+    let points = settings.par_iter().map(|(mode, parameter, gate)| {
+        let point = point(stage, &scene, *mode, *parameter, gate, &off);
         progress.inc(1);
         point
     });
@@ -134,26 +137,32 @@ fn points(stage: &Stage<'_>) -> Result<Vec<Point>, Error> {
     points
 }
 
+/// The same gate; of a budget, one of so many bones.
+fn with_budget(gate: Gate, bones: u32) -> Gate {
+    match gate {
+        Gate::Budget { table, .. } => Gate::Budget { table, bones },
+        other => other,
+    }
+}
+
 fn point(
     stage: &Stage<'_>,
     scene: &Scene,
     mode: Mode,
     parameter: f64,
-    table: &GateTable,
-    animated_bones: &GateTable,
+    gate: &Gate,
+    off: &Gate,
 ) -> Result<Point, Error> {
     let plan = stage.plan;
-    let moving = stage.instances.len() * moving_bones(animated_bones);
-    let choice = mode.choice(plan.period, (parameter * moving as f64).round() as u32);
+    let moving = stage.instances.len() * moving_bones(off);
     let pixels = if mode == Mode::Bounded { parameter as f32 } else { 0.0 };
-    let mut lods = stage.lods(scene, table, pixels);
+    let mut lods = stage.lods(scene, gate, pixels);
     if matches!(mode, Mode::Uniform | Mode::Random | Mode::SkipPeriod) {
         // Up, so that each whole number of frames is one.
         let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
         lods.iter_mut().for_each(|lod| lod.omega = omega);
     }
-    let found =
-        play(&mut References::new(stage, table, animated_bones, choice, lods)?, stage, scene, false, || {})?;
+    let found = play(&mut References::new(stage, gate, off, lods)?, stage, scene, false, || {})?;
     let frames = f64::from(plan.frames);
     Ok(Point {
         gate: mode,

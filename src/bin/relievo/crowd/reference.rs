@@ -2,13 +2,12 @@
 
 use std::time::Instant;
 
-use relievo::animation::Choice;
 use relievo::animation::frame::reference::Crowd;
-use relievo::animation::{GateTable, Lod};
+use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
 use relievo::{Error, InputError};
 
-use super::gates::{Mode, PATH, frame};
+use super::gates::{PATH, frame};
 use super::play::{Play, Played, Taken, Times, Timing};
 use super::stage::Stage;
 
@@ -16,23 +15,21 @@ use super::stage::Stage;
 pub struct References<'a> {
     gated: Crowd<'a>,
     full: Crowd<'a>,
-    choice: Choice,
     rate: f64,
 }
 
 impl<'a> References<'a> {
-    /// `table` is the choice's, `animated_bones` that of [`Mode::Off`].
+    /// `off` is the gate of [`Mode::Off`](super::gates::Mode::Off).
     pub fn new(
         stage: &'a Stage<'_>,
-        table: &'a GateTable,
-        animated_bones: &'a GateTable,
-        choice: Choice,
+        gate: &'a Gate,
+        off: &'a Gate,
         lods: Vec<Lod>,
     ) -> Result<Self, InputError> {
-        let crowd = |table| Crowd::new(&stage.order, &stage.set, table, PATH, stage.instances.clone());
-        let mut gated = crowd(table)?;
+        let crowd = |gate| Crowd::new(&stage.order, &stage.set, gate, PATH, stage.instances.clone());
+        let mut gated = crowd(gate)?;
         gated.lods = lods;
-        Ok(Self { gated, full: crowd(animated_bones)?, choice, rate: stage.plan.rate })
+        Ok(Self { gated, full: crowd(off)?, rate: stage.plan.rate })
     }
 }
 
@@ -40,9 +37,9 @@ impl Play for References<'_> {
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         let (frame, elapsed) = frame(number, self.rate);
         let start = Instant::now();
-        let work = self.gated.advance(self.choice, &frame, elapsed);
+        let work = self.gated.advance(&frame, elapsed);
         let gated = start.elapsed();
-        self.full.advance(Mode::Off.choice(0.0, 0), &frame, elapsed);
+        self.full.advance(&frame, elapsed);
         let full = start.elapsed() - gated;
         let [gated, full] =
             [gated, full].map(|time| Taken { whole: Some(time.as_nanos() as f64), ..Taken::default() });

@@ -197,32 +197,31 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
     let stage = Stage::new(plan)?;
     let on = On::new(plan, context)?;
     let (mode, budget) = gate_of(plan);
-    let (table, animated_bones) = (stage.table(mode)?, stage.table(Mode::Off)?);
-    let choice = mode.choice(plan.period, budget);
+    let (gate, off) = (stage.gate(mode, budget)?, stage.gate(Mode::Off, 0)?);
     let progress = bar(plan.distances.len() as u64 * u64::from(plan.frames + 1), mode.name());
     let mut rows = Vec::with_capacity(plan.distances.len());
     for distance in &plan.distances {
         let scene = stage.scene(*distance);
-        let lods = stage.lods(&scene, &table, plan.pixels);
+        let lods = stage.lods(&scene, &gate, plan.pixels);
         let omega = mean_omega(&lods);
         let step = || progress.inc(1);
         let found = match &on {
             #[cfg(feature = "gpu")]
             On::Device(gpu) => {
-                let mut device = super::device::Device::new(gpu, &stage, &table, choice, &lods)?;
+                let mut device = super::device::Device::new(gpu, &stage, &gate, &lods)?;
                 play(&mut device, &stage, &scene, true, step)?
             }
             On::Cpu => {
-                let mut references = References::new(&stage, &table, &animated_bones, choice, lods)?;
+                let mut references = References::new(&stage, &gate, &off, lods)?;
                 play(&mut references, &stage, &scene, true, step)?
             }
         };
-        rows.push(row(&stage, *distance, omega, moving_bones(&animated_bones), &found));
+        rows.push(row(&stage, *distance, omega, moving_bones(&off), &found));
     }
     progress.finish_and_clear();
     #[cfg(feature = "gpu")]
     let pictures = match &on {
-        On::Device(gpu) if plan.drawn.is_some() => draw(gpu, &stage, (&table, choice), &mut rows)?,
+        On::Device(gpu) if plan.drawn.is_some() => draw(gpu, &stage, &gate, &mut rows)?,
         _ => Vec::new(),
     };
     let [adapter, driver] = on.names();
@@ -238,7 +237,7 @@ fn measured<'a>(plan: &'a Plan, context: &Context) -> Result<Report<'a>, Error> 
         layout: plan.layout,
         seed: plan.seed,
         bones: stage.set.bones(),
-        moving_bones: moving_bones(&animated_bones),
+        moving_bones: moving_bones(&off),
         size: plan.size,
         metres_a_unit: stage.metres_a_unit,
         spacing: plan.spacing,
@@ -280,7 +279,7 @@ fn row(stage: &Stage<'_>, distance: f32, mean_omega: f64, moving_bones: usize, f
 fn draw(
     gpu: &relievo::gpu::Gpu,
     stage: &Stage<'_>,
-    (table, choice): (&relievo::animation::GateTable, super::Choice),
+    gate: &relievo::animation::Gate,
     rows: &mut [Row],
 ) -> Result<Vec<(String, image::RgbaImage)>, Error> {
     use super::drawn::{By, Drawing, Way};
@@ -292,8 +291,8 @@ fn draw(
     let mut pictures = Vec::with_capacity(rows.len());
     for row in rows {
         let scene = stage.scene(row.distance);
-        let lods = stage.lods(&scene, table, plan.pixels);
-        let mut drawing = Drawing::new(gpu, stage, &scene, (table, choice, &lods), &ways)?;
+        let lods = stage.lods(&scene, gate, plan.pixels);
+        let mut drawing = Drawing::new(gpu, stage, &scene, (gate, &lods), &ways)?;
         let figures = drawing.run(|| progress.inc(1))?;
         let (full, gated) = (figures[0], figures[1]);
         row.drawn = Some(DrawnRow {

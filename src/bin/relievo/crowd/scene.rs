@@ -101,15 +101,14 @@ pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     let mut staged = Staged::new(out)?;
     let stage = Stage::new(plan)?;
     let (mode, budget) = gate_of(plan);
-    let table = stage.table(mode)?;
+    let gate = stage.gate(mode, budget)?;
     let ways = ways(plan);
     let progress = bar(plan.distances.len() as u64 * u64::from(plan.frames + 1), "scene");
     let mut rows = Vec::with_capacity(plan.distances.len());
     for distance in &plan.distances {
         let scene = stage.scene(*distance);
-        let lods = stage.lods(&scene, &table, plan.pixels);
-        let chosen = (&table, mode.choice(plan.period, budget), &lods[..]);
-        let mut drawing = Drawing::new(&gpu, &stage, &scene, chosen, &ways)?;
+        let lods = stage.lods(&scene, &gate, plan.pixels);
+        let mut drawing = Drawing::new(&gpu, &stage, &scene, (&gate, &lods), &ways)?;
         let figures = drawing.run(|| progress.inc(1))?;
         staged.write_png(file_name(*distance), &drawing.picture(ways.len() - 1)?)?;
         rows.push(row(&stage, *distance, mean_omega(&lods), &figures));

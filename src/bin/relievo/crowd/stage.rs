@@ -6,7 +6,7 @@ use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
-use relievo::animation::{ClipSet, GateTable, Lod, Projection};
+use relievo::animation::{ClipSet, Gate, Lod, Projection};
 #[cfg(feature = "gpu")]
 use relievo::asset::Model;
 use relievo::skinning;
@@ -96,7 +96,8 @@ impl<'a> Stage<'a> {
         }
     }
 
-    pub fn table(&self, mode: Mode) -> Result<GateTable, InputError> {
+    /// A gate of the clip; `budget` is that of [`Mode::Budget`], in bones.
+    pub fn gate(&self, mode: Mode, budget: u32) -> Result<Gate, InputError> {
         let source = Source {
             skeleton: &self.plan.model.skeleton,
             clip: &self.plan.clip,
@@ -105,7 +106,7 @@ impl<'a> Stage<'a> {
             bone_radii: &self.watched,
             weights: &self.plan.weights,
         };
-        source.table(mode)
+        source.gate(mode, self.plan.period, budget)
     }
 
     /// Bones of all instances.
@@ -150,15 +151,17 @@ impl<'a> Stage<'a> {
     }
 
     /// What gates know of a scene's instances, with errors of so many pixels allowed.
-    pub fn lods(&self, scene: &Scene, table: &GateTable, pixels: f32) -> Vec<Lod> {
+    pub fn lods(&self, scene: &Scene, gate: &Gate, pixels: f32) -> Vec<Lod> {
         let depth = |origin: &[f32; 3]| origin[2].max(self.projection.near);
         let nearest = scene.origins.iter().map(depth).fold(f32::INFINITY, f32::min);
         let lod = |origin: &[f32; 3]| {
             // On the ground: the camera's height is no distance.
             let distance = origin[0].hypot(origin[2]) / self.metres_a_unit;
-            let allowed = match table.radius() {
-                0.0 => 0,
-                radius => table.units(self.projection.allowed(*origin, radius, pixels)),
+            let allowed = match gate {
+                Gate::Bounded(table) if table.radius() > 0.0 => {
+                    table.units(self.projection.allowed(*origin, table.radius(), pixels))
+                }
+                _ => 0,
             };
             let weight = (65535.0 * nearest / depth(origin)).round().clamp(1.0, 65535.0) as u32;
             Lod { omega: self.plan.range.omega(distance), allowed, weight, flags: 0 }
@@ -173,8 +176,8 @@ pub fn mean_omega(lods: &[Lod]) -> f64 {
 }
 
 /// Bones of an instance that its clip moves.
-pub fn moving_bones(table: &GateTable) -> usize {
-    table.record(0).1.iter().map(|word| word.count_ones() as usize).sum()
+pub fn moving_bones(gate: &Gate) -> usize {
+    gate.animated_bones().count(0)
 }
 
 #[cfg(feature = "gpu")]

@@ -1,0 +1,128 @@
+//! Which bones a clip moves at all.
+
+use crate::InputError;
+use crate::animation::clip_set::ClipSet;
+use crate::animation::order::Order;
+use crate::asset::clip::{Clip, Interpolation, Part};
+
+/// Which bones each clip of a set moves: what [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` decide by,
+/// and a part of every other table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AnimatedBones {
+    bones: usize,
+    words: usize,
+    /// For each clip the index of its last row, then one bit for each slot that it moves.
+    records: Vec<u32>,
+}
+
+impl AnimatedBones {
+    /// Looks for the bones whose tracks change along their clips.
+    ///
+    /// # Errors
+    /// [`InputError`] for clips other than the set's, and for a skeleton with another number of bones.
+    pub fn new(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
+        set.check_clips(clips)?;
+        if order.slots.len() != set.bones() {
+            let bound = format!("must be {}, as the clips'", set.bones());
+            return Err(InputError::new("skeleton.len", order.slots.len(), bound));
+        }
+        let words = order.words();
+        let mut records = Vec::with_capacity(clips.len() * (words + 1));
+        for (entry, clip) in set.clips().iter().zip(clips) {
+            records.push(entry.first_row + set.rows(entry) - 1);
+            let first = records.len();
+            records.resize(first + words, 0);
+            for (at, slot) in order.slots.iter().enumerate() {
+                records[first + at / 32] |= u32::from(moves(clip, slot.bone as usize)) << (at % 32);
+            }
+        }
+        Ok(Self { bones: order.slots.len(), words, records })
+    }
+
+    /// Number of bones of the skeleton.
+    pub fn bones(&self) -> usize {
+        self.bones
+    }
+
+    /// Words of bits per instance.
+    pub fn words(&self) -> usize {
+        self.words
+    }
+
+    /// Clips of the set.
+    pub fn clips(&self) -> usize {
+        self.records.len() / (self.words + 1)
+    }
+
+    /// A bit for each slot that a clip moves.
+    ///
+    /// # Panics
+    /// For a clip that the set lacks.
+    pub fn of(&self, clip: u32) -> &[u32] {
+        &self.record(clip)[1..]
+    }
+
+    /// How many bones a clip moves.
+    ///
+    /// # Panics
+    /// For a clip that the set lacks.
+    pub fn count(&self, clip: u32) -> usize {
+        self.of(clip).iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// The slots that a clip moves.
+    pub(crate) fn slots(&self, clip: u32) -> impl Iterator<Item = usize> {
+        let bits = self.of(clip).iter().enumerate();
+        bits.flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
+    }
+
+    /// Whether a clip moves a slot.
+    pub(crate) fn contains(&self, clip: u32, slot: usize) -> bool {
+        self.of(clip)[slot / 32] >> (slot % 32) & 1 != 0
+    }
+
+    /// The last row of a clip in a table.
+    pub(crate) fn last_row(&self, clip: u32) -> u32 {
+        self.record(clip)[0]
+    }
+
+    /// As kernels read them: for each clip the number of its last row, then a bit for each slot that it moves.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn records(&self) -> &[u32] {
+        &self.records
+    }
+
+    fn record(&self, clip: u32) -> &[u32] {
+        &self.records[clip as usize * (self.words + 1)..][..self.words + 1]
+    }
+}
+
+/// The indices of the bits that are set in a word.
+pub(crate) fn bits_of(word: u32) -> impl Iterator<Item = usize> {
+    std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
+        .take_while(|rest| *rest != 0)
+        .map(|rest| rest.trailing_zeros() as usize)
+}
+
+/// Whether a clip changes any of a bone's parts.
+fn moves(clip: &Clip, bone: usize) -> bool {
+    Part::ALL.iter().any(|part| {
+        let track = clip.track(bone, *part);
+        let is_spline = track.interpolation() == Interpolation::CubicSpline;
+        let each = if is_spline { 3 } else { 1 };
+        let keys = track.keys as usize;
+        let values = &clip.values()[track.first_value as usize..][..each * keys];
+        let same = |value: [f32; 4], other: [f32; 4]| {
+            value == other || *part == Part::Rotation && value == other.map(|component| -component)
+        };
+        keys > 1
+            && values.chunks_exact(each).enumerate().any(|(at, key)| {
+                if !is_spline {
+                    return !same(key[0], clip.key(track, 0));
+                }
+                // The in-tangent of the first key and the out-tangent of the last have no effect.
+                let bends = |tangent: [f32; 4], is_used: bool| is_used && tangent != [0.0; 4];
+                key[1] != clip.key(track, 0) || bends(key[0], at > 0) || bends(key[2], at + 1 < keys)
+            })
+    })
+}

@@ -1,0 +1,73 @@
+//! Tables on the device.
+
+use super::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable, check_path};
+use crate::InputError;
+use crate::animation::crowd::Crowd;
+use crate::asset::keyframe::RotationPath;
+use crate::gpu::{Buffer, Gpu, GpuError};
+
+/// A table on the device.
+#[derive(Debug, Clone)]
+pub(crate) struct TableBuffers {
+    pub animated_bones: Buffer<u32>,
+    pub rows: Buffer<[u32; 2]>,
+    /// Entries of a row.
+    pub stride: u32,
+    /// Words of bits per instance.
+    pub words: u32,
+    bones: usize,
+    clips: usize,
+    /// The rotation path of the motion; `None` without motion.
+    path: Option<RotationPath>,
+}
+
+impl TableBuffers {
+    pub fn of_animated_bones(gpu: &Gpu, table: &AnimatedBones) -> Result<Self, GpuError> {
+        // Nothing is read of it.
+        Self::new(gpu, table, &[[0; 2]], 0, None)
+    }
+
+    pub fn of_priorities(gpu: &Gpu, table: &PriorityTable) -> Result<Self, GpuError> {
+        Self::new(gpu, table.animated_bones(), table.rows(), table.stride(), None)
+    }
+
+    pub fn of_bounds(gpu: &Gpu, table: &BoundTable) -> Result<Self, GpuError> {
+        let bones = table.animated_bones();
+        Self::new(gpu, bones, table.rows(), bones.bones(), Some(table.path()))
+    }
+
+    pub fn of_expectations(gpu: &Gpu, table: &ExpectationTable) -> Result<Self, GpuError> {
+        let bones = table.animated_bones();
+        Self::new(gpu, bones, table.rows(), bones.bones(), Some(table.path()))
+    }
+
+    fn new(
+        gpu: &Gpu,
+        bones: &AnimatedBones,
+        rows: &[[u32; 2]],
+        stride: usize,
+        path: Option<RotationPath>,
+    ) -> Result<Self, GpuError> {
+        Ok(Self {
+            animated_bones: Buffer::from_slice(gpu, "animated bones", bones.records())?,
+            rows: Buffer::from_slice(gpu, "gate table", rows)?,
+            stride: stride as u32,
+            words: bones.words() as u32,
+            bones: bones.bones(),
+            clips: bones.clips(),
+            path,
+        })
+    }
+
+    /// Refuses a crowd of other bones or clips, and one whose rotations take another path.
+    pub fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
+        for (field, value, needed) in
+            [("table.bones", self.bones, crowd.bones), ("table.clips", self.clips, crowd.clips)]
+        {
+            if value != needed {
+                return Err(InputError::new(field, value, format!("must be {needed}, as the crowd's")));
+            }
+        }
+        check_path(self.path, crowd.path())
+    }
+}

@@ -1,0 +1,64 @@
+//! One bone's motion along a clip, as columns of tables have it.
+
+use super::{EVERYTHING, ErrorBudget};
+use crate::animation::motion::{BoneMotion, Path};
+
+/// The motion of one bone along a clip.
+pub(super) struct Column {
+    rises: Vec<f64>,
+    jumps: Vec<f64>,
+    wrap: f64,
+    is_boundless: bool,
+    /// The fraction of what the bones above leave, 0 to 1.
+    pub(super) fraction: f64,
+}
+
+impl Column {
+    fn new(bone: &BoneMotion, levers: &[f64; 3]) -> Self {
+        let weighed = |of: &dyn Fn(&Path) -> f64| {
+            bone.parts.iter().zip(levers).map(|(part, lever)| lever * of(part)).sum::<f64>()
+        };
+        let times = bone.parts[0].rises.len();
+        Self {
+            rises: (0..times).map(|at| weighed(&|path| path.rises[at])).collect(),
+            jumps: (0..times).map(|at| weighed(&|path| path.jumps[at])).collect(),
+            wrap: weighed(&|path| path.wrap),
+            is_boundless: bone.parts.iter().any(|path| path.is_boundless),
+            fraction: 0.0,
+        }
+    }
+
+    pub(super) fn total(&self) -> f64 {
+        self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
+    }
+
+    /// Writes the column into a table.
+    ///
+    /// Sums at row starts are rounded to the nearest unit, rises up, and interpolated sums down, so that the
+    /// difference of two sums is at most 4 units too small. Fractions are cut to 16 bits, 2⁻¹⁶ of a segment,
+    /// and may be off by the rounding of their division; 2⁻¹² of the steepest segment exceeds both errors for
+    /// two sums. The slack for these errors is a power of two.
+    /// the steepest stretch is more than either costs for two sums. What rounding may hide so, the quantization slack, is
+    /// a power of two.
+    pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
+        let mut sum = 0.0;
+        let mut steepest = 0.0_f64;
+        for (row, (rise, jump)) in self.rises.iter().zip(&self.jumps).enumerate() {
+            sum += jump;
+            table[row * stride] = [(sum / unit).round() as u32, (rise / unit).ceil() as u32];
+            sum += rise;
+            steepest = steepest.max(rise / unit);
+        }
+        let slack = match self.is_boundless {
+            true => EVERYTHING,
+            false if self.total() > 0.0 => (4 + (steepest / 4096.0).ceil() as u32).next_power_of_two(),
+            false => 0,
+        };
+        let budget = ErrorBudget::new(self.fraction, slack);
+        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, budget.0];
+    }
+}
+
+pub(super) fn columns(motions: &[BoneMotion], levers: &[[f64; 3]]) -> Vec<Column> {
+    motions.iter().zip(levers).map(|(bone, levers)| Column::new(bone, levers)).collect()
+}

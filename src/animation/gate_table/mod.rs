@@ -1,0 +1,61 @@
+//! What gates know of clips: tables that are made once, at load. Columns are slots of an [`Order`](super::Order), rows the
+//! common times of each clip, one clip after another; a clip's last row tells of the whole clip.
+
+mod animated_bones;
+mod bounds;
+#[cfg(feature = "gpu")]
+mod buffers;
+mod columns;
+mod expectations;
+mod motion;
+mod priorities;
+pub mod sums;
+
+use super::clip_set::ClipSet;
+use crate::InputError;
+use crate::asset::keyframe::RotationPath;
+
+pub(crate) use crate::shared::animation::gate::EVERYTHING;
+pub use animated_bones::AnimatedBones;
+pub(crate) use animated_bones::bits_of;
+pub use bounds::{BoundTable, ErrorBudget};
+#[cfg(feature = "gpu")]
+pub(crate) use buffers::TableBuffers;
+pub use expectations::ExpectationTable;
+pub use priorities::PriorityTable;
+
+/// The largest sum of motion over a whole clip, in units of the table.
+const MAX_MOTION: f64 = EVERYTHING as f64;
+
+/// The largest number of entries.
+const MAX_ENTRIES: usize = 1 << 27;
+
+/// Refuses sampling with another rotation path than the one for which a table's motion was computed. Tables
+/// without motion permit any.
+pub(crate) fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
+    match of_table {
+        Some(path) if path != sampled => {
+            let bound = format!("must be {path:?}, the path whose motion the gate's table holds");
+            Err(InputError::new("crowd.path", format!("{sampled:?}"), bound))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Rows of all clips of a set.
+fn rows_of(set: &ClipSet) -> usize {
+    set.clips().iter().map(|entry| set.rows(entry) as usize).sum()
+}
+
+/// Zeroed entries: the rows of a set's clips and so many more, of `stride` entries each.
+fn empty_rows(set: &ClipSet, more: usize, stride: usize) -> Result<Vec<[u32; 2]>, InputError> {
+    let rows = rows_of(set) + more;
+    match rows.checked_mul(stride).filter(|entries| *entries <= MAX_ENTRIES) {
+        Some(entries) => Ok(vec![[0; 2]; entries]),
+        None => {
+            let bound =
+                format!("times {stride} columns must be at most 2^27: let more tracks share their key times");
+            Err(InputError::new("table.rows", rows, bound))
+        }
+    }
+}

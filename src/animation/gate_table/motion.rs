@@ -1,0 +1,89 @@
+//! Sums of motion: what tables of bounds and of expectations have in common.
+
+use super::columns::Column;
+use super::{AnimatedBones, MAX_MOTION, empty_rows};
+use crate::InputError;
+use crate::animation::clip_set::ClipSet;
+use crate::animation::order::Order;
+use crate::asset::clip::Clip;
+use crate::asset::keyframe::RotationPath;
+use crate::asset::skeleton::Skeleton;
+
+/// For each row and slot the sum of motion at the row's time and its rise to the next, in units; in a clip's last row the
+/// sum over the whole clip, and an [`ErrorBudget`](super::ErrorBudget).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MotionTable {
+    pub animated_bones: AnimatedBones,
+    /// The path between rotation keys whose motion it is.
+    pub path: RotationPath,
+    pub rows: Vec<[u32; 2]>,
+    /// Metres (or what the motion counts) a unit.
+    pub unit: f64,
+}
+
+impl MotionTable {
+    /// A table without motion, with so many rows behind those of the clips, and the order of its columns.
+    pub fn new(
+        skeleton: &Skeleton,
+        set: &ClipSet,
+        clips: &[&Clip],
+        bone_radii: &[f32],
+        path: RotationPath,
+        more: usize,
+    ) -> Result<(Self, Order), InputError> {
+        let order = Order::new(skeleton);
+        let animated_bones = AnimatedBones::new(&order, set, clips)?;
+        check_bone_radii(skeleton, bone_radii)?;
+        let rows = empty_rows(set, more, animated_bones.bones())?;
+        Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
+    }
+
+    /// Writes the columns of every clip, in the smallest unit for which they fit.
+    pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
+        for (clip, columns) in columns.iter().enumerate() {
+            if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
+                let bound = "must be finite: the scales above it are too large";
+                return Err(InputError::new(format!("clips[{clip}].bones[{bone}].motion"), "inf", bound));
+            }
+        }
+        let largest = columns.iter().flatten().map(Column::total).fold(0.0, f64::max);
+        self.unit = if largest > 0.0 { largest / MAX_MOTION } else { 1.0 };
+        let stride = self.stride();
+        for (entry, columns) in set.clips().iter().zip(columns) {
+            for (slot, bone) in order.slots.iter().enumerate() {
+                let at = entry.first_row as usize * stride + slot;
+                columns[bone.bone as usize].write(&mut self.rows[at..], stride, self.unit);
+            }
+        }
+        Ok(())
+    }
+
+    /// Entries of a row: one a bone.
+    pub fn stride(&self) -> usize {
+        self.animated_bones.bones()
+    }
+
+    /// The motion of a slot in a row.
+    pub fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
+        self.rows[row as usize * self.stride() + slot]
+    }
+
+    /// A slot's motion in a clip's last row.
+    pub fn of_clip(&self, clip: u32, slot: usize) -> [u32; 2] {
+        self.motion(self.animated_bones.last_row(clip), slot)
+    }
+}
+
+fn check_bone_radii(skeleton: &Skeleton, bone_radii: &[f32]) -> Result<(), InputError> {
+    if bone_radii.len() != skeleton.len() {
+        let bound = format!("must be {}, one a bone", skeleton.len());
+        return Err(InputError::new("bone_radii.len", bone_radii.len(), bound));
+    }
+    match bone_radii.iter().position(|bone_radius| !(*bone_radius >= 0.0 && bone_radius.is_finite())) {
+        None => Ok(()),
+        Some(bone) => {
+            let bound = "must be at least 0 and finite";
+            Err(InputError::new(format!("bone_radii[{bone}]"), bone_radii[bone], bound))
+        }
+    }
+}
