@@ -11,7 +11,7 @@ use {
     super::crowd::{ClipBuffers, Crowd, unpacked},
     super::instance::{Instance, Wrap},
     super::keyframe_cursor::KeyframeCursorPass,
-    super::local_to_model::{LocalToModelPass, Walk},
+    super::local_to_model::LocalToModelPass,
     super::sample::SamplePass,
     crate::Error,
     crate::gpu::Gpu,
@@ -70,7 +70,7 @@ pub(crate) fn posed(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> R
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
     let place = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let local_to_model = LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(gpu, skeleton, &crowd)?;
+    let local_to_model = LocalToModelPass::new(gpu)?.prepare(gpu, skeleton, &crowd)?;
     gpu.run("pose", |encoder| {
         place.record(encoder);
         sample.record(encoder);

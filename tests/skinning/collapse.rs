@@ -357,8 +357,8 @@ fn requests_are_checked() {
 fn a_crowd_of_it_is_skinned_on_the_device() {
     use relievo::animation::crowd::{ClipBuffers, Crowd};
     use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+    use relievo::animation::local_to_model::LocalToModelPass;
     use relievo::animation::local_to_model::reference::local_to_model;
-    use relievo::animation::local_to_model::{LocalToModelPass, Walk};
     use relievo::animation::sample::SamplePass;
     use relievo::animation::sample::reference::sample;
     use relievo::animation::{ClipSet, Instance, RotationPath, Wrap};
@@ -380,7 +380,7 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
     let place = KeyframeCursorPass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("fits");
     let pass = SamplePass::new(&gpu, RotationPath::Slerp).expect("compiled");
     let sampled = pass.prepare(&gpu, &clips, &crowd).expect("fits");
-    let pass = LocalToModelPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
+    let pass = LocalToModelPass::new(&gpu).expect("compiled");
     let concatenated = pass.prepare(&gpu, &model.skeleton, &crowd).expect("fits");
     let frame = SkinFrame::new(&gpu, &model, 0, crowd.model_matrices(), 3, Blend::Linear).expect("fits");
     frame.crowd.instance_lods.write(&gpu, &[InstanceLod::FULL; 3]).expect("written");
