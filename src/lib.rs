@@ -16,6 +16,8 @@
 //! - `verify` and `bench`: every kernel against its reference, and beside a copy of the same bytes. What `relievo verify` and
 //!   `relievo bench` run. Feature `verify`, with `harness` (comparators, clocks) and `baseline` (kernels to measure
 //!   against).
+//! - `measure`: what level of detail costs and shows, for the caller's own models: errors, times, pareto curves. Feature
+//!   `verify`.
 //! - [`srgb`]: bytes and linear light. [`mod@hash`]: counter-based random words.
 //! - [`error`]: bad input by field, value and bound.
 //!
@@ -64,6 +66,8 @@ pub mod gpu;
 #[cfg(feature = "verify")]
 pub mod harness;
 pub mod hash;
+#[cfg(feature = "verify")]
+pub mod measure;
 pub mod mesh;
 #[cfg(feature = "gpu")]
 pub mod render;

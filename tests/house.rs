@@ -12,7 +12,7 @@ const FLOORS: &[&[&str]] = &[
     &["baseline", "skinning"],
     &["render"],
     &["samples"],
-    &["bench", "verify"],
+    &["bench", "measure", "verify"],
 ];
 
 /// A source file: its path below `src/`, and its text without comments and tests.

@@ -1,46 +1,45 @@
 //! The crowd on the device.
 
-use relievo::Error;
-use relievo::animation::concat::{ConcatJob, ConcatPass, Walk};
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::place::{PlaceJob, PlacePass};
-use relievo::animation::sample::SamplePass;
-use relievo::animation::{Choice, GateTable, Lod};
-use relievo::asset::Affine;
-use relievo::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
-
 use super::gates::{PATH, frame};
-use super::play::{Play, Played, Taken, Times, Timing};
+use super::play::{FrameTimes, Play, Played, Times, Timing};
 use super::stage::Stage;
+use crate::Error;
+use crate::animation::concat::{ConcatJob, ConcatPass, Walk};
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::frame::GatedFrame;
+use crate::animation::place::{PlaceJob, PlacePass};
+use crate::animation::sample::SamplePass;
+use crate::animation::{Choice, GateTable, Lod};
+use crate::asset::Affine;
+use crate::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
 
 /// Both crowds.
-pub struct Device {
+pub(crate) struct Device {
     gpu: Gpu,
     timer: Timer,
     rate: f64,
-    pub(super) gated: Gated,
-    pub(super) full: Full,
+    pub(crate) gated: Gated,
+    pub(crate) full: Full,
     stale: Vec<Affine>,
     fresh: Vec<Affine>,
 }
 
 /// The crowd under a gate.
-pub(super) struct Gated {
-    pub(super) crowd: Crowd,
-    pub(super) frame: GatedFrame,
+pub(crate) struct Gated {
+    pub(crate) crowd: Crowd,
+    pub(crate) frame: GatedFrame,
 }
 
 /// Everything of everybody.
-pub(super) struct Full {
-    pub(super) crowd: Crowd,
+pub(crate) struct Full {
+    pub(crate) crowd: Crowd,
     place: PlaceJob,
     sample: Job,
     concat: ConcatJob,
 }
 
 impl Device {
-    pub fn new(
+    pub(crate) fn new(
         gpu: &Gpu,
         stage: &Stage<'_>,
         table: &GateTable,
@@ -51,7 +50,7 @@ impl Device {
         Ok(Self {
             gpu: gpu.clone(),
             timer: Timer::new(gpu)?,
-            rate: stage.plan.rate,
+            rate: stage.options.rate,
             gated: Gated::new(gpu, stage, &clips, table, choice, lods)?,
             full: Full::new(gpu, stage, &clips)?,
             stale: Vec::new(),
@@ -60,12 +59,12 @@ impl Device {
     }
 
     /// What clock takes the times.
-    pub fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
+    pub(crate) fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
         Ok(Timer::new(gpu)?.timed_by())
     }
 
     /// Chooses the frame that is recorded next.
-    pub fn set(&self, number: u32) -> Result<(), Error> {
+    pub(crate) fn set(&self, number: u32) -> Result<(), Error> {
         let (frame, elapsed) = frame(number, self.rate);
         self.gated.frame.set(&self.gpu, &frame, elapsed)?;
         self.full.place.set(&self.gpu, elapsed)
@@ -79,11 +78,10 @@ impl Device {
     /// Both crowds, whole frames.
     fn play_whole(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
-        let whole = |time| Taken { whole: Some(time), ..Taken::default() };
         let frame = &gated.frame;
         Ok(Times {
-            gated: whole(self.timed(|pass| frame.dispatch(pass))?),
-            full: whole(self.timed(|pass| full.dispatch(pass))?),
+            gated: FrameTimes::of_whole(self.timed(|pass| frame.dispatch(pass))?),
+            full: FrameTimes::of_whole(self.timed(|pass| full.dispatch(pass))?),
         })
     }
 
@@ -91,7 +89,7 @@ impl Device {
     fn play_stages(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
         let frame = &gated.frame;
-        let stages = |gate, sample, concat| Taken { gate, sample, concat, whole: None };
+        let stages = |gate, sample, concat| FrameTimes { gate, sample, concat, whole: None };
         Ok(Times {
             gated: stages(
                 Some(self.timed(|pass| frame.dispatch_gate(pass))?),
@@ -150,7 +148,7 @@ impl Gated {
         choice: Choice,
         lods: &[Lod],
     ) -> Result<Self, Error> {
-        let skeleton = &stage.plan.model.skeleton;
+        let skeleton = &stage.subject.model.skeleton;
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, table, choice)?;
         frame.gating.lods.write(gpu, lods)?;
@@ -164,7 +162,11 @@ impl Full {
         Ok(Self {
             place: PlacePass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &stage.plan.model.skeleton, &crowd)?,
+            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare(
+                gpu,
+                &stage.subject.model.skeleton,
+                &crowd,
+            )?,
             crowd,
         })
     }
@@ -179,7 +181,7 @@ impl Full {
         self.concat.dispatch(pass);
     }
 
-    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "full"));
     }
 }

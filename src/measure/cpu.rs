@@ -1,28 +1,26 @@
-//! The crowd on the CPU.
+//! The crowd on the CPU, by the references.
 
 use std::time::Instant;
 
-use relievo::animation::Choice;
-use relievo::animation::frame::reference::Crowd;
-use relievo::animation::{GateTable, Lod};
-use relievo::asset::Affine;
-use relievo::{Error, InputError};
-
-use super::gates::{Mode, PATH, frame};
-use super::play::{Play, Played, Taken, Times, Timing};
+use super::gates::{GateMode, PATH, frame};
+use super::play::{FrameTimes, Play, Played, Times, Timing};
 use super::stage::Stage;
+use crate::animation::frame::reference::Crowd;
+use crate::animation::{Choice, GateTable, Lod};
+use crate::asset::Affine;
+use crate::{Error, InputError};
 
-/// Both crowds.
-pub struct Twins<'a> {
+/// The crowd under a gate, and the same in full.
+pub(crate) struct Cpu<'a> {
     gated: Crowd<'a>,
     full: Crowd<'a>,
     choice: Choice,
     rate: f64,
 }
 
-impl<'a> Twins<'a> {
-    /// `table` is the choice's, `movers` that of [`Mode::Off`].
-    pub fn new(
+impl<'a> Cpu<'a> {
+    /// `table` is the choice's, `movers` that of [`GateMode::Off`].
+    pub(crate) fn new(
         stage: &'a Stage<'_>,
         table: &'a GateTable,
         movers: &'a GateTable,
@@ -32,20 +30,19 @@ impl<'a> Twins<'a> {
         let crowd = |table| Crowd::new(&stage.order, &stage.set, table, PATH, stage.instances.clone());
         let mut gated = crowd(table)?;
         gated.lods = lods;
-        Ok(Self { gated, full: crowd(movers)?, choice, rate: stage.plan.rate })
+        Ok(Self { gated, full: crowd(movers)?, choice, rate: stage.options.rate })
     }
 }
 
-impl Play for Twins<'_> {
+impl Play for Cpu<'_> {
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         let (frame, elapsed) = frame(number, self.rate);
         let start = Instant::now();
         let work = self.gated.advance(self.choice, &frame, elapsed);
         let gated = start.elapsed();
-        self.full.advance(Mode::Off.choice(0.0, 0), &frame, elapsed);
+        self.full.advance(GateMode::Off.choice(), &frame, elapsed);
         let full = start.elapsed() - gated;
-        let [gated, full] =
-            [gated, full].map(|time| Taken { whole: Some(time.as_nanos() as f64), ..Taken::default() });
+        let [gated, full] = [gated, full].map(|time| FrameTimes::of_whole(time.as_nanos() as f64));
         Ok(Played {
             interpolated: work.pairs.len(),
             concatenated: work.dirty.iter().map(|word| word.count_ones() as usize).sum(),
