@@ -17,7 +17,7 @@ use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::SamplePass;
-use relievo::animation::{ClipSet, Lens, ModelMatrices};
+use relievo::animation::{ClipSet, Lens};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, Options};
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             &gpu,
             &Character {
                 model,
-                matrices: &ModelMatrices::new(&posed.models),
+                matrices: posed.model_matrices(),
                 placements: &placements,
                 fade,
                 levels: &levels,

@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )?;
         let mut encoder = gpu.encoder("frame");
         frame.record(&mut encoder);
-        // `crowd.models` holds the palettes now: three rows a bone, to bind wherever you draw.
+        // `crowd.model_matrices()` are those of this frame now: three rows a bone, to bind wherever you draw.
         gpu.queue().submit([encoder.finish()]);
         // Looking waits for the device; a renderer would not.
         if number % 20 < 2 {

@@ -26,7 +26,7 @@ impl ChosenBones {
     /// [`InputError`] for instances and bones that the crowd lacks; [`GpuError`].
     pub fn new(gpu: &Gpu, crowd: &Crowd, chosen: &[[u32; 2]]) -> Result<Self, Error> {
         let gathered = Buffer::new(gpu, "chosen bones", chosen.len())?;
-        let (runs, models) = (Vec::with_capacity(chosen.len()), crowd.models.clone());
+        let (runs, models) = (Vec::with_capacity(chosen.len()), crowd.model_matrices.buffer().clone());
         let mut bones = Self { models, gathered, runs, chosen: 0, bones: crowd.bones };
         bones.choose(chosen)?;
         Ok(bones)

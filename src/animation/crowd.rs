@@ -5,9 +5,10 @@ use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::instance::Instance;
 use crate::animation::layers;
 use crate::animation::layers::{Layer, MOST_LAYERS};
+use crate::animation::model_matrices::ModelMatrices;
 use crate::asset::keyframe::Place;
 use crate::asset::keyframe::RotationPath;
-use crate::asset::transform::{Affine, Transform};
+use crate::asset::transform::Transform;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 
@@ -77,10 +78,10 @@ pub struct Crowd {
     pub shares: Buffer<f32>,
     /// Written by [`crate::animation::sample::SamplePass`]: `instance · bones + bone`.
     pub locals: Buffer<Local>,
-    /// Written by [`crate::animation::concat::ConcatPass`]: `instance · bones + bone`.
-    pub models: Buffer<Affine>,
-    /// What `models` were before, for motion vectors, where it is kept: see [`Crowd::with_previous`].
-    pub previous: Option<Buffer<Affine>>,
+    /// Written by [`crate::animation::concat::ConcatPass`].
+    pub(crate) model_matrices: ModelMatrices,
+    /// What the model matrices were before, for motion vectors, where it is kept: see [`Crowd::with_previous`].
+    pub previous: Option<ModelMatrices>,
     /// Bones of the skeleton.
     pub bones: usize,
     /// Layers, the base included: 1 where each instance plays one clip.
@@ -117,7 +118,7 @@ impl Crowd {
             instances: Buffer::from_slice(gpu, "instances", &instances)?,
             shares: Buffer::from_slice(gpu, "shares", &all_shares(layers, bones))?,
             locals: Buffer::new(gpu, "locals", pairs)?,
-            models: Buffer::new(gpu, "models", pairs)?,
+            model_matrices: ModelMatrices::new(&Buffer::new(gpu, "model matrices", pairs)?),
             previous: None,
             bones,
             layers: 1 + layers.len(),
@@ -136,22 +137,28 @@ impl Crowd {
         self.path
     }
 
-    /// The same crowd, which keeps its palettes of the frame before in `previous`, 48 bytes a bone. They are zero until
-    /// [`Crowd::record_previous`] has run.
+    /// The model matrices of all bones, which [`crate::animation::concat::ConcatPass`] writes: `instance · bones + bone`.
+    pub fn model_matrices(&self) -> &ModelMatrices {
+        &self.model_matrices
+    }
+
+    /// The same crowd, which keeps its model matrices of the frame before in `previous`, 48 bytes a bone. They are zero
+    /// until [`Crowd::record_previous`] has run.
     ///
     /// # Errors
     /// [`GpuError`].
     pub fn with_previous(self, gpu: &Gpu) -> Result<Self, GpuError> {
-        let previous = Some(Buffer::new(gpu, "previous models", self.pairs())?);
-        Ok(Self { previous, ..self })
+        let previous = Buffer::new(gpu, "previous model matrices", self.pairs())?;
+        Ok(Self { previous: Some(self.model_matrices.beside(previous)), ..self })
     }
 
-    /// Records the copy of `models` into `previous`: before concatenation, so that it may change `models` in place and
-    /// in part. In the first frame, and where instances are teleported, after it too, so that nothing seems to move.
+    /// Records the copy of the model matrices into `previous`: before concatenation, so that it may change them in place
+    /// and in part. In the first frame, and where instances are teleported, after it too, so that nothing seems to move.
     /// Nothing where `previous` is not kept.
     pub fn record_previous(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(previous) = &self.previous {
-            encoder.copy_buffer_to_buffer(self.models.raw(), 0, previous.raw(), 0, previous.bytes());
+            let bytes = previous.buffer().bytes();
+            encoder.copy_buffer_to_buffer(self.model_matrices.raw(), 0, previous.raw(), 0, bytes);
         }
     }
 

@@ -120,8 +120,8 @@ impl Play for Device {
             }
         };
         let active = &self.gated.frame.active;
-        self.stale = self.gated.crowd.models.read_blocking(&self.gpu)?;
-        self.fresh = self.full.crowd.models.read_blocking(&self.gpu)?;
+        self.stale = self.gated.crowd.model_matrices().read_blocking(&self.gpu)?;
+        self.fresh = self.full.crowd.model_matrices().read_blocking(&self.gpu)?;
         let dirty = active.dirty.read_blocking(&self.gpu)?;
         Ok(Played {
             interpolated: active.pairs.dispatched.read_blocking(&self.gpu)?[3] as usize,

@@ -7,6 +7,7 @@ use super::palette::PalettePass;
 use super::select::{SelectBuffers, SelectPass};
 use super::skin::SkinPass;
 use crate::animation::ModelMatrices;
+use crate::animation::model_matrices::Consumer;
 use crate::asset::Model;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
 use crate::skinning::vertex::{Blend, Vertex};
@@ -40,8 +41,9 @@ impl SkinFrame {
     ///
     /// # Errors
     /// [`InputError`] for a mesh that the model lacks or that does not fit it, no instances, fewer matrices or bits of
-    /// updated bones than they need, and dual quaternions under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose
-    /// bound holds for linear blending alone; [`crate::gpu::GpuError`].
+    /// updated bones than they need, and dual quaternions over matrices of a crowd under
+    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending alone;
+    /// [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
         model: &Model,
@@ -50,9 +52,8 @@ impl SkinFrame {
         instances: usize,
         blend: Blend,
     ) -> Result<Self, Error> {
-        if blend == Blend::DualQuaternion && matrices.are_bounded() {
-            let bound = "must be Linear under the gate Bounded, whose bound holds for linear blending alone";
-            return Err(InputError::new("blend", format!("{blend:?}"), bound).into());
+        if blend == Blend::DualQuaternion {
+            matrices.consumer().check(Consumer::DualQuaternions)?;
         }
         let Some(mesh) = model.meshes.get(mesh) else {
             return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
@@ -65,7 +66,6 @@ impl SkinFrame {
         }
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
-        let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices.matrices(), &crowd)?;
         let morph = MorphPass::new(gpu)?;
         let selection = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
         let pass = SkinPass::new(gpu, blend)?;
@@ -73,6 +73,8 @@ impl SkinFrame {
             [morph.prepare(gpu, &mesh, &crowd)?, pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?];
         let skin = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
         let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
+        // Last: it claims the matrices for its kind of blending, which what is refused must not.
+        let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
         Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selection, all, some })
     }
 

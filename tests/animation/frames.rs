@@ -13,18 +13,11 @@ use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
 use relievo::animation::place::PlacePass;
 use relievo::animation::sample::SamplePass;
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Layer, Lod, ModelMatrices};
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Layer, Lod};
 use relievo::asset::Affine;
 use relievo::asset::keyframe::RotationPath;
-use relievo::asset::transform::AFFINE_IDENTITY;
-use relievo::gpu::{Buffer, Gpu, GpuError};
-use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::gpu::{Gpu, GpuError};
 use relievo::samples::creature;
-use relievo::skinning::Blend;
-use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::NO_FADE;
-use relievo::skinning::picture::Light;
-use relievo::surface::Mips;
 
 use crate::harness::gpu;
 
@@ -93,7 +86,8 @@ fn a_gate_that_misses_nothing_changes_nothing() {
                 all_palettes.record(encoder);
             })
             .expect("run");
-            let [lazy, full] = [&lazy, &full].map(|crowd| crowd.models.read_blocking(&gpu).expect("read"));
+            let [lazy, full] =
+                [&lazy, &full].map(|crowd| crowd.model_matrices().read_blocking(&gpu).expect("read"));
             let worst = furthest(&lazy, &full);
             assert!(worst < 1e-5, "{walk:?}, frame {number}: {worst}");
         }
@@ -125,7 +119,7 @@ fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
         gpu.run("test", |encoder| prepared.record(encoder)).expect("run");
     }
     let bits = prepared.active.bits.read_blocking(gpu).expect("read");
-    (bits, crowd.models.read_blocking(gpu).expect("read"))
+    (bits, crowd.model_matrices().read_blocking(gpu).expect("read"))
 }
 
 /// A device that another program opened, with WebGPU's default limits, decides in several dispatches; to the same end.
@@ -183,52 +177,6 @@ fn names_both(refused: Result<(), Error>, [path, other]: [RotationPath; 2]) {
     let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
     assert_eq!((error.field.as_str(), error.value), ("crowd.path", format!("{other:?}")));
     assert!(error.bound.contains(&format!("{path:?}")), "{}", error.bound);
-}
-
-/// The bound of `bounded` is one of linear blending: no mesh is skinned otherwise under it, whether in one piece or in a
-/// scene. Other gates promise nothing, and a crowd without a gate misses nothing.
-#[test]
-fn dual_quaternions_are_refused_under_bounded_alone() {
-    let gpu = gpu();
-    let model = creature().expect("valid");
-    let clips = [&model.clips[0]];
-    let set = ClipSet::new(&clips).expect("one skeleton");
-    let (skeleton, reaches) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
-    let buffers = ClipBuffers::new(&gpu, &set).expect("uploaded");
-    let crowd = Crowd::new(&gpu, &set, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]).expect("fits");
-    let placements = Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded");
-    let clay = Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([200, 150, 90, 255])));
-    let clay = [Albedo::from(ColorTexture::new(&gpu, &clay, true).expect("uploaded"))];
-    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
-    let mut scene = CrowdScene::new(&gpu, format, Light::default()).expect("compiled");
-    let mut skinned = |matrices: &ModelMatrices, blend| {
-        let character = Character {
-            model: &model,
-            matrices,
-            placements: &placements,
-            fade: NO_FADE,
-            levels: &[],
-            blend,
-            albedos: &clay,
-        };
-        let piece = SkinFrame::new(&gpu, &model, 0, matrices, 1, blend).map(|_| ());
-        [piece, scene.add(&gpu, &character).map(|_| ())]
-    };
-    let table = GateTable::of_bounds(skeleton, &set, &clips, &reaches, crowd.path()).expect("fits");
-    let gated = |choice| GatedFrame::new(&gpu, skeleton, &buffers, &crowd, &table, choice).expect("prepared");
-    let bounded = gated(BOUNDED);
-    for refused in skinned(bounded.model_matrices(), Blend::DualQuaternion) {
-        let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-        assert_eq!((error.field.as_str(), error.value.as_str()), ("blend", "DualQuaternion"));
-        assert!(error.bound.contains("Bounded"), "{}", error.bound);
-    }
-    let uniform = gated(Choice::Gate(Gate::Uniform));
-    let all = [bounded.model_matrices(), uniform.model_matrices(), &ModelMatrices::new(&crowd.models)];
-    for (matrices, blend) in
-        all.into_iter().zip([Blend::Linear, Blend::DualQuaternion, Blend::DualQuaternion])
-    {
-        assert!(skinned(matrices, blend).iter().all(Result::is_ok), "{blend:?}");
-    }
 }
 
 /// A device of the suite's adapter as another program opens it.

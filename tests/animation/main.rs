@@ -9,6 +9,8 @@ mod concatenation;
 #[cfg(feature = "verify")]
 mod crowds;
 #[cfg(feature = "verify")]
+mod exclusive;
+#[cfg(feature = "verify")]
 mod frames;
 #[cfg(feature = "verify")]
 mod gating;

@@ -1,6 +1,7 @@
 //! The lists on the device.
 
 use crate::animation::crowd::Crowd;
+use crate::animation::model_matrices::ExclusiveConsumer;
 use crate::animation::order::Order;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::{Error, InputError};
@@ -12,6 +13,7 @@ pub struct ActivePairs {
     pub pairs: Buffer<u32>,
     /// Workgroups of 64 along x, y and z, and how many pairs: arguments of an indirect dispatch.
     pub dispatched: Buffer<u32>,
+    consumer: ExclusiveConsumer,
 }
 
 impl ActivePairs {
@@ -21,7 +23,13 @@ impl ActivePairs {
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
         let dispatched = Buffer::from_slice(gpu, "dispatched", &[0, 1, 1, 0])?;
-        Ok(Self { pairs: Buffer::new(gpu, "pairs", crowd.pairs())?, dispatched })
+        let consumer = crowd.model_matrices.consumer().clone();
+        Ok(Self { pairs: Buffer::new(gpu, "pairs", crowd.pairs())?, dispatched, consumer })
+    }
+
+    /// Refuses another crowd than the one that they were made for.
+    pub(crate) fn check_crowd(&self, crowd: &Crowd) -> Result<(), InputError> {
+        crowd.model_matrices.consumer().check_same(&self.consumer)
     }
 
     /// Makes these pairs active, from the host.

@@ -61,7 +61,7 @@ fn readback(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     let (here, mut there) = (vec![AFFINE_IDENTITY; pairs], vec![AFFINE_IDENTITY; pairs]);
     let contenders = vec![
         Contender::both(Backend::Gpu, || {
-            drop(black_box(scene.crowd.models.read_blocking(gpu)?));
+            drop(black_box(scene.crowd.model_matrices.read_blocking(gpu)?));
             Ok(())
         }),
         Contender::both(Backend::Copy, || Ok(gpu.run("copy", |encoder| copied.record(encoder))?)),

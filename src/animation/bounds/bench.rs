@@ -26,7 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let bones = scene.skeleton.len();
         let models: Vec<_> =
             locals.chunks(bones).flat_map(|locals| concat(&scene.skeleton, locals)).collect();
-        scene.crowd.models.write(gpu, &models)?;
+        scene.crowd.model_matrices.buffer().write(gpu, &models)?;
         let reaches = bone_reaches(&scene.skeleton);
         let job = pass.prepare(gpu, &scene.crowd, &reaches, &Buffer::new(gpu, "bounds", count)?)?;
         // A palette in, 8 words out.

@@ -62,7 +62,7 @@ impl BoundsPass {
         let reaches = Buffer::from_slice(gpu, "reaches", reaches)?;
         let group = bindings::Group {
             params: &uniform,
-            models: crowd.models.slice().cast(),
+            models: crowd.model_matrices.buffer().slice().cast(),
             reaches: reaches.slice(),
             bounds: bounds.slice().cast(),
         };

@@ -20,7 +20,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
         let (models, reaches) = random_palettes(case as u32, bones, count);
         let crowd = Crowd::new(gpu, &set, &instances)?;
-        crowd.models.write(gpu, &models)?;
+        crowd.model_matrices.buffer().write(gpu, &models)?;
         let expected = bounds(&models, &reaches);
         for share in [Share::Workgroup, Share::Whole] {
             let output = Poisoned::<Bounds>::new(gpu, count)?;

@@ -42,6 +42,7 @@ impl BudgetPass {
         active: &Active,
     ) -> Result<BudgetJob, Error> {
         gating.check(Some(Kind::Expectations), crowd)?;
+        active.pairs.check_crowd(crowd)?;
         let params = BudgetParams {
             instances: gating.lods.len() as u32,
             bones: crowd.bones as u32,

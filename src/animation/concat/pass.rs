@@ -77,7 +77,8 @@ impl ConcatPass {
     /// Prepares the matrices of what is dirty alone; the others stay.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
+    /// [`InputError`] for a crowd of another skeleton, and for another than the active bones were listed of;
+    /// [`GpuError`].
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -85,6 +86,7 @@ impl ConcatPass {
         crowd: &Crowd,
         active: &Active,
     ) -> Result<ConcatActiveJob, Error> {
+        active.pairs.check_crowd(crowd)?;
         let binder = Binder::new(gpu, skeleton, crowd)?;
         let lists =
             Lists { dirty: &active.dirty, instances: &active.instances, dispatches: &active.dispatches };
@@ -167,7 +169,7 @@ impl<'a> Binder<'a> {
             dirty_instances: lists.instances.slice(),
             dispatches: lists.dispatches.slice(),
             locals: crowd.locals.slice().cast(),
-            models: crowd.models.slice().cast(),
+            models: crowd.model_matrices.buffer().slice().cast(),
         };
         group.bind(gpu, kernel)
     }

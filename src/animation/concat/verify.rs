@@ -8,6 +8,7 @@ use crate::animation::concat::reference::{concat, concat_dirty};
 use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::gate::reference::Chosen;
+use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::asset::skeleton::Skeleton;
@@ -51,7 +52,7 @@ fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count:
     let bound = CONCAT_BOUND * deepest as f32 * largest;
     for walk in [Walk::Levels, Walk::Whole] {
         let output = Poisoned::<Affine>::new(gpu, bones * count)?;
-        crowd.models = output.buffer.clone();
+        crowd.model_matrices = ModelMatrices::new(&output.buffer);
         let job = ConcatPass::new(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let comparison =
@@ -99,7 +100,7 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
         crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
         let output = Poisoned::<Affine>::new(gpu, bones * count)?;
         output.buffer.write(gpu, &stale)?;
-        crowd.models = output.buffer.clone();
+        crowd.model_matrices = ModelMatrices::new(&output.buffer);
         let active = Active::new(gpu, &order, &crowd)?;
         active.bits.write(gpu, &chosen.bits)?;
         let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active, Stages::Three)?;

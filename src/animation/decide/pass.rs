@@ -93,7 +93,8 @@ impl DecidePass {
     /// Prepares the decision for a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of other clips, or of another kind than the choice needs; [`GpuError`].
+    /// [`InputError`] for a table of other clips, or of another kind than the choice needs, and as
+    /// [`GatePass::prepare`]; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -139,7 +140,7 @@ fn one(
     active: &Active,
 ) -> Result<Work, Error> {
     let phase = PhaseTime::new(gpu, clips, crowd, gating)?;
-    let gate = GateTime::new(gpu, gate, crowd, gating)?;
+    let gate = GateTime::new(gpu, gate, crowd, gating, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
     let group = bindings::Group {
         phase_params: &phase.uniform,

@@ -37,7 +37,8 @@ impl GatedFrame {
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for a crowd of another skeleton, and a table of other bones or clips, of another
-    /// kind than the choice needs, or of motion along another path than the crowd's ([`Crowd::path`]);
+    /// kind than the choice needs, or of motion along another path than the crowd's ([`Crowd::path`]), and for
+    /// [`Gate::Bounded`](super::Gate::Bounded) over model matrices that dual quaternions were prepared to blend;
     /// [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
@@ -59,7 +60,7 @@ impl GatedFrame {
             place: PlacePass::new(gpu)?.prepare_active(gpu, clips, crowd, &gating, &active)?,
             sample: sample.prepare_active(gpu, clips, crowd, &active.pairs)?,
             concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare_active(gpu, skeleton, crowd, &active)?,
-            model_matrices: ModelMatrices::gated(crowd, &active, choice),
+            model_matrices: crowd.model_matrices.with_updated_bones(&active.dirty),
             gating,
             active,
         })
@@ -88,7 +89,7 @@ impl GatedFrame {
         self.decide.set_budget(gpu, most)
     }
 
-    /// Records the frame: afterwards `crowd.models` holds the palettes.
+    /// Records the frame: afterwards the crowd's model matrices are those of the time.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation"));
     }

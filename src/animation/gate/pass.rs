@@ -6,6 +6,7 @@ use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate_table::Kind;
 use crate::animation::gating::Gating;
+use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::animation::gate as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::gate as modes;
@@ -31,7 +32,8 @@ impl GatePass {
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for a table of another kind than the gate needs, or of motion along another path than the crowd's
-    /// rotations take; [`GpuError`].
+    /// rotations take, for another crowd than the active bones are listed of, and for [`Gate::Bounded`] over model matrices
+    /// that dual quaternions were prepared to blend; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -39,7 +41,7 @@ impl GatePass {
         gating: &Gating,
         active: &Active,
     ) -> Result<GateJob, Error> {
-        let time = GateTime::new(gpu, self.gate, crowd, gating)?;
+        let time = GateTime::new(gpu, self.gate, crowd, gating, active)?;
         let group = bindings::Group {
             lods: gating.lods.slice(),
             phases: gating.phases.slice(),
@@ -78,13 +80,23 @@ pub(crate) struct GateTime {
 }
 
 impl GateTime {
-    pub fn new(gpu: &Gpu, gate: Gate, crowd: &Crowd, gating: &Gating) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Gpu,
+        gate: Gate,
+        crowd: &Crowd,
+        gating: &Gating,
+        active: &Active,
+    ) -> Result<Self, Error> {
         let needed = match gate {
             Gate::SkipPeriod { .. } => Some(Kind::Priorities),
             Gate::Bounded => Some(Kind::Bounds),
             Gate::Off | Gate::Uniform | Gate::Random => None,
         };
         gating.check(needed, crowd)?;
+        active.pairs.check_crowd(crowd)?;
+        if gate == Gate::Bounded {
+            crowd.model_matrices.consumer().claim(Consumer::BoundedGate)?;
+        }
         let params = GateParams {
             instances: gating.lods.len() as u32,
             bones: crowd.bones as u32,

@@ -55,13 +55,11 @@ impl SamplePass {
     /// path ([`Crowd::path`]); [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         self.check(crowd)?;
-        let nothing = ActivePairs {
-            pairs: Buffer::new(gpu, "no pairs", 0)?,
-            dispatched: Buffer::from_slice(gpu, "no pairs", &[0; 4])?,
-        };
+        let pairs = Buffer::new(gpu, "no pairs", 0)?;
+        let dispatched = Buffer::from_slice(gpu, "no pairs", &[0; 4])?;
         let kernel = &self.all[usize::from(clips.has_splines)];
         let step = Step {
-            groups: vec![bind(kernel, gpu, clips, crowd, &nothing)?],
+            groups: vec![bind(kernel, gpu, clips, crowd, [&pairs, &dispatched])?],
             workgroups: kernel.spread(gpu, crowd.pairs() as u32),
             kernel: kernel.clone(),
         };
@@ -71,7 +69,7 @@ impl SamplePass {
     /// Prepares sampling of the active pairs alone; the other local transforms stay.
     ///
     /// # Errors
-    /// As [`SamplePass::prepare`].
+    /// As [`SamplePass::prepare`]; [`InputError`] for pairs of another crowd.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -80,8 +78,9 @@ impl SamplePass {
         active: &ActivePairs,
     ) -> Result<SampleActiveJob, Error> {
         self.check(crowd)?;
+        active.check_crowd(crowd)?;
         let kernel = &self.compacted[usize::from(clips.has_splines)];
-        let group = bind(kernel, gpu, clips, crowd, active)?;
+        let group = bind(kernel, gpu, clips, crowd, [&active.pairs, &active.dispatched])?;
         Ok(IndirectJob::new("animation/sample", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
 
@@ -102,7 +101,7 @@ fn bind(
     gpu: &Gpu,
     clips: &ClipBuffers,
     crowd: &Crowd,
-    active: &ActivePairs,
+    [pairs, dispatched]: [&Buffer<u32>; 2],
 ) -> Result<Group, GpuError> {
     let params = SampleParams {
         bones: crowd.bones as u32,
@@ -118,8 +117,8 @@ fn bind(
         tracks: clips.tracks.slice().cast(),
         values: clips.values.slice(),
         places: crowd.places.slice().cast(),
-        pairs: active.pairs.slice(),
-        dispatched: active.dispatched.slice().cast(),
+        pairs: pairs.slice(),
+        dispatched: dispatched.slice().cast(),
         locals: crowd.locals.slice().cast(),
         shares: crowd.shares.slice(),
     };

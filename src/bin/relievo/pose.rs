@@ -160,7 +160,7 @@ fn on_gpu(gpu: &Gpu, model: &Model, clip: &Clip, time: f32) -> Result<(Vec<Trans
         concat.record(encoder);
     })?;
     let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
-    Ok((locals, crowd.models.read_blocking(gpu)?))
+    Ok((locals, crowd.model_matrices().read_blocking(gpu)?))
 }
 
 /// Refuses transforms that chains of large scales have driven out of range: JSON has no infinity.

@@ -221,13 +221,13 @@ fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error
 #[cfg(feature = "gpu")]
 mod device {
     use super::*;
+    use relievo::animation::ClipSet;
     use relievo::animation::concat::{ConcatPass, Walk};
     use relievo::animation::crowd::{ClipBuffers, Crowd};
     use relievo::animation::instance::Instance;
     use relievo::animation::instance::Wrap;
     use relievo::animation::place::PlacePass;
     use relievo::animation::sample::SamplePass;
-    use relievo::animation::{ClipSet, ModelMatrices};
     use relievo::asset::keyframe::RotationPath;
     use relievo::asset::transform::AFFINE_IDENTITY;
     use relievo::gpu::{Buffer, Gpu};
@@ -280,8 +280,7 @@ mod device {
         posed: &Crowd,
         albedo: &Albedo,
     ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
-        let matrices = ModelMatrices::new(&posed.models);
-        let frame = SkinFrame::new(gpu, moment.model, mesh, &matrices, 1, moment.blend)?;
+        let frame = SkinFrame::new(gpu, moment.model, mesh, posed.model_matrices(), 1, moment.blend)?;
         frame.crowd.reductions.write(gpu, &[moment.reduction])?;
         frame.crowd.weights.write(gpu, &moment.weights(&moment.model.meshes[mesh]))?;
         gpu.run("skin", |encoder| frame.record_all(encoder))?;

@@ -5,7 +5,6 @@ use image::{Rgba, RgbaImage};
 
 use super::look::{Drawable, Look};
 use super::{ASPECT, Animation, Variant};
-use crate::animation::ModelMatrices;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu};
 use crate::measure::device::Device;
@@ -77,7 +76,7 @@ impl<'a> World<'a> {
         let (model, count) = (stage.model(variant.mesh), stage.instances.len());
         let levels = LevelRanges::new(&stage.level_begins(variant.mesh, index))?;
         let matrices = match variant.animation {
-            Animation::Full => &ModelMatrices::new(&device.full.crowd.models),
+            Animation::Full => device.full.crowd.model_matrices(),
             Animation::Gated => device.gated.frame.model_matrices(),
         };
         let skin = SkinFrame::new(gpu, model, index, matrices, count, Blend::Linear)?;

@@ -1,6 +1,7 @@
 //! Palettes of crowds.
 
 use crate::Error;
+use crate::animation::ModelMatrices;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::bench::{BONES, CROWDS, Scene};
@@ -19,7 +20,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for instances in CROWDS {
         let scene = Scene::new(gpu, 1, 0, instances)?;
         let matrices = random_matrices(1, 2 * BONES, instances);
-        let models = Buffer::from_slice(gpu, "models", &matrices)?;
+        let models = ModelMatrices::new(&Buffer::from_slice(gpu, "models", &matrices)?);
         let job = pass.prepare(gpu, &scene.mesh, &models, &scene.crowd)?;
         let pairs = BONES * instances;
         // Two matrices and a number in, a matrix out.

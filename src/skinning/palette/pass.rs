@@ -3,8 +3,9 @@
 use encase::ShaderType;
 
 use crate::Error;
-use crate::asset::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::animation::ModelMatrices;
+use crate::animation::model_matrices::Consumer;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
 
@@ -33,19 +34,24 @@ impl PalettePass {
         Ok(Self { linear: kernel(0.0)?, dual: kernel(1.0)? })
     }
 
-    /// Prepares the palettes of all instances that are seen, from `models`, as [`crate::animation::concat`] writes them.
+    /// Prepares the palettes of all instances that are seen.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer models than the crowd needs; [`GpuError`].
+    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over those of a crowd
+    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending alone;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
         mesh: &MeshBuffers,
-        models: &Buffer<Affine>,
+        matrices: &ModelMatrices,
         crowd: &SkinnedCrowd,
     ) -> Result<Job, Error> {
-        models.check_holds("models", crowd.instances * mesh.all_bones)?;
+        matrices.buffer().check_holds("matrices", crowd.instances * mesh.all_bones)?;
         crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        if crowd.blend == Blend::DualQuaternion {
+            matrices.consumer().claim(Consumer::DualQuaternions)?;
+        }
         let kernel = if crowd.blend == Blend::Linear { &self.linear } else { &self.dual };
         let params = PaletteParams {
             bones: mesh.bones.len() as u32,
@@ -57,7 +63,7 @@ impl PalettePass {
             uniform.raw().as_entire_binding(),
             mesh.bones.raw().as_entire_binding(),
             mesh.inverse_binds.raw().as_entire_binding(),
-            models.raw().as_entire_binding(),
+            matrices.raw().as_entire_binding(),
             crowd.reductions.raw().as_entire_binding(),
             crowd.palette.raw().as_entire_binding(),
         ];

@@ -1,6 +1,7 @@
 //! Parity of `kernels/skinning/palette.wgsl`.
 
 use crate::Error;
+use crate::animation::ModelMatrices;
 use crate::gpu::Buffer;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
@@ -24,7 +25,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let skin = &model.skins[0];
         for (instances, blend) in [(3, Blend::Linear), (7, Blend::DualQuaternion)] {
             let matrices = random_matrices(case, shape.bones, instances);
-            let models = Buffer::from_slice(gpu, "models", &matrices)?;
+            let models = ModelMatrices::new(&Buffer::from_slice(gpu, "models", &matrices)?);
             let (mesh, _) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
             let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
             let output = Poisoned::<[f32; 4]>::new(gpu, crowd.palette.len())?;

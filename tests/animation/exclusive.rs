@@ -1,0 +1,219 @@
+//! The bound of `bounded` is one of linear blending: nothing blends the matrices of a crowd under it by dual quaternions.
+//! Whichever is prepared first excludes the other, on every way that leads to the crowd's matrices.
+
+use relievo::Error;
+use relievo::animation::active::Active;
+use relievo::animation::concat::{ConcatPass, Walk};
+use relievo::animation::crowd::{ClipBuffers, Crowd};
+use relievo::animation::decide::{DecidePass, Dispatches};
+use relievo::animation::frame::GatedFrame;
+use relievo::animation::gate::GatePass;
+use relievo::animation::gating::Gating;
+use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::sample::SamplePass;
+use relievo::animation::{Choice, ClipSet, Gate, GateTable, ModelMatrices, Order};
+use relievo::asset::Model;
+use relievo::asset::keyframe::RotationPath;
+use relievo::asset::transform::AFFINE_IDENTITY;
+use relievo::gpu::{Buffer, Gpu};
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::samples::creature;
+use relievo::skinning::Blend;
+use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::skinning::frame::SkinFrame;
+use relievo::skinning::lod::NO_FADE;
+use relievo::skinning::palette::PalettePass;
+use relievo::skinning::picture::Light;
+use relievo::surface::Mips;
+
+use crate::harness::gpu;
+
+/// What everything is prepared with.
+struct Rig {
+    gpu: Gpu,
+    model: Model,
+    set: ClipSet,
+    order: Order,
+    clips: ClipBuffers,
+    table: GateTable,
+    palette: PalettePass,
+    gate: GatePass,
+}
+
+impl Rig {
+    fn new() -> Self {
+        let (gpu, model) = (gpu(), creature().expect("valid"));
+        let clips = [&model.clips[0]];
+        let set = ClipSet::new(&clips).expect("one skeleton");
+        let reaches = vec![0.1; model.skeleton.len()];
+        let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+        Self {
+            order: Order::new(&model.skeleton),
+            clips: ClipBuffers::new(&gpu, &set).expect("uploaded"),
+            table: table.expect("fits"),
+            palette: PalettePass::new(&gpu).expect("compiled"),
+            gate: GatePass::new(&gpu, Gate::Bounded).expect("compiled"),
+            set,
+            gpu,
+            model,
+        }
+    }
+
+    fn crowd(&self) -> Crowd {
+        let plays = [Instance::new(0, Wrap::Loop, 0.0, 1.0)];
+        let crowd = Crowd::new(&self.gpu, &self.set, &plays).expect("fits");
+        crowd.with_previous(&self.gpu).expect("allocated")
+    }
+
+    fn active(&self, crowd: &Crowd) -> Active {
+        Active::new(&self.gpu, &self.order, crowd).expect("fits")
+    }
+
+    fn gating(&self, crowd: &Crowd) -> Gating {
+        Gating::new(&self.gpu, &self.table, crowd).expect("fits")
+    }
+
+    fn framed(&self, crowd: &Crowd, choice: Choice) -> Result<GatedFrame, Error> {
+        GatedFrame::new(&self.gpu, &self.model.skeleton, &self.clips, crowd, &self.table, choice)
+    }
+
+    /// Every way to put a crowd under `bounded`.
+    fn bound(&self, way: usize, crowd: &Crowd) -> Option<Result<(), Error>> {
+        let (gpu, bounded) = (&self.gpu, Choice::Gate(Gate::Bounded));
+        let (active, gating) = (self.active(crowd), self.gating(crowd));
+        Some(match way {
+            0 => self.framed(crowd, bounded).map(drop),
+            1 => self.gate.prepare(gpu, crowd, &gating, &active).map(drop),
+            2 => {
+                let decide = DecidePass::new(gpu, bounded, Dispatches::of(gpu, bounded, &active));
+                let decide = decide.expect("compiled");
+                decide.prepare(gpu, &self.clips, crowd, &gating, &active).map(drop)
+            }
+            3 => self.framed(&crowd.clone(), bounded).map(drop),
+            _ => return None,
+        })
+    }
+
+    /// Every way to blend the matrices of a crowd.
+    fn skin(&self, way: usize, crowd: &Crowd, blend: Blend) -> Option<Result<(), Error>> {
+        let own = crowd.model_matrices();
+        let updated = own.with_updated_bones(&self.active(crowd).dirty);
+        Some(match way {
+            0 => self.skinned(own, blend),
+            1 => self.skinned(&updated, blend),
+            2 => self.drawn(own, blend),
+            3 => self.drawn(&updated, blend),
+            4 => self.blended(own, blend),
+            5 => self.blended(crowd.previous.as_ref().expect("kept"), blend),
+            6 => self.blended(crowd.clone().model_matrices(), blend),
+            _ => return None,
+        })
+    }
+
+    fn skinned(&self, matrices: &ModelMatrices, blend: Blend) -> Result<(), Error> {
+        SkinFrame::new(&self.gpu, &self.model, 0, matrices, 1, blend).map(drop)
+    }
+
+    fn blended(&self, matrices: &ModelMatrices, blend: Blend) -> Result<(), Error> {
+        let (mesh, _) = MeshBuffers::new(&self.gpu, &self.model, &self.model.meshes[0]).expect("fits");
+        let crowd = SkinnedCrowd::new(&self.gpu, &mesh, 1, blend).expect("fits");
+        self.palette.prepare(&self.gpu, &mesh, matrices, &crowd).map(drop)
+    }
+
+    fn drawn(&self, matrices: &ModelMatrices, blend: Blend) -> Result<(), Error> {
+        let gpu = &self.gpu;
+        let clay = Mips::of_color(image::RgbaImage::from_pixel(1, 1, image::Rgba([200, 150, 90, 255])));
+        let character = Character {
+            model: &self.model,
+            matrices,
+            placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
+            fade: NO_FADE,
+            levels: &[],
+            blend,
+            albedos: &[Albedo::from(ColorTexture::new(gpu, &clay, true).expect("uploaded"))],
+        };
+        let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+        let mut scene = CrowdScene::new(gpu, format, Light::default()).expect("compiled");
+        scene.add(gpu, &character).map(drop)
+    }
+}
+
+#[track_caller]
+fn refuses(refused: Result<(), Error>, field: &str, value: &str) {
+    let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
+    assert_eq!((error.field.as_str(), error.value.as_str()), (field, value));
+    assert!(error.bound.contains("linear blending alone"), "{}", error.bound);
+}
+
+#[test]
+fn bounded_and_dual_quaternions_exclude_each_other_in_any_order() {
+    let rig = Rig::new();
+    let (mut gates, mut skins) = (0, 0);
+    while let Some(bound) = rig.bound(gates, &rig.crowd()) {
+        bound.expect("nothing precedes it");
+        skins = 0;
+        loop {
+            // The gate first.
+            let crowd = rig.crowd();
+            rig.bound(gates, &crowd).expect("a way").expect("nothing precedes it");
+            let Some(refused) = rig.skin(skins, &crowd, Blend::DualQuaternion) else { break };
+            refuses(refused, "blend", "DualQuaternion");
+            // What was refused claims nothing.
+            rig.bound(gates, &crowd).expect("a way").expect("the same again");
+            // Skinning first.
+            let crowd = rig.crowd();
+            rig.skin(skins, &crowd, Blend::DualQuaternion).expect("a way").expect("nothing precedes it");
+            refuses(rig.bound(gates, &crowd).expect("a way"), "gate", "Bounded");
+            rig.skin(skins, &crowd, Blend::DualQuaternion).expect("a way").expect("the same again");
+            skins += 1;
+        }
+        gates += 1;
+    }
+    assert_eq!((gates, skins), (4, 7));
+}
+
+/// Other gates promise nothing, linear blending is what the bound holds for, and matrices of one's own are no crowd's.
+#[test]
+fn nothing_else_is_excluded() {
+    let rig = Rig::new();
+    let crowd = rig.crowd();
+    rig.bound(0, &crowd).expect("a way").expect("nothing precedes it");
+    for way in 0.. {
+        let Some(skinned) = rig.skin(way, &crowd, Blend::Linear) else { break };
+        skinned.expect("linear blending");
+    }
+    let own = Buffer::new(&rig.gpu, "own", crowd.pairs()).expect("allocated");
+    rig.blended(&ModelMatrices::new(&own), Blend::DualQuaternion).expect("matrices of one's own");
+    let crowd = rig.crowd();
+    let uniform = rig.framed(&crowd, Choice::Gate(Gate::Uniform)).expect("prepared");
+    rig.skinned(uniform.model_matrices(), Blend::DualQuaternion).expect("no bound is promised");
+    rig.framed(&crowd, Choice::Gate(Gate::Random)).expect("no bound is promised");
+    // A refused preparation excludes nothing: here there are fewer matrices than instances need.
+    let crowd = rig.crowd();
+    let two = SkinFrame::new(&rig.gpu, &rig.model, 0, crowd.model_matrices(), 2, Blend::DualQuaternion);
+    assert!(two.is_err());
+    rig.bound(0, &crowd).expect("a way").expect("nothing precedes it");
+}
+
+/// A gate's list of active bones leads to no other crowd, where nobody would know of the gate.
+#[test]
+fn lists_of_active_bones_are_of_one_crowd() {
+    let rig = Rig::new();
+    let (gpu, crowd, other) = (&rig.gpu, rig.crowd(), rig.crowd());
+    let active = rig.active(&crowd);
+    let sample = SamplePass::new(gpu, RotationPath::Slerp).expect("compiled");
+    let concat = ConcatPass::new(gpu, Walk::of(gpu)).expect("compiled");
+    let prepared = |crowd: &Crowd| {
+        [
+            rig.gate.prepare(gpu, crowd, &rig.gating(crowd), &active).map(drop),
+            sample.prepare_active(gpu, &rig.clips, crowd, &active.pairs).map(drop),
+            concat.prepare_active(gpu, &rig.model.skeleton, crowd, &active).map(drop),
+        ]
+    };
+    assert!(prepared(&crowd).iter().all(Result::is_ok));
+    for refused in prepared(&other) {
+        let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
+        assert_eq!(error.field, "crowd");
+    }
+    rig.blended(other.model_matrices(), Blend::DualQuaternion).expect("what was refused claims nothing");
+}
