@@ -11,21 +11,21 @@
 
 use glam::{Vec3, camera};
 use image::{Rgba, RgbaImage};
-use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::place::PlacePass;
+use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::animation::local_to_model::{LocalToModelPass, Walk};
 use relievo::animation::sample::SamplePass;
-use relievo::animation::{ClipSet, Lens};
+use relievo::animation::{ClipSet, Projection};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::samples::creature;
-use relievo::skinning::ball::ball_in_clips;
-use relievo::skinning::lod::standing;
+use relievo::skinning::bounding_sphere::bounding_sphere_in_clips;
+use relievo::skinning::lod::placed;
 use relievo::skinning::picture::Light;
 use relievo::skinning::vertex::Blend;
 use relievo::skinning::{Extent, add_levels, level_errors, poses_of};
@@ -67,9 +67,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let play = |at: usize| Instance::new(0, Wrap::Loop, duration * (0.618 * at as f32).fract(), 1.0);
         let posed = Crowd::new(&gpu, &set, &(0..COUNT).map(play).collect::<Vec<_>>())?;
         let clips = ClipBuffers::new(&gpu, &set)?;
-        let place = PlacePass::new(&gpu)?.prepare(&gpu, &clips, &posed)?;
+        let place = KeyframeCursorPass::new(&gpu)?.prepare(&gpu, &clips, &posed)?;
         let sample = SamplePass::new(&gpu, RotationPath::Slerp)?.prepare(&gpu, &clips, &posed)?;
-        let concat = ConcatPass::new(&gpu, Walk::of(&gpu))?.prepare(&gpu, &model.skeleton, &posed)?;
+        let local_to_model =
+            LocalToModelPass::new(&gpu, Walk::of(&gpu))?.prepare(&gpu, &model.skeleton, &posed)?;
         let placements = Buffer::from_slice(&gpu, "placements", &places(model, index, characters))?;
         let albedos = Albedo::of_meshes(&gpu, model, &clay, ColorTexture::new)?;
         crowd.add(
@@ -84,21 +85,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 albedos: &albedos,
             },
         )?;
-        animations.push((place, sample, concat));
+        animations.push((place, sample, local_to_model));
     }
 
     // A frame.
     let eye = Vec3::new(0.0, 4.0, 8.0);
     let view = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.5, -6.0), Vec3::Y);
-    let lens =
+    let projection =
         camera::rh::proj::directx::perspective(FIELD_OF_VIEW, SIZE[0] as f32 / SIZE[1] as f32, 0.1, 200.0);
-    crowd.set_camera(&gpu, lens * view, eye)?;
+    crowd.set_camera(&gpu, projection * view, eye)?;
     let target = Target::new(&gpu, SIZE)?;
     let mut encoder = gpu.encoder("frame");
-    for (place, sample, concat) in &animations {
+    for (place, sample, local_to_model) in &animations {
         place.record(&mut encoder);
         sample.record(&mut encoder);
-        concat.record(&mut encoder);
+        local_to_model.record(&mut encoder);
     }
     crowd.record(&mut encoder);
     // Yours: any render pass with depth.
@@ -111,11 +112,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Between which distances a model fades, and from where on it has each of its levels of detail.
 fn ranges(model: &Model, poses: usize) -> Result<([f32; 2], Vec<f32>), relievo::InputError> {
-    let scale = scale(ball_in_clips(model).1);
+    let scale = scale(bounding_sphere_in_clips(model).1);
     let extent = Extent::of_model(model, &[0], poses)?.scaled(scale);
-    let lens = Lens::new(SIZE[1], FIELD_OF_VIEW, 0.1);
+    let projection = Projection::new(SIZE[1], FIELD_OF_VIEW, 0.1);
     let errors = level_errors(&model.meshes).into_iter().map(|error| scale * error);
-    Ok((extent.fade_range(&lens, PIXELS), extent.level_ranges(&lens, PIXELS, errors)))
+    Ok((extent.fade_range(&projection, PIXELS), extent.level_ranges(&projection, PIXELS, errors)))
 }
 
 /// Makes a ball three metres large.
@@ -125,13 +126,13 @@ fn scale(radius: f32) -> f32 {
 
 /// In rows away from the eye, every character two metres large, turned every way.
 fn places(model: &Model, index: usize, characters: usize) -> Vec<Affine> {
-    let (center, radius) = ball_in_clips(model);
+    let (center, radius) = bounding_sphere_in_clips(model);
     let scale = scale(radius);
     let place = |at: usize| {
         let (row, column) = (at / 8, (at % 8 * characters + index) as f32);
         let x = (column - 4.0 * characters as f32 + 0.5) * 2.0 / characters as f32;
         let at_ground = Vec3::new(x * 1.3, -scale * center.y + 1.0, -3.0 * row as f32 - index as f32);
-        standing(at_ground, 0.7 * at as f32, scale)
+        placed(at_ground, 0.7 * at as f32, scale)
     };
     (0..COUNT).map(place).collect()
 }

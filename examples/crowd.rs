@@ -7,9 +7,9 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Lens, Lod};
+use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Lod, Projection};
 use relievo::asset::keyframe::RotationPath;
-use relievo::asset::mesh::reaches;
+use relievo::asset::mesh::bone_radii;
 use relievo::gpu::{Gpu, Options};
 use relievo::samples::creature;
 
@@ -23,8 +23,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = creature()?;
     let clips: Vec<_> = model.clips.iter().collect();
     let set = ClipSet::new(&clips)?;
-    let reaches = reaches(model.skeleton.len(), &model.skins, &model.meshes);
-    let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp)?;
+    let bone_radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
+    let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
 
     // A thousand of them, each at a moment of its own, from 10 to 110 m away.
     let count = 1000;
@@ -38,17 +38,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &table, choice)?;
 
     // A frame: how far away each is, and how many pixels may be missed.
-    let lens = Lens::new(1080, 1.0, 0.1);
+    let projection = Projection::new(1080, 1.0, 0.1);
     let lods: Vec<Lod> = (0..count)
         .map(|at| {
             let centre = [0.0, 0.0, 10.0 + 0.1 * at as f32];
-            let metres = lens.allowed(centre, table.radius(), 1.0);
+            let metres = projection.allowed(centre, table.radius(), 1.0);
             Lod { allowed: table.units(metres), ..Lod::FULL }
         })
         .collect();
     for number in 0..60 {
         let elapsed = number as f32 / 60.0;
-        frame.gating.lods.write(&gpu, &lods)?;
+        frame.gate_state.lods.write(&gpu, &lods)?;
         frame.set(
             &gpu,
             &Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 },

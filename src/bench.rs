@@ -1,4 +1,4 @@
-//! Benchmarks: every kernel beside its twin and a copy of the same bytes, in one run on the adapter at hand
+//! Benchmarks: every kernel beside its reference and a copy of the same bytes, in one run on the adapter at hand
 //! (`relievo bench`). Figures are ratios: absolute times mean little across machines.
 
 use serde::Serialize;
@@ -37,14 +37,14 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/cone_map", run: surface::cone_map::bench::cases },
     Stem { name: "surface/shade", run: surface::shade::bench::cases },
     Stem { name: "surface/tangent", run: surface::tangent::bench::cases },
-    Stem { name: "animation/place", run: animation::place::bench::cases },
-    Stem { name: "animation/phase", run: animation::phase::bench::cases },
+    Stem { name: "animation/keyframe_cursor", run: animation::keyframe_cursor::bench::cases },
+    Stem { name: "animation/clip_clock", run: animation::clip_clock::bench::cases },
     Stem { name: "animation/gate", run: animation::gate::bench::cases },
     Stem { name: "animation/budget", run: animation::budget::bench::cases },
     Stem { name: "animation/compact", run: animation::compact::bench::cases },
     Stem { name: "animation/decide", run: animation::decide::bench::cases },
     Stem { name: "animation/sample", run: animation::sample::bench::cases },
-    Stem { name: "animation/concat", run: animation::concat::bench::cases },
+    Stem { name: "animation/local_to_model", run: animation::local_to_model::bench::cases },
     Stem { name: "animation/bounds", run: animation::bounds::bench::cases },
     Stem { name: "skinning/lod", run: skinning::lod::bench::cases },
     Stem { name: "skinning/palette", run: skinning::palette::bench::cases },
@@ -65,7 +65,7 @@ pub struct Summary {
     pub driver: String,
     /// The commit that was built, where known.
     pub commit: String,
-    /// Threads of `twin-parallel`.
+    /// Threads of `reference-parallel`.
     pub threads: usize,
     /// The figures.
     pub rows: Vec<Row>,

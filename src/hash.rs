@@ -1,4 +1,4 @@
-//! Counter-based random words: twin of `wgsl/hash.wgsl`.
+//! Counter-based random words: reference of `wgsl/hash.wgsl`.
 
 /// Draws a lane: the compiler turns these into vectors.
 pub const LANES: usize = 8;

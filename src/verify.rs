@@ -1,4 +1,4 @@
-//! Parity: every kernel against its twin, on the adapter at hand. Part of the product, so that a user with a
+//! Parity: every kernel against its reference, on the adapter at hand. Part of the product, so that a user with a
 //! strange driver finds out (`relievo verify`).
 
 use serde::Serialize;
@@ -38,14 +38,14 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/relief", run: surface::relief::verify::cases },
     Stem { name: "surface/shade", run: surface::shade::verify::cases },
     Stem { name: "surface/tangent", run: surface::tangent::verify::cases },
-    Stem { name: "animation/place", run: animation::place::verify::cases },
-    Stem { name: "animation/phase", run: animation::phase::verify::cases },
+    Stem { name: "animation/keyframe_cursor", run: animation::keyframe_cursor::verify::cases },
+    Stem { name: "animation/clip_clock", run: animation::clip_clock::verify::cases },
     Stem { name: "animation/gate", run: animation::gate::verify::cases },
     Stem { name: "animation/budget", run: animation::budget::verify::cases },
     Stem { name: "animation/compact", run: animation::compact::verify::cases },
     Stem { name: "animation/decide", run: animation::decide::verify::cases },
     Stem { name: "animation/sample", run: animation::sample::verify::cases },
-    Stem { name: "animation/concat", run: animation::concat::verify::cases },
+    Stem { name: "animation/local_to_model", run: animation::local_to_model::verify::cases },
     Stem { name: "animation/bounds", run: animation::bounds::verify::cases },
     Stem { name: "skinning/lod", run: skinning::lod::verify::cases },
     Stem { name: "skinning/palette", run: skinning::palette::verify::cases },

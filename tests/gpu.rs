@@ -10,11 +10,11 @@ use std::task::{Context, Poll, Wake};
 use harness::gpu;
 use relievo::animation::ClipSet;
 use relievo::animation::active::ActivePairs;
-use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::place::PlacePass;
+use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::animation::local_to_model::{LocalToModelPass, Walk};
 use relievo::animation::sample::SamplePass;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{
@@ -47,15 +47,15 @@ fn foreign_with_instance() -> (wgpu::Instance, wgpu::Device, wgpu::Queue) {
     (instance, device, queue)
 }
 
-fn heights_equal_the_twin(gpu: &Gpu) {
+fn heights_equal_the_reference(gpu: &Gpu) {
     let config = Config::new(65, 20.0, "device").expect("valid");
     let pass = HeightPass::new(gpu, Offset::Signed, None).expect("compiled");
     let batch = HeightBatch::new(gpu, &pass, &config, [2, 0], 0).expect("allocated");
     batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
     gpu.run("test", |encoder| batch.record(encoder)).expect("run");
     let actual = batch.fields()[0].heights.read_blocking(gpu).expect("read");
-    let twin = |patch| height(&config, &Features::default(), Window { patch, reach: 0 });
-    assert_eq!(actual, [twin([3, 4]), twin([-1, 0])].concat());
+    let reference = |patch| height(&config, &Features::default(), Window { patch, apron: 0 });
+    assert_eq!(actual, [reference([3, 4]), reference([-1, 0])].concat());
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn an_adapter_that_does_not_exist_is_an_error_with_what_to_do() {
 fn relievo_embeds_in_a_program_with_its_own_device() {
     let (device, queue) = foreign();
     let gpu = Gpu::from_wgpu(device, queue);
-    heights_equal_the_twin(&gpu);
+    heights_equal_the_reference(&gpu);
     let timer = Timer::new(&gpu).expect("a timer");
     assert_eq!(timer.timed_by(), TimedBy::Wall, "the device has no timestamps");
     assert!(timer.measure(&gpu, |_| ()).expect("measured").nanoseconds > 0.0);
@@ -83,7 +83,7 @@ fn a_validation_error_is_returned_and_the_device_goes_on() {
         let buffer = Buffer::<u32>::new(&gpu, "small", 4).expect("allocated");
         let error = buffer.write(&gpu, &[0; 5]).expect_err("too long");
         assert!(matches!(error, GpuError::Validation { .. }), "{error}");
-        heights_equal_the_twin(&gpu);
+        heights_equal_the_reference(&gpu);
     }
 }
 
@@ -145,18 +145,18 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
     for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
         let config = Config::new(4097, 20.0, "large").expect("valid");
         let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
-        let reach = 850;
-        match HeightBatch::new(&gpu, &pass, &config, [1, reach], 0) {
+        let apron = 850;
+        match HeightBatch::new(&gpu, &pass, &config, [1, apron], 0) {
             Ok(batch) => {
                 assert!(gpu.max_binding() > 128 << 20);
                 batch.set(&gpu, &[[0, 0]], &Features::default()).expect("set");
                 gpu.run("test", |encoder| batch.record(encoder)).expect("run");
                 let actual = batch.fields()[0].heights.read_blocking(&gpu).expect("read");
-                assert!(actual == height(&config, &Features::default(), Window { patch: [0, 0], reach }));
+                assert!(actual == height(&config, &Features::default(), Window { patch: [0, 0], apron }));
             }
             Err(error) => {
                 assert!(gpu.max_binding() == 128 << 20, "{error}");
-                assert!(error.to_string().contains("smaller patches or a smaller reach"), "{error}");
+                assert!(error.to_string().contains("smaller patches or a smaller apron"), "{error}");
             }
         }
     }
@@ -176,7 +176,7 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let points = 1025_usize * 1025;
     assert!(batch.bytes() <= 8 * points as u64 * u64::from(count), "{} bytes", batch.bytes());
     let last = batch.fields()[1].heights.read_blocking(&gpu).expect("read");
-    let expected = height(&config, &Features::default(), Window { patch: [32, -32], reach: 0 });
+    let expected = height(&config, &Features::default(), Window { patch: [32, -32], apron: 0 });
     assert!(last[last.len() - points..] == expected);
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
 }
@@ -233,11 +233,12 @@ fn a_frame_of_a_crowd_allocates_nothing() {
     let crowd = Crowd::new(&gpu, &set, &instances).expect("allocated");
     let active = ActivePairs::new(&gpu, &crowd).expect("allocated");
     let sampling = SamplePass::new(&gpu, RotationPath::Slerp).expect("compiled");
-    let place = PlacePass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("prepared");
+    let place =
+        KeyframeCursorPass::new(&gpu).expect("compiled").prepare(&gpu, &clips, &crowd).expect("prepared");
     let sample = sampling.prepare(&gpu, &clips, &crowd).expect("prepared");
     let some = sampling.prepare_active(&gpu, &clips, &crowd, &active).expect("prepared");
-    let concat = ConcatPass::new(&gpu, Walk::Levels).expect("compiled");
-    let concat = concat.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
+    let local_to_model = LocalToModelPass::new(&gpu, Walk::Levels).expect("compiled");
+    let local_to_model = local_to_model.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
     for frame in 0..4 {
         let (known, _) = census(&instance, &gpu);
         place.set(&gpu, frame as f32 / 60.0).expect("set");
@@ -247,7 +248,7 @@ fn a_frame_of_a_crowd_allocates_nothing() {
         place.record(&mut encoder);
         sample.record(&mut encoder);
         some.record(&mut encoder);
-        concat.record(&mut encoder);
+        local_to_model.record(&mut encoder);
         assert_eq!(census(&instance, &gpu), (known, memory), "frame {frame}");
         gpu.queue().submit([encoder.finish()]);
     }

@@ -48,11 +48,11 @@ fn recipes() -> Vec<Recipe> {
 }
 
 /// Bytes of the lists of features, and of the index that finds them in every window.
-fn list_bytes(gpu: &Gpu, recipe: &Recipe, reach: u32) -> u64 {
+fn list_bytes(gpu: &Gpu, recipe: &Recipe, apron: u32) -> u64 {
     if recipe.features.is_empty() {
         return 0;
     }
-    let width = SIZE + 2 * reach;
+    let width = SIZE + 2 * apron;
     // Every level is at most half as wide as the next, and three points.
     let widths: Vec<_> = (0..=6).map(|level| (width >> level) + 4).collect();
     let room = PATCHES.len() * 9 * recipe.features.len();
@@ -91,10 +91,10 @@ fn generation_holds_two_words_a_sample() {
         let gpu = gpu_of_bindings(binding);
         for recipe in recipes() {
             for margin in [0, 1] {
-                let reach = recipe.reach(margin);
+                let apron = recipe.apron(margin);
                 let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
-                let samples = PATCHES.len() as u64 * u64::from(SIZE + 2 * reach).pow(2);
-                let lists = list_bytes(&roomy, &recipe, reach);
+                let samples = PATCHES.len() as u64 * u64::from(SIZE + 2 * apron).pow(2);
+                let lists = list_bytes(&roomy, &recipe, apron);
                 let (parts, seen, own) = most_allocated(&gpu, || {
                     generator.generate(&gpu, &PATCHES, margin, &mut |_| ()).expect("generated")
                 });

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 
 use harness::gpu;
 use relievo::animation::Wrap;
-use relievo::animation::place::reference::inside_clip;
+use relievo::animation::keyframe_cursor::reference::inside_clip;
 use relievo::gpu::{Buffer, Gpu, shaders::MODULES};
 use relievo::skinning::palette::reference::dual;
 use relievo::surface::{Address, HeightMap, Method, SurfaceTextures};
-use relievo::terrain::blend::reference::zone_shares;
+use relievo::terrain::blend::reference::zone_fractions;
 use relievo::terrain::blend::{MapZone, WeightMode};
 use relievo::terrain::fixed::{mean_of_four, multiply_high};
 
@@ -123,7 +123,7 @@ fn zone_weights_are_those_of_the_reference() {
     for (additive, weights) in [(0.0, WeightMode::Normalized), (1.0, WeightMode::Additive)] {
         let words = run(&gpu, "terrain", &[("ADDITIVE", additive)], None, &heights, 3 * heights.len() + 6);
         let expected: Vec<f32> =
-            heights.iter().flat_map(|height| zone_shares(&zones(), *height, weights)).collect();
+            heights.iter().flat_map(|height| zone_fractions(&zones(), *height, weights)).collect();
         assert!(expected.iter().any(|share| *share > 0.0 && *share < 1.0), "nothing is blended");
         assert_near(&words[..expected.len()], &expected, 1e-6);
     }

@@ -23,7 +23,7 @@ use relievo::terrain::morph::{Morph, MorphPass};
 use relievo::verify;
 
 #[test]
-fn kernels_equal_their_twins() {
+fn kernels_equal_their_references() {
     let gpu = harness::gpu();
     let report = verify::run(&gpu, None, &mut |_: &CaseResult| ()).expect("the device works");
     let wrong: Vec<_> =
@@ -273,7 +273,7 @@ fn poison_shows_what_was_not_written_and_what_was_written_beyond() {
     assert!(beyond.fault.expect("a fault").contains("beyond"));
 }
 
-/// A kernel that is given another parameter than its twin does not pass.
+/// A kernel that is given another parameter than its reference does not pass.
 #[test]
 fn a_kernel_that_computes_something_else_fails() {
     let gpu = harness::gpu();

@@ -10,8 +10,8 @@ use std::path::Path;
 
 use glam::{Mat4, Vec3};
 use harness::relievo;
-use relievo::animation::{Lens, ModelMatrices};
-use relievo::animation::{bounds, concat, place, sample};
+use relievo::animation::{ModelMatrices, Projection};
+use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, shaders};
 use relievo::render::TerrainScene;
@@ -173,7 +173,7 @@ fn characters(
     (gpu, mut encoder, mut render_pass): (Gpu, wgpu::CommandEncoder, wgpu::RenderPass<'_>),
     (mut fox, run, plain): (Model, usize, ColorTexture),
     (matrices, placements, blend): (&ModelMatrices, &Buffer<Affine>, Blend),
-    (lens, clip_from_world, eye): (Lens, Mat4, Vec3),
+    (projection, clip_from_world, eye): (Projection, Mat4, Vec3),
 ) -> Result<(), Error> {
     let color_format = relievo::render::target::COLOR_FORMAT;
     let plain: Albedo = plain.into();
@@ -182,8 +182,8 @@ fn characters(
     add_levels(&mut fox, &[run], poses)?;
     let albedos = Albedo::of_meshes(&gpu, &fox, &plain, ColorTexture::new)?;
     let extent = Extent::of_model(&fox, &[run], poses)?;
-    let fade = extent.fade_range(&lens, 0.25);
-    let levels = &extent.level_ranges(&lens, 0.25, level_errors(&fox.meshes));
+    let fade = extent.fade_range(&projection, 0.25);
+    let levels = &extent.level_ranges(&projection, 0.25, level_errors(&fox.meshes));
     let foxes = Character { model: &fox, matrices, placements, fade, levels, blend, albedos: &albedos };
     crowd.add(&gpu, &foxes)?;
     crowd.set_camera(&gpu, clip_from_world, eye)?;
@@ -239,10 +239,10 @@ fn bounds_of_the_table_are_those_that_parity_holds() {
         ("terrain/normals", normals::NORMAL_BOUND),
         ("surface/tangent", tangent::TANGENT_BOUND),
         ("surface/cone_map", cone_map::RADIUS_BOUND),
-        ("animation/place", place::PLACE_BOUND),
+        ("animation/keyframe_cursor", keyframe_cursor::KEYFRAME_CURSOR_BOUND),
         ("animation/sample", sample::SAMPLE_BOUND),
         ("animation/sample", sample::LAYER_GROWTH),
-        ("animation/concat", concat::CONCAT_BOUND),
+        ("animation/local_to_model", local_to_model::LOCAL_TO_MODEL_BOUND),
         ("animation/bounds", bounds::BOUNDS_BOUND),
         ("skinning/palette", palette::PALETTE_BOUND),
         ("skinning/morph_weights", morph_weights::MORPH_WEIGHTS_BOUND),

@@ -35,7 +35,7 @@ fn every_kernel_has_parity_cases_and_a_benchmark() {
     assert_eq!(lacking("terrain/nothing").len(), 2);
 }
 
-/// What a kernel's benchmark lacks: a kernel and a twin in every case, and something that both are measured
+/// What a kernel's benchmark lacks: a kernel and a reference in every case, and something that both are measured
 /// against.
 fn unmeasured(stem: &bench::Stem) -> Vec<String> {
     let rows = bench::unmeasured(&harness::gpu(), stem).expect("the device works");
@@ -46,8 +46,8 @@ fn unmeasured(stem: &bench::Stem) -> Vec<String> {
     let has = |case: &str, backends: &[Backend]| {
         rows.iter().any(|row| row.case == case && row.items > 0 && backends.contains(&row.backend))
     };
-    let twins = &[Backend::Twin, Backend::TwinParallel][..];
-    let needed = [&[Backend::Gpu][..], twins, &[Backend::Copy, Backend::Limit]];
+    let references = &[Backend::Reference, Backend::ReferenceParallel][..];
+    let needed = [&[Backend::Gpu][..], references, &[Backend::Copy, Backend::Limit]];
     (cases.iter().flat_map(|case| needed.map(|backends| (case, backends))))
         .filter(|(case, backends)| !has(case, backends))
         .map(|(case, backends)| format!("one of {backends:?} in {case}"))
@@ -55,7 +55,7 @@ fn unmeasured(stem: &bench::Stem) -> Vec<String> {
 }
 
 #[test]
-fn every_benchmark_measures_kernel_twin_and_baseline() {
+fn every_benchmark_measures_kernel_reference_and_baseline() {
     for stem in bench::STEMS {
         assert_eq!(unmeasured(stem), Vec::<String>::new(), "{}", stem.name);
     }

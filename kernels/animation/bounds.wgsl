@@ -10,9 +10,9 @@ struct BoundsParams {
 
 @group(0) @binding(0) var<uniform> params: BoundsParams;
 // Three rows a bone.
-@group(0) @binding(1) var<storage, read> models: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read> model_matrices: array<vec4<f32>>;
 // Of each bone, in its own space.
-@group(0) @binding(2) var<storage, read> reaches: array<f32>;
+@group(0) @binding(2) var<storage, read> bone_radii: array<f32>;
 // Lower and upper corner an instance.
 @group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
 
@@ -39,12 +39,12 @@ fn around(instance: u32, first: u32, stride: u32) -> Box {
     var high = vec3<f32>(-LARGEST);
     for (var bone = first; bone < params.bones; bone += stride) {
         let at = 3u * (instance * params.bones + bone);
-        let x = models[at];
-        let y = models[at + 1u];
-        let z = models[at + 2u];
+        let x = model_matrices[at];
+        let y = model_matrices[at + 1u];
+        let z = model_matrices[at + 2u];
         let centre = vec3<f32>(x.w, y.w, z.w);
         let squares = vec3<f32>(dot(x.xyz, x.xyz), dot(y.xyz, y.xyz), dot(z.xyz, z.xyz));
-        let half = reaches[bone] * (sqrt(squares) + LEAST) * GROWTH + abs(centre) * OF_CENTRE;
+        let half = bone_radii[bone] * (sqrt(squares) + LEAST) * GROWTH + abs(centre) * OF_CENTRE;
         low = min(low, centre - half);
         high = max(high, centre + half);
     }

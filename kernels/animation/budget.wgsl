@@ -1,6 +1,6 @@
 // Which bones are sampled when only so many may be: those whose stale transforms are expected to show most. Five
 // stages, a dispatch each. Equal ranks are served in the order of instances and slots, so every device decides alike.
-import package::wgsl::animation::gating::{Lod, PHASE_FORCED, PHASE_FREE, Phase, fraction_of, verdict_of};
+import package::wgsl::animation::gate_state::{Lod, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
 // One of the constants below.
@@ -33,9 +33,9 @@ struct BudgetParams {
 
 @group(0) @binding(0) var<uniform> params: BudgetParams;
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
-@group(0) @binding(2) var<storage, read> phases: array<Phase>;
+@group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
 // Of each clip: its row of periods, then a bit for each bone that moves in it.
-@group(0) @binding(3) var<storage, read> movers: array<u32>;
+@group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
 // For each bone the sum of motion and its rise.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
 // For each bone, the sum of motion when it was sampled last.
@@ -54,26 +54,26 @@ const TIES = 1027u;
 
 var<workgroup> sums: array<u32, WIDTH>;
 
-struct Place {
+struct KeyframeCursor {
     instance: u32,
     // The first of its bones.
     slot: u32,
     candidates: u32,
     forced: u32,
     periods: u32,
-    phase: Phase,
+    clip_clock: ClipClock,
 }
 
-fn place_of(index: u32) -> Place {
+fn word_of_bones_at(index: u32) -> KeyframeCursor {
     let instance = index / params.words;
     let word = index - instance * params.words;
-    let phase = phases[instance];
-    let verdict = verdict_of(phase);
-    let record = phase.clip * (params.words + 1u);
+    let clip_clock = clip_clocks[instance];
+    let reason = update_reason_of(clip_clock);
+    let record = clip_clock.clip * (params.words + 1u);
     let all = 0xffffffffu >> (32u - min(params.bones - 32u * word, 32u));
-    let candidates = select(movers[record + 1u + word], 0u, verdict != PHASE_FREE);
-    let forced = select(0u, all, verdict >= PHASE_FORCED);
-    return Place(instance, 32u * word, candidates, forced, movers[record], phase);
+    let candidates = select(animated_bones[record + 1u + word], 0u, reason != UPDATE_REASON_FREE);
+    let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
+    return KeyframeCursor(instance, 32u * word, candidates, forced, animated_bones[record], clip_clock);
 }
 
 fn is_unlimited() -> bool {
@@ -100,35 +100,35 @@ fn rank_of(missed: u32, weight: u32) -> u32 {
     return 1u + 16u * lead + (fine & 15u);
 }
 
-fn motion_now(place: Place, bit: u32) -> u32 {
-    return motion_at(table[place.phase.row * params.stride + place.slot + bit], fraction_of(place.phase));
+fn motion_now(word_of_bones: KeyframeCursor, bit: u32) -> u32 {
+    return motion_at(table[word_of_bones.clip_clock.row * params.stride + word_of_bones.slot + bit], fraction_of(word_of_bones.clip_clock));
 }
 
-fn missed_by(place: Place, bit: u32, last: u32) -> u32 {
-    let period = table[place.periods * params.stride + place.slot + bit].x;
-    return motion_between(motion_now(place, bit), last, period);
+fn missed_by(word_of_bones: KeyframeCursor, bit: u32, last: u32) -> u32 {
+    let period = table[word_of_bones.periods * params.stride + word_of_bones.slot + bit].x;
+    return motion_between(motion_now(word_of_bones, bit), last, period);
 }
 
 fn rank(index: u32) {
-    let place = place_of(index);
-    if place.slot == 0u {
-        atomicStore(&tally[TIES + place.instance], 0u);
+    let word_of_bones = word_of_bones_at(index);
+    if word_of_bones.slot == 0u {
+        atomicStore(&tally[TIES + word_of_bones.instance], 0u);
     }
-    if place.forced != 0u {
-        atomicAdd(&tally[FORCED], countOneBits(place.forced));
+    if word_of_bones.forced != 0u {
+        atomicAdd(&tally[FORCED], countOneBits(word_of_bones.forced));
     }
     if is_unlimited() {
         return;
     }
-    let weight = lods[place.instance].weight;
-    let own = place.instance * params.bones + place.slot;
+    let weight = lods[word_of_bones.instance].weight;
+    let own = word_of_bones.instance * params.bones + word_of_bones.slot;
     for (var two = 0u; two < 16u; two++) {
         var both = 0u;
         for (var bit = 2u * two; bit < 2u * two + 2u; bit++) {
-            if (place.candidates & (1u << bit)) == 0u {
+            if (word_of_bones.candidates & (1u << bit)) == 0u {
                 continue;
             }
-            let missed = missed_by(place, bit, sampled[own + bit]);
+            let missed = missed_by(word_of_bones, bit, sampled[own + bit]);
             if missed > 0u {
                 let rank = rank_of(missed, weight);
                 both |= rank << (16u * (bit & 1u));
@@ -140,10 +140,10 @@ fn rank(index: u32) {
 }
 
 fn choose(lane: u32) {
-    let share = RANKS / WIDTH;
-    let first = share * lane;
+    let chunk = RANKS / WIDTH;
+    let first = chunk * lane;
     var sum = 0u;
-    for (var at = first; at < first + share; at++) {
+    for (var at = first; at < first + chunk; at++) {
         sum += atomicLoad(&tally[at]);
     }
     sums[lane] = sum;
@@ -159,7 +159,7 @@ fn choose(lane: u32) {
         // Rank 0 stands for no motion, and is never served.
         var lowest = 0u;
         if block > 0u {
-            lowest = share * block - 1u;
+            lowest = chunk * block - 1u;
             var count = atomicLoad(&tally[lowest]);
             while count <= room {
                 room -= count;
@@ -171,18 +171,18 @@ fn choose(lane: u32) {
         atomicStore(&tally[ROOM], select(room, 0u, lowest == 0u));
     }
     workgroupBarrier();
-    for (var at = first; at < first + share; at++) {
+    for (var at = first; at < first + chunk; at++) {
         atomicStore(&tally[at], 0u);
     }
 }
 
 fn decide(index: u32) {
-    let place = place_of(index);
+    let word_of_bones = word_of_bones_at(index);
     let lowest = atomicLoad(&tally[LOWEST]);
-    var above = place.forced;
+    var above = word_of_bones.forced;
     var equal = 0u;
     if is_unlimited() {
-        above |= place.candidates;
+        above |= word_of_bones.candidates;
     } else {
         for (var two = 0u; two < 16u; two++) {
             let both = ranks[16u * index + two];
@@ -196,14 +196,14 @@ fn decide(index: u32) {
     bits[params.instances * params.words + index] = 0u;
     ranks[16u * params.instances * params.words + index] = equal;
     if equal != 0u {
-        atomicAdd(&tally[TIES + place.instance], countOneBits(equal));
+        atomicAdd(&tally[TIES + word_of_bones.instance], countOneBits(equal));
     }
 }
 
 fn sum_ties(lane: u32) {
-    let share = (params.instances + WIDTH - 1u) / WIDTH;
-    let first = min(lane * share, params.instances);
-    let end = min(first + share, params.instances);
+    let chunk = (params.instances + WIDTH - 1u) / WIDTH;
+    let first = min(lane * chunk, params.instances);
+    let end = min(first + chunk, params.instances);
     var sum = 0u;
     for (var instance = first; instance < end; instance++) {
         sum += atomicLoad(&tally[TIES + instance]);
@@ -220,10 +220,10 @@ fn sum_ties(lane: u32) {
 }
 
 fn settle(index: u32) {
-    let place = place_of(index);
+    let word_of_bones = word_of_bones_at(index);
     let first_ties = 16u * params.instances * params.words;
-    var before = atomicLoad(&tally[TIES + place.instance]);
-    for (var word = index - place.slot / 32u; word < index; word++) {
+    var before = atomicLoad(&tally[TIES + word_of_bones.instance]);
+    for (var word = index - word_of_bones.slot / 32u; word < index; word++) {
         before += countOneBits(ranks[first_ties + word]);
     }
     let room = atomicLoad(&tally[ROOM]);
@@ -235,11 +235,11 @@ fn settle(index: u32) {
         before++;
     }
     bits[index] = chosen;
-    let own = place.instance * params.bones + place.slot;
+    let own = word_of_bones.instance * params.bones + word_of_bones.slot;
     while chosen != 0u {
         let bit = firstTrailingBit(chosen);
         chosen &= chosen - 1u;
-        sampled[own + bit] = motion_now(place, bit);
+        sampled[own + bit] = motion_now(word_of_bones, bit);
     }
 }
 

@@ -1,4 +1,4 @@
-// From bits to lists: the pairs of instance and bone that are active, the slots that are dirty since a bone above them is
+// From bits to lists: the pairs of instance and bone that are active, the slots that are updated since a bone above them is
 // active, the instances with any, and the arguments of the dispatches that serve them. Lists keep the order of the
 // instances and, within one, of its slots, on every device. Three stages, a dispatch each, or all in one.
 

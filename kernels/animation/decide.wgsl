@@ -3,8 +3,8 @@
 import package::wgsl::animation::compact::{Spread, counts, instances_of, list_instance, scan, spread_word};
 import package::wgsl::animation::gate::{gate_params, gate_word, store_word};
 import package::wgsl::animation::gated::lods::lods;
-import package::wgsl::animation::gated::phases::phases;
-import package::wgsl::animation::phase::phase_of;
+import package::wgsl::animation::gated::clip_clocks::clip_clocks;
+import package::wgsl::animation::clip_clock::clip_clock_of;
 
 // As many as lavapipe runs at once: where there are more, they wait for each other at the barrier.
 const LANES = 8u;
@@ -12,12 +12,12 @@ const LANES = 8u;
 // How many of its bones are active.
 fn decide_instance(instance: u32) -> u32 {
     let lod = lods[instance];
-    let phase = phase_of(instance, lod.flags);
-    phases[instance] = phase;
+    let clip_clock = clip_clock_of(instance, lod.flags);
+    clip_clocks[instance] = clip_clock;
     var so_far = Spread(0u, 0u);
     var left = 0u;
     for (var word = 0u; word < gate_params.words; word++) {
-        let chosen = gate_word(instance, word, lod, phase, &left);
+        let chosen = gate_word(instance, word, lod, clip_clock, &left);
         store_word(instance, word, chosen);
         so_far = spread_word(instance, word, chosen.bits, so_far);
     }

@@ -2,7 +2,7 @@
 // on all of them, as what may be missed is shared out from parents to children.
 import package::wgsl::animation::gate::{BOUNDED, MODE, gate_params, gate_word, store_word};
 import package::wgsl::animation::gated::lods::lods;
-import package::wgsl::animation::gated::phases::phases;
+import package::wgsl::animation::gated::clip_clocks::clip_clocks;
 
 @compute @workgroup_size(64)
 fn main(
@@ -18,10 +18,10 @@ fn main(
         return;
     }
     let lod = lods[instance];
-    let phase = phases[instance];
+    let clip_clock = clip_clocks[instance];
     let first = (index - instance * threads) * each;
     var left = 0u;
     for (var word = first; word < first + each; word++) {
-        store_word(instance, word, gate_word(instance, word, lod, phase, &left));
+        store_word(instance, word, gate_word(instance, word, lod, clip_clock, &left));
     }
 }

@@ -1,7 +1,7 @@
 // Transforms of bones in their parents' spaces at the places where instances stand in their clips (glTF 2.0, appendix
 // C). A thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it lays
 // what other layers play over it, as far as weight and mask let them.
-import package::wgsl::animation::gating::PAIR_AHEAD;
+import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 
@@ -29,7 +29,7 @@ struct SampleParams {
 @group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;
 // Key and, as bits, fraction; behind all layers those of the base ahead.
-@group(0) @binding(4) var<storage, read> places: array<vec2<u32>>;
+@group(0) @binding(4) var<storage, read> cursors: array<vec2<u32>>;
 // instance * bones + bone, of each pair that is to be sampled; with PAIR_AHEAD, at the place ahead.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and how many pairs.
@@ -37,7 +37,7 @@ struct SampleParams {
 // Translation and scale x; rotation; scale y and z.
 @group(0) @binding(7) var<storage, read_write> locals: array<vec4<f32>>;
 // For each layer above the base a weight an instance, then for each of them a mask of bones.
-@group(0) @binding(8) var<storage, read> shares: array<f32>;
+@group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
 const CONSTANT = 0x3fffffffu;
 const STEP = 0u;
@@ -51,12 +51,12 @@ struct Between {
     fraction: f32,
 }
 
-fn place_of(track: vec2<u32>, first_place: u32) -> vec2<u32> {
+fn cursor_of(track: vec2<u32>, first_cursor: u32) -> vec2<u32> {
     let timeline = track.x & CONSTANT;
     if timeline == CONSTANT {
         return vec2<u32>(0u);
     }
-    return places[first_place + timeline];
+    return cursors[first_cursor + timeline];
 }
 
 // Tracks of a bone mostly share a timeline: its place is loaded once.
@@ -64,18 +64,18 @@ fn is_elsewhere(track: vec2<u32>, before: vec2<u32>) -> bool {
     return ((track.x ^ before.x) & CONSTANT) != 0u;
 }
 
-fn between(track: vec2<u32>, place: vec2<u32>) -> Between {
+fn between(track: vec2<u32>, cursor: vec2<u32>) -> Between {
     let timeline = track.x & CONSTANT;
     if timeline == CONSTANT {
         return Between(track.y, STEP, 0.0);
     }
-    let fraction = bitcast<f32>(place.y);
+    let fraction = bitcast<f32>(cursor.y);
     let code = track.x >> 30u;
     if SPLINES && code > LINEAR {
         // Three values a key.
-        return Between(track.y + 3u * place.x + 1u, select(STEP, code, fraction > 0.0), fraction);
+        return Between(track.y + 3u * cursor.x + 1u, select(STEP, code, fraction > 0.0), fraction);
     }
-    return Between(track.y + place.x, select(STEP, code, fraction > 0.0), fraction);
+    return Between(track.y + cursor.x, select(STEP, code, fraction > 0.0), fraction);
 }
 
 fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
@@ -126,33 +126,33 @@ struct Local {
 }
 
 // `slot` is layer * instances + instance; `place_slot` likewise, layers * instances + instance for the base ahead.
-fn local_at(slot: u32, bone: u32, place_slot: u32) -> Local {
+fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
-    let first_place = place_slot * params.timelines;
+    let first_cursor = cursor_slot * params.timelines;
     let moving = tracks[track];
     let turning = tracks[track + 1u];
     let scaling = tracks[track + 2u];
-    var place = place_of(moving, first_place);
-    let moved = vector(between(moving, place));
+    var cursor = cursor_of(moving, first_cursor);
+    let moved = vector(between(moving, cursor));
     if is_elsewhere(turning, moving) {
-        place = place_of(turning, first_place);
+        cursor = cursor_of(turning, first_cursor);
     }
-    let turned = rotation(between(turning, place), turning.x >> 30u > LINEAR);
+    let turned = rotation(between(turning, cursor), turning.x >> 30u > LINEAR);
     if is_elsewhere(scaling, turning) {
-        place = place_of(scaling, first_place);
+        cursor = cursor_of(scaling, first_cursor);
     }
-    let scaled = vector(between(scaling, place));
+    let scaled = vector(between(scaling, cursor));
     return Local(moved, turned, scaled);
 }
 
 // Rotations on the chord to the nearer of q and -q.
-fn blend(below: Local, over: Local, share: f32) -> Local {
-    let rest = 1.0 - share;
-    let nearer = select(share, -share, dot(below.turned, over.turned) < 0.0);
+fn blend(below: Local, over: Local, weight: f32) -> Local {
+    let rest = 1.0 - weight;
+    let nearer = select(weight, -weight, dot(below.turned, over.turned) < 0.0);
     return Local(
-        below.moved * rest + over.moved * share,
+        below.moved * rest + over.moved * weight,
         unit_quaternion(below.turned * rest + over.turned * nearer),
-        below.scaled * rest + over.scaled * share,
+        below.scaled * rest + over.scaled * weight,
     );
 }
 
@@ -181,10 +181,10 @@ fn main(
     if LAYERED {
         let masks = (params.layers - 1u) * params.instances;
         for (var over = 0u; over + 1u < params.layers; over++) {
-            let share = shares[over * params.instances + instance] * shares[masks + over * params.bones + bone];
-            if share > 0.0 {
+            let weight = layer_weights[over * params.instances + instance] * layer_weights[masks + over * params.bones + bone];
+            if weight > 0.0 {
                 let slot = (over + 1u) * params.instances + instance;
-                local = blend(local, local_at(slot, bone, slot), share);
+                local = blend(local, local_at(slot, bone, slot), weight);
             }
         }
     }

@@ -18,7 +18,7 @@ struct GatherParams {
 // Three a bone and clip: timeline, first value.
 @group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
 // One an instance: key and, as bits, fraction.
-@group(0) @binding(3) var<storage, read> places: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read> cursors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> values: array<vec4<u32>>;
 // Three a pair.
 @group(0) @binding(5) var<storage, read_write> gathered: array<vec4<u32>>;
@@ -35,7 +35,7 @@ fn main(
     }
     let instance = pair / params.bones;
     let bone = pair - instance * params.bones;
-    let place = places[instance];
+    let cursor = cursors[instance];
     var first = vec3<u32>(0u, 1u, 2u) + 3u * bone;
     // All words that are read count.
     var unused = 0u;
@@ -43,11 +43,11 @@ fn main(
         let track = 3u * (instances[instance].clip * params.bones + bone);
         let found = array(tracks[track], tracks[track + 1u], tracks[track + 2u]);
         first = vec3<u32>(found[0].y, found[1].y, found[2].y);
-        unused = found[0].x ^ found[1].x ^ found[2].x ^ place.y;
+        unused = found[0].x ^ found[1].x ^ found[2].x ^ cursor.y;
     } else {
         first *= params.keys;
     }
-    first += place.x;
+    first += cursor.x;
     let moved = values[first.x].xyz ^ values[first.x + 1u].xyz;
     let turned = values[first.y] ^ values[first.y + 1u];
     let scaled = values[first.z].xyz ^ values[first.z + 1u].xyz;

@@ -1,6 +1,6 @@
 // Which instances are seen, how far their influences fade, and with which level of detail. A thread decides for one
 // instance.
-import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::skinning::instance_lod::InstanceLod;
 
 struct LodParams {
     // Of the view's volume: unit normals inwards, and distances.
@@ -10,7 +10,7 @@ struct LodParams {
     // A unit vector and 1, or 0 where the view is parallel.
     ahead: vec4<f32>,
     // A ball around the model in all of its clips: middle and radius.
-    ball: vec4<f32>,
+    bounding_sphere: vec4<f32>,
     // From where on vertices are rigid.
     far: f32,
     // Steps of the fade.
@@ -47,7 +47,7 @@ struct Arguments {
 // Three rows an instance: from the model's space into the world.
 @group(0) @binding(1) var<storage, read> placements: array<vec4<f32>>;
 // With no influences of those that are not seen.
-@group(0) @binding(2) var<storage, read_write> reductions: array<Reduction>;
+@group(0) @binding(2) var<storage, read_write> instance_lods: array<InstanceLod>;
 // The instances that are seen, level by level.
 @group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
 // One a level.
@@ -73,7 +73,7 @@ fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
 }
 
 // How far away a place counts, which lies so from the eye: as far as it is, straight ahead; less to the side.
-fn away_at(towards: vec3<f32>) -> f32 {
+fn projected_distance_of(towards: vec3<f32>) -> f32 {
     let distance = length(towards);
     let depth = max(dot(params.ahead.xyz, towards), 0.0);
     return select(distance, depth * (depth / max(distance, LEAST_NORMAL)), params.ahead.w > 0.0);
@@ -92,28 +92,28 @@ fn main(
     let x = placements[3u * instance];
     let y = placements[3u * instance + 1u];
     let z = placements[3u * instance + 2u];
-    let middle = vec4<f32>(params.ball.xyz, 1.0);
+    let middle = vec4<f32>(params.bounding_sphere.xyz, 1.0);
     let center = vec3<f32>(dot(x, middle), dot(y, middle), dot(z, middle));
-    let radius = params.ball.w * stretch(x.xyz, y.xyz, z.xyz);
+    let radius = params.bounding_sphere.w * stretch(x.xyz, y.xyz, z.xyz);
     var is_seen = true;
     for (var plane = 0u; plane < 6u; plane++) {
         let side = params.planes[plane];
         is_seen = is_seen && dot(side.xyz, center) + side.w >= -radius;
     }
-    var reduction = Reduction(0.0, 0u, 0u);
+    var instance_lod = InstanceLod(0.0, 0u, 0u);
     if is_seen {
-        let away = away_at(center - params.eye.xyz);
-        let way = clamp((away - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
+        let projected_distance = projected_distance_of(center - params.eye.xyz);
+        let fade_fraction = clamp((projected_distance - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
         var level = 0u;
-        while level < params.coarser && away >= params.distances[level >> 2u][level & 3u] {
+        while level < params.coarser && projected_distance >= params.distances[level >> 2u][level & 3u] {
             level++;
         }
-        reduction = Reduction(floor(way * params.steps) / params.steps, params.most, level);
+        instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.most, level);
         let place = atomicAdd(&arguments[level].listed.instances, 1u);
         drawn[level * params.stride + place] = instance;
         if may_mirror(x.xyz, y.xyz, z.xyz, params.side) {
             atomicMax(&arguments[level].mirrored.instances, place + 1u);
         }
     }
-    reductions[instance] = reduction;
+    instance_lods[instance] = instance_lod;
 }

@@ -1,6 +1,6 @@
 // Morph targets: vertices with the weighted deltas of their targets added, before skinning. A workgroup morphs a cluster
 // of 64 vertices of one instance that is seen, at its level of detail: every one, or with COMPACTED those of a list.
-import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::skinning::instance_lod::InstanceLod;
 
 override COMPACTED: bool = false;
 
@@ -24,7 +24,7 @@ struct MorphParams {
 // Of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
 // One an instance.
-@group(0) @binding(5) var<storage, read> reductions: array<Reduction>;
+@group(0) @binding(5) var<storage, read> instance_lods: array<InstanceLod>;
 // cluster * instances + instance, of those to be skinned.
 @group(0) @binding(6) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and how many pairs.
@@ -50,8 +50,8 @@ fn main(
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let level = min(reductions[instance].level, 15u);
-    if reductions[instance].most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
+    let level = min(instance_lods[instance].level, 15u);
+    if instance_lods[instance].most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
     let first = 5u * vertex;

@@ -2,8 +2,8 @@
 // finds one target's weight of one instance; instances that are not seen keep theirs.
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
-import package::wgsl::animation::timeline::{place, times};
-import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::animation::timeline::{keyframe_cursor, times};
+import package::wgsl::skinning::instance_lod::InstanceLod;
 
 struct MorphWeightsParams {
     targets: u32,
@@ -28,7 +28,7 @@ struct WeightEntry {
 // One a clip.
 @group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
 // One an instance.
-@group(0) @binding(3) var<storage, read> reductions: array<Reduction>;
+@group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // Binding 4: the times.
 // A value a target, key by key.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
@@ -62,13 +62,13 @@ fn main(
         return;
     }
     let index = pair / params.targets;
-    if reductions[index].most == 0u {
+    if instance_lods[index].most == 0u {
         return;
     }
     let instance = instances[index];
     let entry = entries[instance.clip];
     let time = inside_clip(instance.wrap_code, entry.duration, instance.start + instance.rate * params.elapsed);
-    let found = place(entry.first_time, entry.keys, time);
+    let found = keyframe_cursor(entry.first_time, entry.keys, time);
     let t = bitcast<f32>(found.y);
     let first = entry.first_value + pair - index * params.targets;
     // A fraction is 0 at the last key.

@@ -1,7 +1,7 @@
 // Palettes: what takes vertices from where they were bound to the model's space, for each instance and bone of a skin.
 // With DUAL taken apart into a stretch and a rigid motion after it. A thread makes one bone's; none of instances that
 // are not seen.
-import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::skinning::instance_lod::InstanceLod;
 
 override DUAL: bool = false;
 
@@ -19,9 +19,9 @@ struct PaletteParams {
 // Three rows a bone of the skin.
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
 // Three rows a bone of the skeleton and instance.
-@group(0) @binding(3) var<storage, read> models: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
 // One an instance.
-@group(0) @binding(4) var<storage, read> reductions: array<Reduction>;
+@group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
 // Three rows, or with DUAL rotation, dual part, diagonal and what is above it.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
@@ -96,7 +96,7 @@ fn main(
         return;
     }
     let instance = pair / params.bones;
-    if reductions[instance].most == 0u {
+    if instance_lods[instance].most == 0u {
         return;
     }
     let bone = pair - instance * params.bones;
@@ -106,9 +106,9 @@ fn main(
     let z = inverse_binds[bind + 2u];
     let model = 3u * (instance * params.all_bones + bones[bone]);
     let rows = array<vec4<f32>, 3>(
-        product_row(models[model], x, y, z),
-        product_row(models[model + 1u], x, y, z),
-        product_row(models[model + 2u], x, y, z));
+        product_row(model_matrices[model], x, y, z),
+        product_row(model_matrices[model + 1u], x, y, z),
+        product_row(model_matrices[model + 2u], x, y, z));
     if DUAL {
         write_dual(4u * pair, rows);
     } else {

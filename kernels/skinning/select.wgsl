@@ -3,7 +3,7 @@
 // morph targets those of instances whose weights changed. A thread decides for one cluster. With FINISH, a thread takes
 // note of one instance's reduction and weights, and the first one writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
-import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::skinning::instance_lod::InstanceLod;
 
 override FINISH: bool = false;
 
@@ -37,9 +37,9 @@ struct Dispatched {
 // The bones of each cluster, a bit a bone.
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
 // The bones of each instance that moved, likewise.
-@group(0) @binding(2) var<storage, read> moved: array<u32>;
+@group(0) @binding(2) var<storage, read> updated_bones: array<u32>;
 // One an instance.
-@group(0) @binding(3) var<storage, read> reductions: array<Reduction>;
+@group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // Of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
 // Where each vertex's deltas begin; one more than there are vertices.
@@ -59,7 +59,7 @@ fn clusters_of(level: u32) -> u32 {
 fn finish(index: u32) {
     if index < params.instances {
         let to = index * (SKINNED_WORDS + params.targets);
-        let now = reductions[index];
+        let now = instance_lods[index];
         skinned[to] = bitcast<u32>(now.fade);
         skinned[to + 1u] = now.most;
         skinned[to + 2u] = now.level;
@@ -107,7 +107,7 @@ fn main(
         return;
     }
     let instance = index - cluster * params.instances;
-    let now = reductions[instance];
+    let now = instance_lods[instance];
     if now.most == 0u || cluster >= clusters_of(now.level) {
         return;
     }
@@ -115,7 +115,7 @@ fn main(
     var found = bitcast<u32>(now.fade) != skinned[last] || now.most != skinned[last + 1u]
         || cluster >= clusters_of(skinned[last + 2u]);
     for (var word = 0u; word < params.words && !found; word++) {
-        found = (masks[cluster * params.words + word] & moved[instance * params.words + word]) != 0u;
+        found = (masks[cluster * params.words + word] & updated_bones[instance * params.words + word]) != 0u;
     }
     if params.targets > 0u && !found {
         found = is_morphed_anew(cluster, instance, last);

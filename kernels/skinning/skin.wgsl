@@ -2,7 +2,7 @@
 // leaves; none of those that are not seen, nor beyond their level of detail. A workgroup skins a cluster of 64 vertices
 // of one instance: every one, or with COMPACTED those of a list. Instances run faster than clusters, so that a cluster's
 // vertices stay in the cache.
-import package::wgsl::skinning::reduction::Reduction;
+import package::wgsl::skinning::instance_lod::InstanceLod;
 import package::wgsl::skinning::rows::{Rows, rows_of_dual};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
@@ -33,7 +33,7 @@ struct SkinParams {
 @group(0) @binding(2) var<storage, read> influences: array<u32>;
 // Three rows a bone and instance, or with DUAL four.
 @group(0) @binding(3) var<storage, read> palette: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> reductions: array<Reduction>;
+@group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
 // cluster * instances + instance, of those to be skinned.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and how many pairs.
@@ -68,13 +68,13 @@ fn matrix_of(sum: Sum) -> Rows {
 }
 
 // The matrix of a vertex: its column of the cluster's influences begins at `column`.
-fn blended(column: u32, slots: u32, first_bone: u32, reduction: Reduction) -> Rows {
+fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) -> Rows {
     let stride = select(3u, 4u, DUAL);
     var bones = influences[column];
     let strongest = stride * (first_bone + (bones & 0xffffu));
     var sum = Sum(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     var others = 0.0;
-    let most = clamp(reduction.most, 1u, slots);
+    let most = clamp(instance_lod.most, 1u, slots);
     if most > 1u {
         let weights = column + 64u * ((slots + 1u) / 2u) - 64u;
         var lost = 0.0;
@@ -87,7 +87,7 @@ fn blended(column: u32, slots: u32, first_bone: u32, reduction: Reduction) -> Ro
             real = palette[strongest];
         }
         var weight = bitcast<f32>(influences[weights + 64u]);
-        let taken = reduction.fade * weight;
+        let taken = instance_lod.fade * weight;
         var slot = 1u;
         while weight > taken {
             if (slot & 1u) == 0u {
@@ -139,13 +139,13 @@ fn main(
         return;
     }
     let instance = params.first_instance + place;
-    let reduction = reductions[instance];
-    let level = min(reduction.level, 15u);
-    if reduction.most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
+    let instance_lod = instance_lods[instance];
+    let level = min(instance_lod.level, 15u);
+    if instance_lod.most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
     let rows = blended(
-        influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, reduction);
+        influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, instance_lod);
     var first = 5u * vertex;
     if MORPHED {
         first += 5u * params.vertices * instance;

@@ -30,7 +30,7 @@ struct ConeParams {
 @group(0) @binding(3) var<storage, read_write> cones: array<vec2<f32>>;
 
 // More than any search takes.
-const MOST_VISITS: u32 = 65536u;
+const MAX_VISITS: u32 = 65536u;
 
 fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
     let at = vec2<u32>(surface_atlas_at(params.cells, level, node));
@@ -90,7 +90,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     var node = vec2<i32>(0);
     // Which child of its parent the node is, in the order of the search: two bits a level.
     var orders = 0u;
-    for (var visit = 0u; visit < MOST_VISITS; visit++) {
+    for (var visit = 0u; visit < MAX_VISITS; visit++) {
         let low = node << vec2<u32>(level);
         var open = false;
         if all(low < cells) {

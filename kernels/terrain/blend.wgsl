@@ -1,7 +1,7 @@
 // The top-down colour map of patches: zone weights (B equations 3.6 and 3.7) and relief shading, one sRGB
 // pixel a sample. Reads windows that reach one sample beyond the patch.
 import package::wgsl::terrain::slope::slope_normal;
-import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_share};
+import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 import package::wgsl::terrain::light::{Light, lit};
 
 struct MapParams {
@@ -47,7 +47,7 @@ fn zone_color(height: f32) -> vec3<f32> {
     }
     var color = vec3<f32>(0.0);
     for (var z = 0u; z < params.zone_count; z++) {
-        color += zone_share(fold, z, zones[z].zone, height, params.additive != 0u) * zones[z].color;
+        color += zone_fraction(fold, z, zones[z].zone, height, params.additive != 0u) * zones[z].color;
     }
     return color;
 }

@@ -3,7 +3,7 @@
 
 struct PadParams {
     size: u32,
-    reach: u32,
+    apron: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: PadParams;
@@ -18,11 +18,11 @@ const ELSEWHERE = 0xfffffffeu;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let width = params.size + 2u * params.reach;
+    let width = params.size + 2u * params.apron;
     if id.x >= width {
         return;
     }
-    let at = vec2<i32>(id.xy) - vec2<i32>(i32(params.reach));
+    let at = vec2<i32>(id.xy) - vec2<i32>(i32(params.apron));
     let source = source_of(id.z, at);
     let patch_index = around_at(id.z, source);
     if patch_index == ELSEWHERE {

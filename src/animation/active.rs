@@ -3,6 +3,6 @@
 #[cfg(feature = "gpu")]
 mod buffers;
 
-pub use crate::shared::animation::gating::PAIR_AHEAD;
+pub use crate::shared::animation::gate_state::PAIR_AHEAD;
 #[cfg(feature = "gpu")]
 pub use buffers::{Active, ActivePairs};

@@ -11,7 +11,7 @@ use crate::{Error, InputError};
 /// is bound or compiled. Who wants most of a crowd reads its buffer.
 #[derive(Debug, Clone)]
 pub struct ChosenBones {
-    models: Buffer<Affine>,
+    model_matrices: Buffer<Affine>,
     gathered: Buffer<Affine>,
     // First matrix there, first here, how many.
     runs: Vec<[usize; 3]>,
@@ -26,8 +26,9 @@ impl ChosenBones {
     /// [`InputError`] for instances and bones that the crowd lacks; [`GpuError`].
     pub fn new(gpu: &Gpu, crowd: &Crowd, chosen: &[[u32; 2]]) -> Result<Self, Error> {
         let gathered = Buffer::new(gpu, "chosen bones", chosen.len())?;
-        let (runs, models) = (Vec::with_capacity(chosen.len()), crowd.model_matrices.buffer().clone());
-        let mut bones = Self { models, gathered, runs, chosen: 0, bones: crowd.bones };
+        let (runs, model_matrices) =
+            (Vec::with_capacity(chosen.len()), crowd.model_matrices.buffer().clone());
+        let mut bones = Self { model_matrices, gathered, runs, chosen: 0, bones: crowd.bones };
         bones.choose(chosen)?;
         Ok(bones)
     }
@@ -41,7 +42,7 @@ impl ChosenBones {
             let bound = format!("must be at most {}, as many as at first", self.gathered.len());
             return Err(InputError::new("chosen.len", chosen.len(), bound));
         }
-        let limits = [("instance", self.models.len() / self.bones), ("bone", self.bones)];
+        let limits = [("instance", self.model_matrices.len() / self.bones), ("bone", self.bones)];
         for (at, pair) in chosen.iter().enumerate() {
             for (value, (field, limit)) in pair.iter().zip(limits) {
                 if *value as usize >= limit {
@@ -66,7 +67,7 @@ impl ChosenBones {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         let bytes = |matrices: usize| (matrices * size_of::<Affine>()) as u64;
         for [there, here, count] in self.runs.iter().map(|run| run.map(bytes)) {
-            encoder.copy_buffer_to_buffer(self.models.raw(), there, self.gathered.raw(), here, count);
+            encoder.copy_buffer_to_buffer(self.model_matrices.raw(), there, self.gathered.raw(), here, count);
         }
     }
 

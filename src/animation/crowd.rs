@@ -4,9 +4,9 @@
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::instance::Instance;
 use crate::animation::layers;
-use crate::animation::layers::{Layer, MOST_LAYERS};
+use crate::animation::layers::{Layer, MAX_LAYERS};
 use crate::animation::model_matrices::ModelMatrices;
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Transform;
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -71,14 +71,14 @@ pub struct Crowd {
     /// What each plays, layer by layer: `layer · len + instance`. May be rewritten, a layer by `write_at` from
     /// `layer · len` on; clips must stay below the set's number.
     pub instances: Buffer<Instance>,
-    /// Written by [`crate::animation::place::PlacePass`]: the set's [`ClipSet::timelines_a_clip`] for each of `instances`.
-    pub places: Buffer<Place>,
+    /// Written by [`crate::animation::keyframe_cursor::KeyframeCursorPass`]: the set's [`ClipSet::timelines_a_clip`] for each of `instances`.
+    pub cursors: Buffer<KeyframeCursor>,
     /// How much the layers above the base count, 0..=1: for each of them a weight an instance, `(layer − 1) · len +
     /// instance`, then for each of them a mask of bones. Weights may be rewritten ([`Crowd::set_weights`]).
-    pub shares: Buffer<f32>,
+    pub layer_weights: Buffer<f32>,
     /// Written by [`crate::animation::sample::SamplePass`]: `instance · bones + bone`.
     pub locals: Buffer<Local>,
-    /// Written by [`crate::animation::concat::ConcatPass`].
+    /// Written by [`crate::animation::local_to_model::LocalToModelPass`].
     pub(crate) model_matrices: ModelMatrices,
     /// What the model matrices were before, for motion vectors, where it is kept: see [`Crowd::with_previous`].
     pub previous: Option<ModelMatrices>,
@@ -93,7 +93,7 @@ impl Crowd {
     /// Room for instances of a set's clips with layers above them.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, ones that play no clip of the set, more than [`MOST_LAYERS`] layers, and
+    /// [`InputError`] for no instances, ones that play no clip of the set, more than [`MAX_LAYERS`] layers, and
     /// layers that do not fit ([`Layer::validate`]); [`GpuError`].
     pub fn layered(gpu: &Gpu, set: &ClipSet, base: &[Instance], layers: &[Layer]) -> Result<Self, Error> {
         let (count, bones) = (base.len(), set.bones());
@@ -103,9 +103,9 @@ impl Crowd {
             let bound = format!("must be at least 1 and at most {}", (1_u64 << 31) / 3 / bones as u64);
             return Err(InputError::new("instances.len", count, bound).into());
         }
-        if layers.len() >= MOST_LAYERS {
+        if layers.len() >= MAX_LAYERS {
             return Err(
-                InputError::new("layers.len", layers.len(), format!("must be below {MOST_LAYERS}")).into()
+                InputError::new("layers.len", layers.len(), format!("must be below {MAX_LAYERS}")).into()
             );
         }
         base.iter().try_for_each(|instance| instance.validate(set.clips().len()))?;
@@ -114,9 +114,9 @@ impl Crowd {
         }
         let instances = layers::all_instances(base, layers);
         Ok(Self {
-            places: Buffer::new(gpu, "places", (instances.len() + count) * set.timelines_a_clip())?,
+            cursors: Buffer::new(gpu, "cursors", (instances.len() + count) * set.timelines_a_clip())?,
             instances: Buffer::from_slice(gpu, "instances", &instances)?,
-            shares: Buffer::from_slice(gpu, "shares", &all_shares(layers, bones))?,
+            layer_weights: Buffer::from_slice(gpu, "layer_weights", &all_layer_weights(layers, bones))?,
             locals: Buffer::new(gpu, "locals", pairs)?,
             model_matrices: ModelMatrices::new(&Buffer::new(gpu, "model matrices", pairs)?),
             previous: None,
@@ -137,7 +137,7 @@ impl Crowd {
         self.path
     }
 
-    /// The model matrices of all bones, which [`crate::animation::concat::ConcatPass`] writes: `instance · bones + bone`.
+    /// The model matrices of all bones, which [`crate::animation::local_to_model::LocalToModelPass`] writes: `instance · bones + bone`.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
@@ -176,8 +176,8 @@ impl Crowd {
             let bound = format!("must be {}, one an instance", self.len());
             return Err(InputError::new("weights.len", weights.len(), bound).into());
         }
-        layers::shares("weights", weights)?;
-        Ok(self.shares.write_at(gpu, (layer - 1) * self.len(), weights)?)
+        layers::check_weights("weights", weights)?;
+        Ok(self.layer_weights.write_at(gpu, (layer - 1) * self.len(), weights)?)
     }
 
     /// How many instances.
@@ -197,13 +197,13 @@ impl Crowd {
 }
 
 /// Weights, then masks.
-fn all_shares(layers: &[Layer], bones: usize) -> Vec<f32> {
-    let mut shares: Vec<f32> = layers.iter().flat_map(|layer| &layer.weights).copied().collect();
+fn all_layer_weights(layers: &[Layer], bones: usize) -> Vec<f32> {
+    let mut layer_weights: Vec<f32> = layers.iter().flat_map(|layer| &layer.weights).copied().collect();
     for layer in layers {
         match &layer.mask {
-            Some(mask) => shares.extend(mask),
-            None => shares.resize(shares.len() + bones, 1.0),
+            Some(mask) => layer_weights.extend(mask),
+            None => layer_weights.resize(layer_weights.len() + bones, 1.0),
         }
     }
-    shares
+    layer_weights
 }

@@ -2,7 +2,9 @@
 //! [`Order`], rows the common times of each clip, one clip after another, and one more row a clip.
 
 use super::clip_set::ClipSet;
-use super::motion::{BoneMotion, Path, bounding_levers, motions, shares, typical_levers, whole_reaches};
+use super::motion::{
+    BoneMotion, Path, bounding_levers, budget_fractions, motions, subtree_radii, typical_levers,
+};
 use super::priority::Priorities;
 use crate::InputError;
 use crate::animation::order::{NO_PARENT, Order};
@@ -11,7 +13,7 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
 /// The largest sum of motion of a whole clip, in units.
-const MOST_MOTION: f64 = (1 << 30) as f64;
+const MAX_MOTION: f64 = (1 << 30) as f64;
 
 /// More than is ever allowed.
 pub(crate) const EVERYTHING: u32 = 1 << 30;
@@ -26,13 +28,13 @@ const EVENNESS: f64 = 0.5;
 const FAVOUR: f64 = 1.6;
 
 /// The most entries.
-const MOST_ENTRIES: usize = 1 << 27;
+const MAX_ENTRIES: usize = 1 << 27;
 
 /// What a table tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// [`GateTable::of_movers`].
-    Movers,
+    /// [`GateTable::of_animated_bones`].
+    AnimatedBones,
     /// [`GateTable::of_priorities`].
     Priorities,
     /// [`GateTable::of_bounds`].
@@ -72,7 +74,7 @@ pub struct GateTable {
     bones: usize,
     words: usize,
     stride: usize,
-    movers: Vec<u32>,
+    animated_bones: Vec<u32>,
     rows: Vec<[u32; 2]>,
     /// Metres (or what the table's motion counts) a unit; 0 without motion.
     unit: f64,
@@ -86,31 +88,31 @@ impl GateTable {
     ///
     /// # Errors
     /// [`InputError`] for other clips than the set's, or a skeleton of other bones.
-    pub fn of_movers(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
+    pub fn of_animated_bones(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
         set.check_clips(clips)?;
         if order.slots.len() != set.bones() {
             let bound = format!("must be {}, as the clips'", set.bones());
             return Err(InputError::new("skeleton.len", order.slots.len(), bound));
         }
         let words = order.words();
-        let mut movers = Vec::with_capacity(clips.len() * (words + 1));
+        let mut animated_bones = Vec::with_capacity(clips.len() * (words + 1));
         for (entry, clip) in set.clips().iter().zip(clips) {
-            movers.push(entry.first_row + set.rows(entry) - 1);
-            let first = movers.len();
-            movers.resize(first + words, 0);
+            animated_bones.push(entry.first_row + set.rows(entry) - 1);
+            let first = animated_bones.len();
+            animated_bones.resize(first + words, 0);
             for (at, slot) in order.slots.iter().enumerate() {
-                movers[first + at / 32] |= u32::from(moves(clip, slot.bone as usize)) << (at % 32);
+                animated_bones[first + at / 32] |= u32::from(moves(clip, slot.bone as usize)) << (at % 32);
             }
         }
         let bones = order.slots.len();
-        let kind = Kind::Movers;
+        let kind = Kind::AnimatedBones;
         Ok(Self {
             kind,
             path: None,
             bones,
             words,
             stride: 0,
-            movers,
+            animated_bones,
             rows: vec![[0; 2]],
             unit: 0.0,
             radius: 0.0,
@@ -122,14 +124,14 @@ impl GateTable {
     /// its first counts.
     ///
     /// # Errors
-    /// As [`GateTable::of_movers`]; other than one set of priorities a clip; a table of more than 2²⁷ entries.
+    /// As [`GateTable::of_animated_bones`]; other than one set of priorities a clip; a table of more than 2²⁷ entries.
     pub fn of_priorities(
         order: &Order,
         set: &ClipSet,
         clips: &[&Clip],
         priorities: &[Priorities],
     ) -> Result<Self, InputError> {
-        let mut table = Self::of_movers(order, set, clips)?;
+        let mut table = Self::of_animated_bones(order, set, clips)?;
         if priorities.len() != clips.len() {
             let bound = format!("must be {}, one a clip", clips.len());
             return Err(InputError::new("priorities.len", priorities.len(), bound));
@@ -152,28 +154,28 @@ impl GateTable {
     }
 
     /// Bounds of the motion that each bone contributes to any point, and the shares that bones take of what is allowed:
-    /// what [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `reaches`: for each bone, how far points that follow it
+    /// what [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `bone_radii`: for each bone, how far points that follow it
     /// alone lie from its origin, metres. `path`: as instances are sampled; crowds that are sampled otherwise are refused,
     /// since nlerp turns faster than slerp in the middle between two keys.
     ///
     /// # Errors
-    /// As [`GateTable::of_movers`]; other than one reach a bone, or one that is negative or not finite; a table of more
+    /// As [`GateTable::of_animated_bones`]; other than one reach a bone, or one that is negative or not finite; a table of more
     /// than 2²⁷ entries.
     pub fn of_bounds(
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
-        reaches: &[f32],
+        bone_radii: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let (mut table, order) = Self::with_room((Kind::Bounds, path), skeleton, set, clips, reaches)?;
+        let (mut table, order) = Self::with_room((Kind::Bounds, path), skeleton, set, clips, bone_radii)?;
         let mut all = Vec::with_capacity(clips.len());
         for (entry, clip) in set.clips().iter().zip(clips) {
             let motions = motions(set, entry, clip, path);
-            let mut columns = columns(&motions, &bounding_levers(skeleton, &motions, reaches));
-            share_out(skeleton, &mut columns);
+            let mut columns = columns(&motions, &bounding_levers(skeleton, &motions, bone_radii));
+            distribute_budget(skeleton, &mut columns);
             all.push(columns);
-            let whole = whole_reaches(skeleton, &motions, reaches);
+            let whole = subtree_radii(skeleton, &motions, bone_radii);
             let roots = skeleton.bones().iter().enumerate().filter(|(_, bone)| bone.parent.is_none());
             let radius = roots
                 .map(|(root, _)| motions[root].translation + motions[root].scale * whole[root])
@@ -192,11 +194,11 @@ impl GateTable {
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
-        reaches: &[f32],
+        bone_radii: &[f32],
         path: RotationPath,
     ) -> Result<Self, InputError> {
-        let (table, order) = Self::with_room((Kind::Expectations, path), skeleton, set, clips, reaches)?;
-        let levers = typical_levers(skeleton, reaches);
+        let (table, order) = Self::with_room((Kind::Expectations, path), skeleton, set, clips, bone_radii)?;
+        let levers = typical_levers(skeleton, bone_radii);
         let of = |(entry, clip): (_, &&Clip)| columns(&motions(set, entry, clip, path), &levers);
         let all: Vec<_> = set.clips().iter().zip(clips).map(of).collect();
         table.fill(&order, set, &all)
@@ -208,11 +210,11 @@ impl GateTable {
         skeleton: &Skeleton,
         set: &ClipSet,
         clips: &[&Clip],
-        reaches: &[f32],
+        bone_radii: &[f32],
     ) -> Result<(Self, Order), InputError> {
         let order = Order::new(skeleton);
-        let mut table = Self { kind, path: Some(path), ..Self::of_movers(&order, set, clips)? };
-        check_reaches(skeleton, reaches)?;
+        let mut table = Self { kind, path: Some(path), ..Self::of_animated_bones(&order, set, clips)? };
+        check_bone_radii(skeleton, bone_radii)?;
         table.make_room(set, table.bones)?;
         Ok((table, order))
     }
@@ -226,7 +228,7 @@ impl GateTable {
             }
         }
         let largest = columns.iter().flatten().map(Column::total).fold(0.0, f64::max);
-        self.unit = if largest > 0.0 { largest / MOST_MOTION } else { 1.0 };
+        self.unit = if largest > 0.0 { largest / MAX_MOTION } else { 1.0 };
         for (entry, columns) in set.clips().iter().zip(columns) {
             for (slot, bone) in order.slots.iter().enumerate() {
                 let at = entry.first_row as usize * self.stride + slot;
@@ -241,9 +243,9 @@ impl GateTable {
         let slot_of = order.slots_of_bones();
         let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
         for clip in 0..set.clips().len() as u32 {
-            let (last, movers) = self.record(clip);
-            let (last, movers) = (last as usize * self.stride, movers.to_vec());
-            let moves = |slot: u32| movers[slot as usize / 32] >> (slot % 32) & 1 != 0;
+            let (last, animated_bones) = self.record(clip);
+            let (last, animated_bones) = (last as usize * self.stride, animated_bones.to_vec());
+            let moves = |slot: u32| animated_bones[slot as usize / 32] >> (slot % 32) & 1 != 0;
             let first = self.above(clip) as usize * self.stride;
             let mut before = NO_PARENT;
             for slot in (0..self.bones as u32).filter(|slot| moves(*slot)) {
@@ -252,9 +254,9 @@ impl GateTable {
                 let above = bones_above.map(|bone| slot_of[bone as usize] as u32).find(|slot| moves(*slot));
                 self.rows[first + slot as usize][0] = above.unwrap_or(NO_PARENT);
                 if above.is_none_or(|above| above != before) {
-                    self.rows[last + slot as usize][1] |= Allotment::STARTS;
+                    self.rows[last + slot as usize][1] |= ErrorBudget::STARTS;
                     if let Some(above) = above {
-                        self.rows[last + above as usize][1] |= Allotment::KEPT;
+                        self.rows[last + above as usize][1] |= ErrorBudget::REMAINING;
                     }
                 }
                 before = slot;
@@ -269,7 +271,7 @@ impl GateTable {
             self.first_above = rows;
             rows += set.clips().len();
         }
-        match rows.checked_mul(stride).filter(|entries| *entries <= MOST_ENTRIES) {
+        match rows.checked_mul(stride).filter(|entries| *entries <= MAX_ENTRIES) {
             Some(entries) => {
                 (self.stride, self.rows) = (stride, vec![[0; 2]; entries]);
                 Ok(())
@@ -310,12 +312,12 @@ impl GateTable {
     }
 
     /// For each clip the number of its last row, then a bit for each slot that it moves.
-    pub fn movers(&self) -> &[u32] {
-        &self.movers
+    pub fn animated_bones(&self) -> &[u32] {
+        &self.animated_bones
     }
 
     /// The entries, row by row: four priorities of 16 bits; or a sum of motion at the row's time and its rise to the
-    /// next. In a clip's last row stand its sum over the whole clip, and of a table of bounds an [`Allotment`]; such a
+    /// next. In a clip's last row stand its sum over the whole clip, and of a table of bounds an [`ErrorBudget`]; such a
     /// table has one more row a clip behind all others, see [`GateTable::above`].
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.rows
@@ -323,7 +325,7 @@ impl GateTable {
 
     /// A clip's last row, and its movers.
     pub fn record(&self, clip: u32) -> (u32, &[u32]) {
-        let record = &self.movers[clip as usize * (self.words + 1)..][..self.words + 1];
+        let record = &self.animated_bones[clip as usize * (self.words + 1)..][..self.words + 1];
         (record[0], &record[1..])
     }
 
@@ -359,43 +361,43 @@ impl GateTable {
     }
 }
 
-fn check_reaches(skeleton: &Skeleton, reaches: &[f32]) -> Result<(), InputError> {
-    if reaches.len() != skeleton.len() {
+fn check_bone_radii(skeleton: &Skeleton, bone_radii: &[f32]) -> Result<(), InputError> {
+    if bone_radii.len() != skeleton.len() {
         let bound = format!("must be {}, one a bone", skeleton.len());
-        return Err(InputError::new("reaches.len", reaches.len(), bound));
+        return Err(InputError::new("bone_radii.len", bone_radii.len(), bound));
     }
-    match reaches.iter().position(|reach| !(*reach >= 0.0 && reach.is_finite())) {
+    match bone_radii.iter().position(|bone_radius| !(*bone_radius >= 0.0 && bone_radius.is_finite())) {
         None => Ok(()),
         Some(bone) => {
             let bound = "must be at least 0 and finite";
-            Err(InputError::new(format!("reaches[{bone}]"), reaches[bone], bound))
+            Err(InputError::new(format!("bone_radii[{bone}]"), bone_radii[bone], bound))
         }
     }
 }
 
 /// What a clip grants a bone, as the kernel reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Allotment(pub u32);
+pub struct ErrorBudget(pub u32);
 
-impl Allotment {
+impl ErrorBudget {
     /// The bone above is not the one before it in the order.
     const STARTS: u32 = 1 << 5;
     /// What it leaves is needed later.
-    const KEPT: u32 = 1 << 6;
+    const REMAINING: u32 = 1 << 6;
 
-    /// `hidden`: a power of two, or 0.
-    fn new(share: f64, hidden: u32) -> Self {
-        let bits = u32::BITS - hidden.leading_zeros();
-        Self(((share * 65536.0).floor() as u32) << 8 | bits)
+    /// `quantization_slack`: a power of two, or 0.
+    fn new(fraction: f64, quantization_slack: u32) -> Self {
+        let bits = u32::BITS - quantization_slack.leading_zeros();
+        Self(((fraction * 65536.0).floor() as u32) << 8 | bits)
     }
 
     /// Of what the bones above leave, in 65536ths.
-    pub fn share(self) -> u32 {
+    pub fn fraction(self) -> u32 {
         self.0 >> 8
     }
 
     /// Units that rounding may hide.
-    pub fn hidden(self) -> u32 {
+    pub fn quantization_slack(self) -> u32 {
         ((1_u64 << (self.0 & 31)) >> 1) as u32
     }
 
@@ -435,7 +437,7 @@ struct Column {
     wrap: f64,
     is_boundless: bool,
     /// Of what bones above leave, 0 to 1.
-    share: f64,
+    fraction: f64,
 }
 
 impl Column {
@@ -449,7 +451,7 @@ impl Column {
             jumps: (0..times).map(|at| weighed(&|path| path.jumps[at])).collect(),
             wrap: weighed(&|path| path.wrap),
             is_boundless: bone.parts.iter().any(|path| path.is_boundless),
-            share: 0.0,
+            fraction: 0.0,
         }
     }
 
@@ -471,13 +473,13 @@ impl Column {
             sum += rise;
             steepest = steepest.max(rise / unit);
         }
-        let hidden = match self.is_boundless {
+        let quantization_slack = match self.is_boundless {
             true => EVERYTHING,
             false if self.total() > 0.0 => (4 + (steepest / 4096.0).ceil() as u32).next_power_of_two(),
             false => 0,
         };
-        let allotment = Allotment::new(self.share, hidden);
-        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, allotment.0];
+        let error_budget = ErrorBudget::new(self.fraction, quantization_slack);
+        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, error_budget.0];
     }
 }
 
@@ -486,9 +488,9 @@ fn columns(motions: &[BoneMotion], levers: &[[f64; 3]]) -> Vec<Column> {
 }
 
 /// Gives each bone its share of what the bones above it leave.
-fn share_out(skeleton: &Skeleton, columns: &mut [Column]) {
+fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
-    for (column, share) in columns.iter_mut().zip(shares(skeleton, &rates)) {
-        column.share = (FAVOUR * share).min(1.0);
+    for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {
+        column.fraction = (FAVOUR * fraction).min(1.0);
     }
 }

@@ -5,7 +5,7 @@ pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
 /// The most seconds that a start, or what has elapsed since, may be from 0, and the most clip seconds a second: their
 /// products and sums stay finite. Some 30 years.
-pub const MOST_SECONDS: f32 = 1e9;
+pub const MAX_SECONDS: f32 = 1e9;
 
 /// What becomes of times outside a clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -45,10 +45,10 @@ pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
 /// Checks any seconds.
 pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
     // NaN is not within.
-    if value.abs() <= MOST_SECONDS {
+    if value.abs() <= MAX_SECONDS {
         return Ok(());
     }
-    Err(InputError::new(field, value, format!("must be finite, and within ±{MOST_SECONDS:e}")))
+    Err(InputError::new(field, value, format!("must be finite, and within ±{MAX_SECONDS:e}")))
 }
 
 impl Instance {
@@ -62,7 +62,7 @@ impl Instance {
         if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
     }
 
-    /// Checks that it plays one of `clips` clips, from a start and at a rate within ±[`MOST_SECONDS`].
+    /// Checks that it plays one of `clips` clips, from a start and at a rate within ±[`MAX_SECONDS`].
     ///
     /// # Errors
     /// [`InputError`] that names the field.

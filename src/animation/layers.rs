@@ -35,7 +35,7 @@ use crate::animation::instance::Instance;
 use crate::asset::skeleton::Skeleton;
 
 /// The most layers of a crowd, the base included.
-pub const MOST_LAYERS: usize = 8;
+pub const MAX_LAYERS: usize = 8;
 
 /// A layer above the base.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +61,7 @@ impl Layer {
     }
 
     /// How much it counts for an instance on a bone.
-    pub fn share(&self, instance: usize, bone: usize) -> f32 {
+    pub fn weight(&self, instance: usize, bone: usize) -> f32 {
         self.weights[instance] * self.mask.as_ref().map_or(1.0, |mask| mask[bone])
     }
 
@@ -82,17 +82,17 @@ impl Layer {
         };
         each("instances", self.instances.len(), count, "an instance of the base")?;
         each("weights", self.weights.len(), count, "an instance of the base")?;
-        shares(&format!("{path}.weights"), &self.weights)?;
+        check_weights(&format!("{path}.weights"), &self.weights)?;
         if let Some(mask) = &self.mask {
             each("mask", mask.len(), bones, "a bone")?;
-            shares(&format!("{path}.mask"), mask)?;
+            check_weights(&format!("{path}.mask"), mask)?;
         }
         self.instances.iter().try_for_each(|instance| instance.validate(clips))
     }
 }
 
 /// Refuses values outside 0..=1; names the first with its index.
-pub(crate) fn shares(path: &str, values: &[f32]) -> Result<(), InputError> {
+pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError> {
     match values.iter().position(|value| !(0.0..=1.0).contains(value)) {
         None => Ok(()),
         Some(at) => Err(InputError::new(format!("{path}[{at}]"), values[at], "must be in 0..=1")),
@@ -132,7 +132,7 @@ mod tests {
         let instance = Instance::new(1, Wrap::Loop, 0.0, 1.0);
         let good = Layer::new(vec![instance; 2], vec![0.0, 1.0]).masked(vec![0.5; 3]);
         assert_eq!(good.validate("layers[0]", 2, 2, 3), Ok(()));
-        assert_eq!(good.share(1, 2), 0.5);
+        assert_eq!(good.weight(1, 2), 0.5);
         let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").field;
         assert_eq!(refused(Layer { instances: vec![instance], ..good.clone() }), "layers[0].instances.len");
         assert_eq!(refused(Layer { weights: vec![1.0; 3], ..good.clone() }), "layers[0].weights.len");

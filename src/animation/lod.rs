@@ -2,7 +2,7 @@
 //! missed before it shows. Quantized on the host, so that every device decides alike.
 
 use crate::InputError;
-pub use crate::shared::animation::gating::Lod;
+pub use crate::shared::animation::gate_state::Lod;
 
 /// [`Lod::omega`] at full detail.
 pub const OMEGA_ONE: u32 = 1 << 16;
@@ -53,14 +53,15 @@ impl Range {
     /// Ω at a distance, in 65536ths. **Decided**: `(max − d)/(max − min)`; A prints `(d − min)/(max − min)`, against
     /// its own end points.
     pub fn omega(&self, distance: f32) -> u32 {
-        let share = (f64::from(self.max) - f64::from(distance)) / (f64::from(self.max) - f64::from(self.min));
-        (share.clamp(0.0, 1.0) * f64::from(OMEGA_ONE)).round() as u32
+        let fraction =
+            (f64::from(self.max) - f64::from(distance)) / (f64::from(self.max) - f64::from(self.min));
+        (fraction.clamp(0.0, 1.0) * f64::from(OMEGA_ONE)).round() as u32
     }
 }
 
 /// How a camera makes pixels of metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lens {
+pub struct Projection {
     /// Pixels that a metre at a distance of one metre takes on the axis: half the picture's height, in pixels, divided
     /// by the tangent of half the field of view; the larger one of both directions.
     pub focal_pixels: f32,
@@ -68,7 +69,7 @@ pub struct Lens {
     pub near: f32,
 }
 
-impl Lens {
+impl Projection {
     /// The lens of a picture `height` pixels high with a vertical field of view in radians.
     pub fn new(height: u32, field_of_view: f32, near: f32) -> Self {
         Self { focal_pixels: height as f32 / 2.0 / (field_of_view / 2.0).tan(), near }
@@ -111,12 +112,12 @@ mod tests {
     /// Moves points inside spheres by the allowed way, in every direction, and projects them.
     #[test]
     fn what_is_allowed_stays_within_the_pixels() {
-        let lens = Lens::new(1080, 1.0, 0.1);
+        let projection = Projection::new(1080, 1.0, 0.1);
         let mut worst = 0.0_f64;
         for (x, z, radius, pixels) in
             [(0.0, 10.0, 1.0, 1.0), (6.0, 8.0, 2.0, 0.25), (-3.0, 3.0, 0.5, 8.0), (40.0, 30.0, 1.0, 2.0)]
         {
-            let allowed = f64::from(lens.allowed([x, 0.5, z], radius, pixels));
+            let allowed = f64::from(projection.allowed([x, 0.5, z], radius, pixels));
             assert!(allowed > 0.0);
             let around = |steps: u32, of: u32| {
                 let (azimuth, height) = (f64::from(of % steps), f64::from(of / steps));
@@ -124,7 +125,7 @@ mod tests {
                 let turn = azimuth / f64::from(steps) * std::f64::consts::TAU;
                 [polar.sin() * turn.cos(), polar.sin() * turn.sin(), polar.cos()]
             };
-            let screen = |[x, y, z]: [f64; 3]| [x / z, y / z].map(|s| s * f64::from(lens.focal_pixels));
+            let screen = |[x, y, z]: [f64; 3]| [x / z, y / z].map(|s| s * f64::from(projection.focal_pixels));
             for (at, to) in (0..144).flat_map(|at| (0..144).map(move |to| (at, to))) {
                 let (out, way) = (around(12, at), around(12, to));
                 let centre = [f64::from(x), 0.5, f64::from(z)];
@@ -137,7 +138,7 @@ mod tests {
             }
         }
         assert!(worst > 0.5, "far too careful: {worst}");
-        assert_eq!(lens.allowed([0.0, 0.0, 1.0], 0.95, 1.0), 0.0, "reaches the near plane");
-        assert_eq!(lens.allowed([0.0, 0.0, -5.0], 1.0, 1.0), 0.0, "behind");
+        assert_eq!(projection.allowed([0.0, 0.0, 1.0], 0.95, 1.0), 0.0, "reaches the near plane");
+        assert_eq!(projection.allowed([0.0, 0.0, -5.0], 1.0, 1.0), 0.0, "behind");
     }
 }

@@ -8,26 +8,26 @@ pub mod bounds;
 pub mod budget;
 #[cfg(feature = "gpu")]
 pub mod chosen;
+pub mod clip_clock;
 pub mod clip_set;
 pub mod compact;
-pub mod concat;
 #[cfg(feature = "gpu")]
 pub mod crowd;
 pub mod decide;
 pub mod frame;
 pub mod gate;
-pub mod gate_table;
 #[cfg(feature = "gpu")]
-pub mod gating;
+pub mod gate_state;
+pub mod gate_table;
 pub mod instance;
+pub mod keyframe_cursor;
 pub mod layers;
+pub mod local_to_model;
 pub mod lod;
 #[cfg(feature = "gpu")]
 pub mod model_matrices;
 pub mod motion;
 pub mod order;
-pub mod phase;
-pub mod place;
 pub mod priority;
 pub mod root_motion;
 pub mod sample;
@@ -42,7 +42,7 @@ pub use gate::{Frame, Gate};
 pub use gate_table::GateTable;
 pub use instance::{Instance, Wrap};
 pub use layers::Layer;
-pub use lod::{Lens, Lod, Range};
+pub use lod::{Lod, Projection, Range};
 #[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;
 pub use order::Order;

@@ -25,7 +25,7 @@ impl ModelMatrices {
     }
 
     /// The same, of which those alone change in a frame that have their bit in this buffer, laid out as
-    /// [`Active::dirty`](super::active::Active::dirty).
+    /// [`Active::updated_bones`](super::active::Active::updated_bones).
     #[must_use]
     pub fn with_updated_bones(&self, bits: &Buffer<u32>) -> Self {
         Self { updated_bones: Some(bits.clone()), ..self.clone() }
@@ -37,7 +37,7 @@ impl ModelMatrices {
     }
 
     /// A bit for each slot of each instance whose matrix a frame updated, as
-    /// [`Active::dirty`](super::active::Active::dirty). Without, any may have changed.
+    /// [`Active::updated_bones`](super::active::Active::updated_bones). Without, any may have changed.
     pub fn updated_bones(&self) -> Option<&Buffer<u32>> {
         self.updated_bones.as_ref()
     }

@@ -146,8 +146,8 @@ impl<'a> Keys<'a> {
             path.is_boundless |= speed.is_none();
             let speed = speed.unwrap_or(std::f64::consts::PI);
             for at in row(from)..row(to) {
-                let share = f64::from(times[at + 1] - times[at]) / f64::from(to - from);
-                path.rises[at] += speed * share;
+                let fraction = f64::from(times[at + 1] - times[at]) / f64::from(to - from);
+                path.rises[at] += speed * fraction;
             }
         }
         path.wrap = self.distance(self.value(last), self.value(0));
@@ -224,10 +224,10 @@ fn normalized(value: &Value) -> Value {
 /// How far each bone's parts move points: factors of [`Path`]s of translation, rotation and scale, metres a unit.
 pub type Levers = Vec<[f64; 3]>;
 
-/// The largest: a bound of what any point that follows the bone moves. `reaches`: for each bone, how far points that
+/// The largest: a bound of what any point that follows the bone moves. `bone_radii`: for each bone, how far points that
 /// follow it alone lie from its origin, metres.
-pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32]) -> Levers {
-    let reach = whole_reaches(skeleton, motions, reaches);
+pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Levers {
+    let bone_radius = subtree_radii(skeleton, motions, bone_radii);
     let mut above = vec![1.0; motions.len()];
     let mut levers = Levers::with_capacity(motions.len());
     for (bone, node) in skeleton.bones().iter().enumerate() {
@@ -235,14 +235,14 @@ pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f
             above[bone] = above[parent as usize] * motions[parent as usize].scale;
         }
         let sigma: f64 = above[bone];
-        levers.push([sigma, sigma * motions[bone].scale * reach[bone], sigma * reach[bone]]);
+        levers.push([sigma, sigma * motions[bone].scale * bone_radius[bone], sigma * bone_radius[bone]]);
     }
     levers
 }
 
 /// The farthest that points which follow each bone or one below it lie from its origin, before its own scale.
-pub fn whole_reaches(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32]) -> Vec<f64> {
-    let mut whole: Vec<f64> = reaches.iter().copied().map(f64::from).collect();
+pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Vec<f64> {
+    let mut whole: Vec<f64> = bone_radii.iter().copied().map(f64::from).collect();
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
         if let Some(parent) = node.parent {
             let below = motions[bone].translation + motions[bone].scale * whole[bone];
@@ -252,16 +252,17 @@ pub fn whole_reaches(skeleton: &Skeleton, motions: &[BoneMotion], reaches: &[f32
     whole
 }
 
-/// The root of the sum of squares over points, `reaches` from each bone at or below, of how far they move: at rest, in the
+/// The root of the sum of squares over points, `bone_radii` from each bone at or below, of how far they move: at rest, in the
 /// model's units, on average over directions.
-pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
-    let models = crate::animation::concat::reference::concat(skeleton, &skeleton.rest());
-    let origin = |bone: usize| glam::DVec3::from_array(models[bone].map(|row| f64::from(row[3])));
+pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
+    let model_matrices =
+        crate::animation::local_to_model::reference::local_to_model(skeleton, &skeleton.rest());
+    let origin = |bone: usize| glam::DVec3::from_array(model_matrices[bone].map(|row| f64::from(row[3])));
     let scales_above = skeleton.scales_above();
     // Of each bone: points, and squares of their distances.
-    let mut sums = vec![[0.0; 3]; models.len()];
-    for (bone, reach) in reaches.iter().enumerate() {
-        let own = (f64::from(*reach) * scales_above[bone] * skeleton.bones()[bone].scale()).powi(2);
+    let mut sums = vec![[0.0; 3]; model_matrices.len()];
+    for (bone, bone_radius) in bone_radii.iter().enumerate() {
+        let own = (f64::from(*bone_radius) * scales_above[bone] * skeleton.bones()[bone].scale()).powi(2);
         let path = std::iter::successors(Some(bone), |bone| {
             skeleton.bones()[*bone].parent.map(|parent| parent as usize)
         });
@@ -283,16 +284,16 @@ pub fn typical_levers(skeleton: &Skeleton, reaches: &[f32]) -> Levers {
 ///
 /// A bone that moves at rate r is sampled r/s times for its share s of the whole. The fewest samples of a subtree with the
 /// budget b are K/b: for a leaf K = r, and for a bone above subtrees K = (√r + √ΣK)², of which it takes √r/(√r + √ΣK).
-pub fn shares(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
+pub fn budget_fractions(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
     let bones = skeleton.bones();
     let mut below = vec![0.0; rates.len()];
-    let mut shares = vec![0.0; rates.len()];
+    let mut budget_fractions = vec![0.0; rates.len()];
     for (bone, node) in bones.iter().enumerate().rev() {
         let (own, others) = (rates[bone].sqrt(), f64::sqrt(below[bone]));
-        shares[bone] = if own > 0.0 { own / (own + others) } else { 0.0 };
+        budget_fractions[bone] = if own > 0.0 { own / (own + others) } else { 0.0 };
         if let Some(parent) = node.parent {
             below[parent as usize] += (own + others).powi(2);
         }
     }
-    shares
+    budget_fractions
 }

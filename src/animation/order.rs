@@ -48,8 +48,8 @@ pub struct Order {
 impl Order {
     /// The order of a skeleton's bones.
     pub fn new(skeleton: &Skeleton) -> Self {
-        let heir = heirs(skeleton);
-        let others = other_children(skeleton, &heir);
+        let target = remap(skeleton);
+        let others = other_children(skeleton, &target);
         let bones = skeleton.bones();
         let mut slots: Vec<Slot> = Vec::with_capacity(bones.len());
         // Of each level.
@@ -59,7 +59,7 @@ impl Order {
         let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
         while let Some((first_bone, level)) = waiting.pop() {
             let first = slots.len() as u32;
-            for bone in std::iter::successors(Some(first_bone), |bone| heir[*bone as usize]) {
+            for bone in std::iter::successors(Some(first_bone), |bone| target[*bone as usize]) {
                 let above = bones[bone as usize].parent.unwrap_or(NO_PARENT);
                 let parent = if bone == first_bone { above } else { CONTINUES };
                 let subtree = skeleton.descendants()[bone as usize] + 1;
@@ -93,11 +93,11 @@ impl Order {
 }
 
 /// For each bone, the children that do not continue its chain.
-fn other_children(skeleton: &Skeleton, heir: &[Option<u32>]) -> Vec<Vec<u32>> {
+fn other_children(skeleton: &Skeleton, target: &[Option<u32>]) -> Vec<Vec<u32>> {
     let mut others = vec![Vec::new(); skeleton.len()];
     for (bone, node) in (0..).zip(skeleton.bones()) {
         if let Some(parent) = node.parent
-            && heir[parent as usize] != Some(bone)
+            && target[parent as usize] != Some(bone)
         {
             others[parent as usize].push(bone);
         }
@@ -107,8 +107,8 @@ fn other_children(skeleton: &Skeleton, heir: &[Option<u32>]) -> Vec<Vec<u32>> {
 
 /// For each bone, the child that continues its chain: the one below which most levels of chains lie, or else most
 /// bones.
-fn heirs(skeleton: &Skeleton) -> Vec<Option<u32>> {
-    let mut heir: Vec<Option<u32>> = vec![None; skeleton.len()];
+fn remap(skeleton: &Skeleton) -> Vec<Option<u32>> {
+    let mut target: Vec<Option<u32>> = vec![None; skeleton.len()];
     // Levels that a bone's chain and all below need, if it continues into its heir; and into no child.
     let mut levels = vec![1_u32; skeleton.len()];
     let mut best: Vec<(u32, u32)> = vec![(0, 0); skeleton.len()];
@@ -119,12 +119,12 @@ fn heirs(skeleton: &Skeleton) -> Vec<Option<u32>> {
         if rank >= best[parent] {
             levels[parent] = levels[parent].max(rank.0).max(best[parent].0 + u32::from(best[parent].0 > 0));
             best[parent] = rank;
-            heir[parent] = Some(bone as u32);
+            target[parent] = Some(bone as u32);
         } else {
             levels[parent] = levels[parent].max(rank.0 + 1);
         }
     }
-    heir
+    target
 }
 
 #[cfg(all(test, feature = "samples"))]

@@ -24,7 +24,7 @@
 mod analyze;
 
 use crate::InputError;
-use crate::animation::concat::reference::concat;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample_bone;
 use crate::asset::clip::{Clip, Part};
 use crate::asset::keyframe::RotationPath;
@@ -190,7 +190,7 @@ impl Differences {
     fn terms(&self, skeleton: &Skeleton) -> Vec<[f64; 5]> {
         let largest = |part: usize| self.keys.iter().map(|key| key.change[part]).fold(0.0, f64::max);
         let least = [NOISE * self.size, NOISE, NOISE];
-        let share = |value: f64, largest: f64, least: f64| {
+        let fraction = |value: f64, largest: f64, least: f64| {
             if largest < least || largest <= 0.0 { 0.0 } else { value / largest }
         };
         let largest = [0, 1, 2].map(largest);
@@ -199,8 +199,8 @@ impl Differences {
         let of_key = |key: &Difference| {
             let bone = key.bone as usize;
             let [translation, rotation, scale] =
-                [0, 1, 2].map(|part| share(key.change[part], largest[part], least[part]));
-            let children = share(skeleton.descendants()[bone].into(), most_children, NOISE);
+                [0, 1, 2].map(|part| fraction(key.change[part], largest[part], least[part]));
+            let children = fraction(skeleton.descendants()[bone].into(), most_children, NOISE);
             let depth = (deepest - f64::from(skeleton.depths()[bone]) + 1.0) / (deepest + 1.0);
             [translation, rotation, scale, children, depth]
         };
@@ -239,8 +239,8 @@ fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
 
 /// The diagonal of the box around all bones at rest, units of the model.
 pub fn size(skeleton: &Skeleton) -> f64 {
-    let models = concat(skeleton, &skeleton.rest());
-    let places = models.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));
+    let model_matrices = local_to_model(skeleton, &skeleton.rest());
+    let places = model_matrices.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));
     let (low, high) = places
         .fold((glam::DVec3::MAX, glam::DVec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
     low.distance(high)

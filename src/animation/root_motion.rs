@@ -25,8 +25,8 @@ use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::animation::sample::reference::vector_at;
 use crate::asset::clip::{Clip, Keys};
-use crate::asset::keyframe::Place;
-use crate::asset::keyframe::place;
+use crate::asset::keyframe::KeyframeCursor;
+use crate::asset::keyframe::keyframe_cursor;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 
@@ -97,7 +97,7 @@ impl RootMotion {
     }
 
     /// How what `instance` plays moves it from one moment to another, in seconds since its start as
-    /// `PlaceJob::set` counts them; `to` may lie before `from`. A rotation about +Y and a translation in metres, in the
+    /// `KeyframeCursorJob::set` counts them; `to` may lie before `from`. A rotation about +Y and a translation in metres, in the
     /// space of the model at `from`.
     ///
     /// # Errors
@@ -127,15 +127,15 @@ impl RootMotion {
 
     /// The motion from the clip's start to a time inside it.
     fn since_start(&self, time: f64) -> Rigid {
-        let at = place(&self.path.times, time as f32);
+        let at = keyframe_cursor(&self.path.times, time as f32);
         let [x, y, z, _] = vector_at(&self.path.values, self.path.interpolation, at).map(f64::from);
-        Rigid::about(self.pivot, self.turn(place(&self.turn_times, time as f32)), [x, y, z])
+        Rigid::about(self.pivot, self.turn(keyframe_cursor(&self.turn_times, time as f32)), [x, y, z])
     }
 
-    fn turn(&self, place: Place) -> f64 {
-        let key = place.key as usize;
+    fn turn(&self, cursor: KeyframeCursor) -> f64 {
+        let key = cursor.key as usize;
         match (self.turns.get(key), self.turns.get(key + 1)) {
-            (Some(before), Some(after)) => before + (after - before) * f64::from(place.fraction),
+            (Some(before), Some(after)) => before + (after - before) * f64::from(cursor.fraction),
             (before, _) => before.copied().unwrap_or(0.0),
         }
     }

@@ -8,7 +8,7 @@
 use crate::InputError;
 
 /// The most bones that a vertex follows.
-pub const MOST_INFLUENCES: usize = 8;
+pub const MAX_INFLUENCES: usize = 8;
 
 /// A bone, and how much a vertex follows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ impl Influences {
     ///
     /// # Errors
     /// [`InputError`] for weights that are negative or not finite, a vertex without weights or with more than
-    /// [`MOST_INFLUENCES`], and weighted bones that are not below `bones`. `path` comes before the vertex's number.
+    /// [`MAX_INFLUENCES`], and weighted bones that are not below `bones`. `path` comes before the vertex's number.
     pub fn new(
         path: &str,
         bones: usize,
@@ -106,8 +106,8 @@ fn check(given: &[Influence], bones: usize) -> Result<(), Fault> {
     if given.is_empty() {
         return Err(("0".to_owned(), "must follow a bone: all its weights are 0".to_owned()));
     }
-    if given.len() > MOST_INFLUENCES {
-        return Err((format!("{} weights", given.len()), format!("must be at most {MOST_INFLUENCES}")));
+    if given.len() > MAX_INFLUENCES {
+        return Err((format!("{} weights", given.len()), format!("must be at most {MAX_INFLUENCES}")));
     }
     match given.iter().find(|influence| influence.bone as usize >= bones) {
         Some(wrong) => {

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
-pub struct Place {
+pub struct KeyframeCursor {
     /// The key before.
     pub key: u32,
     /// The way to the key after it, 0 to below 1. 0 outside the keys.
@@ -12,13 +12,13 @@ pub struct Place {
 }
 
 /// Where a time lies among key times. The last of equal times counts.
-pub fn place(times: &[f32], time: f32) -> Place {
+pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     let last = times.len().saturating_sub(1);
     if last == 0 || time < times[0] {
-        return Place { key: 0, fraction: 0.0 };
+        return KeyframeCursor { key: 0, fraction: 0.0 };
     }
     if time >= times[last] {
-        return Place { key: last as u32, fraction: 0.0 };
+        return KeyframeCursor { key: last as u32, fraction: 0.0 };
     }
     // Most clips are sampled evenly: a guess hits.
     let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
@@ -35,7 +35,7 @@ pub fn place(times: &[f32], time: f32) -> Place {
             }
         }
     }
-    Place { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
+    KeyframeCursor { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
 }
 
 /// The way between two linear rotation keys.

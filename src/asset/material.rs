@@ -1,7 +1,7 @@
 //! What meshes look like: the colours of glTF's materials, with their textures and what becomes of alpha.
 
 /// The longest edge of an image: WebGPU's default limit.
-pub const MOST_TEXELS: u32 = 8192;
+pub const MAX_TEXELS: u32 = 8192;
 
 /// The colour of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,12 +75,12 @@ pub enum Alpha {
     Mask(f32),
     /// As many of each 4 × 4 pixels are there as alpha says: a screen-door. It needs no order of triangles, and writes
     /// depth. Of two such surfaces, one behind the other, the nearer hides all that is no denser than itself.
-    Screen,
+    Dithered,
 }
 
-/// The alpha below which a pixel of [`Alpha::Screen`] is not there: the rank of its place among 4 × 4 (Bayer 1973),
+/// The alpha below which a pixel of [`Alpha::Dithered`] is not there: the rank of its place among 4 × 4 (Bayer 1973),
 /// between 0 and 1.
-pub fn screen([x, y]: [u32; 2]) -> f32 {
+pub fn dithered([x, y]: [u32; 2]) -> f32 {
     let rank = |x: u32, y: u32| 2 * (x ^ y) + y;
     ((4 * rank(x & 1, y & 1) + rank(x >> 1 & 1, y >> 1 & 1)) as f32 + 0.5) / 16.0
 }
@@ -91,12 +91,12 @@ mod tests {
 
     #[test]
     fn every_place_of_the_screen_has_a_rank_of_its_own() {
-        let all = |size: u32| (0..size * size).map(move |at| screen([at % size, at / size]));
+        let all = |size: u32| (0..size * size).map(move |at| dithered([at % size, at / size]));
         let mut ranks: Vec<f32> = all(4).collect();
         ranks.sort_by(f32::total_cmp);
         assert_eq!(ranks, (0..16).map(|rank| (rank as f32 + 0.5) / 16.0).collect::<Vec<_>>());
-        assert_eq!(screen([5, 6]), screen([1, 2]));
+        assert_eq!(dithered([5, 6]), dithered([1, 2]));
         // Half of the pixels at an alpha of ½ are a chequerboard.
-        assert!((0..16).all(|at| (screen([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
+        assert!((0..16).all(|at| (dithered([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
     }
 }

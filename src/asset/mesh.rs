@@ -9,13 +9,13 @@ use crate::asset::influences::Influences;
 use crate::asset::skeleton::Skin;
 
 /// The most vertices of a mesh.
-pub const MOST_VERTICES: usize = 1 << 24;
+pub const MAX_VERTICES: usize = 1 << 24;
 
 /// The largest size of a coordinate.
 pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
 /// The most levels of detail of a mesh: itself, and [`Mesh::levels`].
-pub const MOST_LEVELS: usize = 16;
+pub const MAX_LEVELS: usize = 16;
 
 /// A coarser form of a mesh, of some of its vertices.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +59,7 @@ pub struct Mesh {
     pub weights: Vec<f32>,
     /// The clips that move the targets, and how.
     pub weight_keys: Vec<(usize, WeightKeys)>,
-    /// Coarser and coarser, fewer than [`MOST_LEVELS`]: level 1 and on, the mesh itself is level 0. Each is of vertices
+    /// Coarser and coarser, fewer than [`MAX_LEVELS`]: level 1 and on, the mesh itself is level 0. Each is of vertices
     /// of the one before, and errors do not descend.
     pub levels: Vec<MeshLevel>,
 }
@@ -87,11 +87,11 @@ impl Mesh {
             return Err(InputError::new("mesh.skin", self.skin, format!("must be below {}", skins.len())));
         };
         let vertices = self.vertices();
-        if vertices > MOST_VERTICES {
+        if vertices > MAX_VERTICES {
             return Err(InputError::new(
                 "mesh.positions.len",
                 vertices,
-                format!("must be at most {MOST_VERTICES}"),
+                format!("must be at most {MAX_VERTICES}"),
             ));
         }
         for (field, len) in [
@@ -124,8 +124,8 @@ impl Mesh {
     }
 
     fn validate_levels(&self) -> Result<(), InputError> {
-        if self.levels.len() >= MOST_LEVELS {
-            let bound = format!("must be at most {}", MOST_LEVELS - 1);
+        if self.levels.len() >= MAX_LEVELS {
+            let bound = format!("must be at most {}", MAX_LEVELS - 1);
             return Err(InputError::new("mesh.levels.len", self.levels.len(), bound));
         }
         let mut least = 0.0;
@@ -246,8 +246,8 @@ pub(crate) fn solved_tangents(
 ///
 /// # Panics
 /// For meshes that do not fit the skins, and skins that do not fit `bones` bones: see [`Mesh::validate`].
-pub fn reaches(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
-    let mut reaches = vec![0.0_f64; bones];
+pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
+    let mut bone_radii = vec![0.0_f64; bones];
     for mesh in meshes {
         let skin = &skins[mesh.skin];
         let binds: Vec<_> = skin
@@ -262,13 +262,13 @@ pub fn reaches(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
                 let bind = &binds[influence.bone as usize];
                 let morphed: f64 =
                     deltas[vertex].iter().map(|delta| bind.transform_vector3(*delta).length()).sum();
-                let reach = &mut reaches[skin.bones[influence.bone as usize] as usize];
-                *reach = reach.max(bind.transform_point3(position).length() + morphed);
+                let bone_radius = &mut bone_radii[skin.bones[influence.bone as usize] as usize];
+                *bone_radius = bone_radius.max(bind.transform_point3(position).length() + morphed);
             }
         }
     }
     // The nearest f32 is at most 2⁻²⁴ below; f64's own errors are far smaller.
-    reaches.into_iter().map(|reach| (reach * (1.0 + 1e-6)) as f32).collect()
+    bone_radii.into_iter().map(|bone_radius| (bone_radius * (1.0 + 1e-6)) as f32).collect()
 }
 
 /// How far each target moves each vertex at most.
@@ -325,17 +325,17 @@ mod tests {
     fn reaches_are_the_farthest_vertices() {
         let (mut mesh, skins) = triangle();
         assert_eq!(mesh.validate(&skins), Ok(()));
-        let reach = |mesh: &Mesh| reaches(5, &skins, std::slice::from_ref(mesh));
+        let bone_radius = |mesh: &Mesh| bone_radii(5, &skins, std::slice::from_ref(mesh));
         let near = |found: f32, wanted: f32| (wanted..wanted * 1.000_002).contains(&found);
         // The weight of −3 counts.
-        let found = reach(&mesh);
+        let found = bone_radius(&mesh);
         assert!(near(found[3], 2.0 + 3.0) && near(found[1], 26.0_f32.sqrt() + 1.5), "{found:?}");
         assert_eq!([found[0], found[2], found[4]], [0.0; 3]);
         mesh.weights = vec![0.0];
-        assert!(near(reach(&mesh)[3], 3.0));
+        assert!(near(bone_radius(&mesh)[3], 3.0));
         let keys = WeightKeys::new(["t", "v"], vec![0.0], vec![7.0], crate::asset::Interpolation::Step, 1);
         mesh.weight_keys = vec![(0, keys.expect("valid"))];
-        assert!(near(reach(&mesh)[3], 9.0));
+        assert!(near(bone_radius(&mesh)[3], 9.0));
         assert_eq!((mesh.weights_at(0, 0.5), mesh.weights_at(1, 0.5)), (vec![7.0], vec![0.0]));
     }
 

@@ -16,9 +16,9 @@ pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use influences::{Influence, Influences};
-pub use keyframe::Place;
+pub use keyframe::KeyframeCursor;
 pub use material::Material;
-pub use mesh::{Mesh, MeshLevel, reaches};
+pub use mesh::{Mesh, MeshLevel, bone_radii};
 pub use model::Model;
 pub use morph::{MorphTarget, WeightKeys};
 pub use skeleton::{Bone, Skeleton, Skin};

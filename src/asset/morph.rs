@@ -2,7 +2,7 @@
 //! 3.7.2.2 and 3.11).
 
 use super::clip::{Interpolation, check_times};
-use super::keyframe::{Place, place};
+use super::keyframe::{KeyframeCursor, keyframe_cursor};
 use super::transform::finite;
 use crate::InputError;
 
@@ -83,7 +83,7 @@ impl WeightKeys {
 
     /// The weights at a time inside the clip.
     pub fn at(&self, time: f32) -> Vec<f32> {
-        let Place { key, fraction } = place(&self.times, time);
+        let KeyframeCursor { key, fraction } = keyframe_cursor(&self.times, time);
         let key = key as usize;
         (0..self.targets).map(|target| self.between(key, fraction, target)).collect()
     }

@@ -4,7 +4,7 @@ use super::transform::{Transform, finite};
 use crate::InputError;
 
 /// The most bones of a skeleton.
-pub const MOST_BONES: usize = 1 << 20;
+pub const MAX_BONES: usize = 1 << 20;
 
 /// A node of the skeleton.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,8 +41,8 @@ impl Skeleton {
     /// [`InputError`] for no or too many bones, a parent that does not come before its child, a rest pose that is
     /// not finite or has no rotation, and joints that are no bones or named twice.
     pub fn new(mut bones: Vec<Bone>, joints: Vec<u32>) -> Result<Self, InputError> {
-        if !(1..=MOST_BONES).contains(&bones.len()) {
-            return Err(InputError::new("bones.len", bones.len(), format!("must be in 1..={MOST_BONES}")));
+        if !(1..=MAX_BONES).contains(&bones.len()) {
+            return Err(InputError::new("bones.len", bones.len(), format!("must be in 1..={MAX_BONES}")));
         }
         for (index, bone) in bones.iter_mut().enumerate() {
             if let Some(parent) = bone.parent.filter(|parent| *parent as usize >= index) {

@@ -18,7 +18,7 @@ pub const DEGENERATE: f32 = 1.0 / 16_384.0;
 /// Handedness is negative when its sum is below minus this share.
 pub const VANISHING: f32 = 1.0 / 64.0;
 
-/// How far a component of a tangent may lie from the twin's, on any device, for a vertex of sensitivity 1
+/// How far a component of a tangent may lie from the reference's, on any device, for a vertex of sensitivity 1
 /// ([`Frame`]).
 ///
 /// With ε = 2⁻²³ (`+ − ×` round to either neighbour, division 2.5ε, `inverseSqrt` 2ε, `sqrt` 4.5ε; fusing only
@@ -80,7 +80,7 @@ fn coordinates<const N: usize>(field: &str, vectors: &[[f32; N]]) -> Result<(), 
     }
 }
 
-/// Which corners of triangles meet at each vertex. The twin and the kernel sum in its order, so that no two runs
+/// Which corners of triangles meet at each vertex. The reference and the kernel sum in its order, so that no two runs
 /// differ.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adjacency {

@@ -34,7 +34,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 limit: "maxStorageBufferBindingSize",
                 needed: size,
                 available: gpu.max_binding(),
-                remedy: "split the batch (fewer patches at once), use smaller patches or a smaller reach (fewer iterations of erosion), or compute on the CPU (--backend cpu)",
+                remedy: "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer iterations of erosion), or compute on the CPU (--backend cpu)",
             });
         }
         let usage = wgpu::BufferUsages::STORAGE

@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn twins_sit_out_the_later_rounds() {
+    fn references_sit_out_the_later_rounds() {
         let gpu = Gpu::headless(&crate::gpu::Options::default()).expect("the suite needs an adapter");
         let [device, host] = [0; 2].map(std::cell::Cell::new);
         let count = |calls: &std::cell::Cell<usize>| calls.set(calls.get() + 1);
@@ -245,13 +245,13 @@ mod tests {
         let mut bench = Bench::new(&gpu, "test", &mut ignored).expect("ready");
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |_| count(&device)),
-            Contender::host(Backend::Twin, || count(&host)),
+            Contender::host(Backend::Reference, || count(&host)),
         ];
         bench.case("both", (1, "item"), 4, contenders).expect("measured");
         assert_eq!(host.get(), WARM_UP + ROUNDS);
         assert!(device.get() > host.get(), "{} rounds", device.get());
         bench
-            .case("host", (1, "item"), 4, vec![Contender::host(Backend::Twin, || count(&host))])
+            .case("host", (1, "item"), 4, vec![Contender::host(Backend::Reference, || count(&host))])
             .expect("measured");
         assert_eq!(host.get(), 2 * (WARM_UP + ROUNDS));
         let rows = bench.into_rows();

@@ -10,10 +10,10 @@ use crate::gpu::TimedBy;
 pub enum Backend {
     /// The kernel.
     Gpu,
-    /// Its twin on one thread.
-    Twin,
-    /// Its twin on all threads.
-    TwinParallel,
+    /// Its reference on one thread.
+    Reference,
+    /// Its reference on all threads.
+    ReferenceParallel,
     /// Straightforward structure-of-arrays code for the processor, on one thread.
     PlainSoa,
     /// A kernel that moves the same bytes.
@@ -27,8 +27,8 @@ impl Backend {
     pub fn name(self) -> &'static str {
         match self {
             Self::Gpu => "gpu",
-            Self::Twin => "twin",
-            Self::TwinParallel => "twin-parallel",
+            Self::Reference => "reference",
+            Self::ReferenceParallel => "reference-parallel",
             Self::PlainSoa => "plain-soa",
             Self::Copy => "copy",
             Self::Limit => "limit",

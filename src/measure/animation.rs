@@ -70,11 +70,11 @@ pub struct AnimationRow {
     /// Moving bones that were not.
     pub skipped: u64,
     /// Interpolated bones, of all that move.
-    pub share: f64,
+    pub fraction: f64,
     /// Bones whose matrices were computed.
     pub concatenated: u64,
     /// The same, of all bones.
-    pub concatenated_share: f64,
+    pub concatenated_fraction: f64,
     /// With the gate, divided by all bones of the crowd.
     pub nanoseconds_per_bone: StageTimes,
     /// Without.
@@ -213,7 +213,7 @@ fn row(
     gpu: Option<&Gpu>,
     stage: &Stage<'_>,
     options: &LodOptions,
-    [table, movers]: &[GateTable; 2],
+    [table, animated_bones]: &[GateTable; 2],
     distance: f32,
     steps: &Steps<'_>,
 ) -> Result<AnimationRow, Error> {
@@ -226,19 +226,21 @@ fn row(
             let mut device = Device::new(gpu, stage, table, choice, &lods)?;
             play(&mut device, stage, &placements, true, step)?
         }
-        None => play(&mut Cpu::new(stage, table, movers, choice, lods)?, stage, &placements, true, step)?,
+        None => {
+            play(&mut Cpu::new(stage, table, animated_bones, choice, lods)?, stage, &placements, true, step)?
+        }
     };
     let Found { interpolated, concatenated, errors, jump, gated, full } = found;
     let (pairs, frames) = (stage.pairs(), u64::from(options.crowd.frames));
-    let moving = (stage.instances.len() * moving_bones(movers)) as u64 * frames;
+    let moving = (stage.instances.len() * moving_bones(animated_bones)) as u64 * frames;
     Ok(AnimationRow {
         distance,
         mean_omega,
         interpolated,
         skipped: moving.saturating_sub(interpolated),
-        share: interpolated as f64 / moving.max(1) as f64,
+        fraction: interpolated as f64 / moving.max(1) as f64,
         concatenated,
-        concatenated_share: concatenated as f64 / (pairs as u64 * frames) as f64,
+        concatenated_fraction: concatenated as f64 / (pairs as u64 * frames) as f64,
         nanoseconds_per_bone: gated.a_bone(pairs),
         full_nanoseconds_per_bone: full.a_bone(pairs),
         error: errors,

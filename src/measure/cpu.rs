@@ -19,18 +19,18 @@ pub(crate) struct Cpu<'a> {
 }
 
 impl<'a> Cpu<'a> {
-    /// `table` is the choice's, `movers` that of [`GateMode::Off`].
+    /// `table` is the choice's, `animated_bones` that of [`GateMode::Off`].
     pub(crate) fn new(
         stage: &'a Stage<'_>,
         table: &'a GateTable,
-        movers: &'a GateTable,
+        animated_bones: &'a GateTable,
         choice: Choice,
         lods: Vec<Lod>,
     ) -> Result<Self, InputError> {
         let crowd = |table| Crowd::new(&stage.order, &stage.set, table, PATH, stage.instances.clone());
         let mut gated = crowd(table)?;
         gated.lods = lods;
-        Ok(Self { gated, full: crowd(movers)?, choice, rate: stage.options.rate })
+        Ok(Self { gated, full: crowd(animated_bones)?, choice, rate: stage.options.rate })
     }
 }
 
@@ -45,16 +45,16 @@ impl Play for Cpu<'_> {
         let [gated, full] = [gated, full].map(|time| FrameTimes::of_whole(time.as_nanos() as f64));
         Ok(Played {
             interpolated: work.pairs.len(),
-            concatenated: work.dirty.iter().map(|word| word.count_ones() as usize).sum(),
+            concatenated: work.updated_bones.iter().map(|word| word.count_ones() as usize).sum(),
             times: (timing != Timing::None).then_some(Times { gated, full }),
         })
     }
 
     fn stale(&self) -> &[Affine] {
-        &self.gated.models
+        &self.gated.model_matrices
     }
 
     fn fresh(&self) -> &[Affine] {
-        &self.full.models
+        &self.full.model_matrices
     }
 }

@@ -4,10 +4,10 @@ use super::gates::{PATH, frame};
 use super::play::{FrameTimes, Play, Played, Times, Timing};
 use super::stage::Stage;
 use crate::Error;
-use crate::animation::concat::{ConcatJob, ConcatPass, Walk};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
-use crate::animation::place::{PlaceJob, PlacePass};
+use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use crate::animation::local_to_model::{LocalToModelJob, LocalToModelPass, Walk};
 use crate::animation::sample::SamplePass;
 use crate::animation::{Choice, GateTable, Lod};
 use crate::asset::Affine;
@@ -33,9 +33,9 @@ pub(crate) struct Gated {
 /// Everything of everybody.
 pub(crate) struct Full {
     pub(crate) crowd: Crowd,
-    place: PlaceJob,
+    place: KeyframeCursorJob,
     sample: Job,
-    concat: ConcatJob,
+    local_to_model: LocalToModelJob,
 }
 
 impl Device {
@@ -89,17 +89,17 @@ impl Device {
     fn play_stages(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
         let frame = &gated.frame;
-        let stages = |gate, sample, concat| FrameTimes { gate, sample, concat, whole: None };
+        let stages = |gate, sample, local_to_model| FrameTimes { gate, sample, local_to_model, whole: None };
         Ok(Times {
             gated: stages(
                 Some(self.timed(|pass| frame.dispatch_gate(pass))?),
                 Some(self.timed(|pass| frame.dispatch_sample(pass))?),
-                Some(self.timed(|pass| frame.dispatch_concat(pass))?),
+                Some(self.timed(|pass| frame.dispatch_local_to_model(pass))?),
             ),
             full: stages(
                 None,
                 Some(self.timed(|pass| full.dispatch_sample(pass))?),
-                Some(self.timed(|pass| full.concat.dispatch(pass))?),
+                Some(self.timed(|pass| full.local_to_model.dispatch(pass))?),
             ),
         })
     }
@@ -122,10 +122,10 @@ impl Play for Device {
         let active = &self.gated.frame.active;
         self.stale = self.gated.crowd.model_matrices().read_blocking(&self.gpu)?;
         self.fresh = self.full.crowd.model_matrices().read_blocking(&self.gpu)?;
-        let dirty = active.dirty.read_blocking(&self.gpu)?;
+        let updated_bones = active.updated_bones.read_blocking(&self.gpu)?;
         Ok(Played {
             interpolated: active.pairs.dispatched.read_blocking(&self.gpu)?[3] as usize,
-            concatenated: dirty.iter().map(|word| word.count_ones() as usize).sum(),
+            concatenated: updated_bones.iter().map(|word| word.count_ones() as usize).sum(),
             times,
         })
     }
@@ -151,7 +151,7 @@ impl Gated {
         let skeleton = &stage.subject.model.skeleton;
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, table, choice)?;
-        frame.gating.lods.write(gpu, lods)?;
+        frame.gate_state.lods.write(gpu, lods)?;
         Ok(Self { crowd, frame })
     }
 }
@@ -160,9 +160,9 @@ impl Full {
     fn new(gpu: &Gpu, stage: &Stage<'_>, clips: &ClipBuffers) -> Result<Self, Error> {
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         Ok(Self {
-            place: PlacePass::new(gpu)?.prepare(gpu, clips, &crowd)?,
+            place: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare(
+            local_to_model: LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(
                 gpu,
                 &stage.subject.model.skeleton,
                 &crowd,
@@ -178,7 +178,7 @@ impl Full {
 
     fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_sample(pass);
-        self.concat.dispatch(pass);
+        self.local_to_model.dispatch(pass);
     }
 
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {

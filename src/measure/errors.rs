@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::placement::{Placement, Placements};
 use super::tally::Tally;
-use crate::animation::Lens;
+use crate::animation::Projection;
 use crate::asset::Affine;
 
 /// How far points lie from where full evaluation puts them, over all frames. Metres are the model's; percentiles are at
@@ -43,7 +43,7 @@ pub struct Jump {
 pub(crate) struct Meter<'a> {
     /// For each bone, how far along its axes.
     radii: &'a [f32],
-    lens: Lens,
+    projection: Projection,
     placements: &'a Placements,
     /// Each of some instances in turn.
     parts: Vec<Part>,
@@ -62,7 +62,7 @@ struct Part {
 }
 
 impl<'a> Meter<'a> {
-    pub(crate) fn new(radii: &'a [f32], lens: Lens, placements: &'a Placements) -> Self {
+    pub(crate) fn new(radii: &'a [f32], projection: Projection, placements: &'a Placements) -> Self {
         let (count, bones) = (placements.origins.len(), radii.len());
         let each = count.div_ceil(rayon::current_num_threads());
         let part = |first: usize| Part {
@@ -73,17 +73,17 @@ impl<'a> Meter<'a> {
             last: vec![[[0.0; 4]; 3]; bones * each.min(count - first)],
         };
         let parts = (0..count).step_by(each).map(part).collect();
-        Self { radii, lens, placements, parts, each }
+        Self { radii, projection, placements, parts, each }
     }
 
     /// Adds a frame; both lists are `instance · bones + bone`.
     pub(crate) fn add(&mut self, stale: &[Affine], fresh: &[Affine]) {
-        let Self { radii, lens, placements, each, .. } = *self;
+        let Self { radii, projection, placements, each, .. } = *self;
         let pairs = each * radii.len();
         let lists = stale.par_chunks(pairs).zip(fresh.par_chunks(pairs));
         self.parts.par_iter_mut().zip(lists).enumerate().for_each(|(at, (part, (stale, fresh)))| {
             for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
-                let placement = placements.get(at * each + pair / radii.len(), lens);
+                let placement = placements.get(at * each + pair / radii.len(), projection);
                 part.add(pair, &placement, radii[pair % radii.len()], stale, fresh);
             }
         });
@@ -160,11 +160,11 @@ mod tests {
     /// One bone, a metre long, ten metres before a lens of 1000 pixels, moved sideways, up and away.
     #[test]
     fn errors_are_projected_and_jumps_seen() {
-        let lens = Lens { focal_pixels: 1000.0, near: 0.1 };
+        let projection = Projection { focal_pixels: 1000.0, near: 0.1 };
         let placements = Placements { origins: vec![[0.0, 0.0, 10.0]], turns: vec![[0.0, 1.0]] };
         let fresh: Affine = crate::asset::transform::AFFINE_IDENTITY;
         let run = |ways: &[[f32; 3]]| {
-            let mut meter = Meter::new(&[1.0], lens, &placements);
+            let mut meter = Meter::new(&[1.0], projection, &placements);
             for way in ways {
                 let mut stale = fresh;
                 (0..3).for_each(|row| stale[row][3] = way[row]);

@@ -141,7 +141,9 @@ impl Source<'_> {
         let Self { skeleton, clip, order, set, radii } = self;
         let clips = [*clip];
         match mode {
-            GateMode::Off | GateMode::Uniform | GateMode::Random => GateTable::of_movers(order, set, &clips),
+            GateMode::Off | GateMode::Uniform | GateMode::Random => {
+                GateTable::of_animated_bones(order, set, &clips)
+            }
             GateMode::SkipPeriod { weights, .. } => {
                 let user = vec![USER_DEFAULT; skeleton.len()];
                 let priorities = priority::Priorities::new(skeleton, clip, true, weights, &user)?;

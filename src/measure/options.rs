@@ -197,7 +197,7 @@ impl DrawnOptions {
     pub fn validate(&self) -> Result<(), InputError> {
         match self.skinning {
             SkinningDetail::Truncate { max_influences } => {
-                crate::skinning::reduction::Reduction::truncate(max_influences).map(drop)?;
+                crate::skinning::instance_lod::InstanceLod::truncate(max_influences).map(drop)?;
             }
             SkinningDetail::Bounded { pixels } => check("skinning", pixels.into(), 0.0..=1e6)?,
             SkinningDetail::Full | SkinningDetail::Fade => {}

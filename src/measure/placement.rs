@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use super::options::{CrowdOptions, Layout};
-use crate::animation::Lens;
+use crate::animation::Projection;
 use crate::animation::gate::reference::scramble;
 use crate::asset::Affine;
 
@@ -18,7 +18,7 @@ pub(crate) struct Placements {
 pub(crate) struct Placement {
     pub origin: [f32; 3],
     pub turn: [f32; 2],
-    pub lens: Lens,
+    pub projection: Projection,
 }
 
 impl Placements {
@@ -55,8 +55,8 @@ impl Placements {
     }
 
     /// One of them.
-    pub(crate) fn get(&self, instance: usize, lens: Lens) -> Placement {
-        Placement { origin: self.origins[instance], turn: self.turns[instance], lens }
+    pub(crate) fn get(&self, instance: usize, projection: Projection) -> Placement {
+        Placement { origin: self.origins[instance], turn: self.turns[instance], projection }
     }
 
     /// From the model's space to a world whose z comes towards the camera.
@@ -81,7 +81,7 @@ impl Placement {
         let (turned, offset) = (self.turned(point), self.turned(offset));
         let [x, y, z]: [f64; 3] = std::array::from_fn(|i| turned[i] + f64::from(self.origin[i]));
         let [x2, y2, z2] = [x + offset[0], y + offset[1], z + offset[2]];
-        let (near, focal) = (f64::from(self.lens.near), f64::from(self.lens.focal_pixels));
+        let (near, focal) = (f64::from(self.projection.near), f64::from(self.projection.focal_pixels));
         let is_seen = z > near && z2 > near;
         let [right, up] = [x2 / z2 - x / z, y2 / z2 - y / z];
         // Not hypot, which takes most of the time.

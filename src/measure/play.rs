@@ -58,7 +58,7 @@ pub(crate) struct Times {
 pub(crate) struct FrameTimes {
     pub gate: Option<f64>,
     pub sample: Option<f64>,
-    pub concat: Option<f64>,
+    pub local_to_model: Option<f64>,
     pub whole: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ pub struct StageTimes {
     pub sample: Option<f64>,
     /// From local transforms to the model's space.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub concat: Option<f64>,
+    pub local_to_model: Option<f64>,
     /// The whole frame, recorded in one piece.
     pub total: f64,
 }
@@ -107,7 +107,7 @@ pub(crate) fn play(
     is_timed: bool,
     step: impl Fn(),
 ) -> Result<Found, Error> {
-    let mut meter = Meter::new(&stage.radii, stage.lens, placements);
+    let mut meter = Meter::new(&stage.radii, stage.projection, placements);
     let (mut interpolated, mut concatenated, mut times) = (0, 0, Vec::new());
     let frames = stage.options.frames;
     for number in 0..=frames {
@@ -135,11 +135,11 @@ pub(crate) fn middle(mut times: Vec<f64>) -> Option<f64> {
 
 fn medians(times: &[FrameTimes]) -> StageTimes {
     let median = |of: &dyn Fn(&FrameTimes) -> Option<f64>| middle(times.iter().filter_map(of).collect());
-    let [gate, sample, concat] =
-        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.concat)];
+    let [gate, sample, local_to_model] =
+        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.local_to_model)];
     // The stages' sum where no whole frame was timed.
-    let sum = [gate, sample, concat].into_iter().flatten().sum();
-    StageTimes { gate, sample, concat, total: median(&|taken| taken.whole).unwrap_or(sum) }
+    let sum = [gate, sample, local_to_model].into_iter().flatten().sum();
+    StageTimes { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
 }
 
 impl FrameTimes {
@@ -156,7 +156,7 @@ impl StageTimes {
         Self {
             gate: each(self.gate),
             sample: each(self.sample),
-            concat: each(self.concat),
+            local_to_model: each(self.local_to_model),
             total: self.total / bones as f64,
         }
     }

@@ -117,7 +117,7 @@ impl SceneRow {
         let all = costs.get(4).copied();
         Self {
             distance,
-            tall_pixels: stage.options.size * stage.lens.focal_pixels / distance,
+            tall_pixels: stage.options.size * stage.projection.focal_pixels / distance,
             mean_omega,
             off,
             animation,

@@ -33,7 +33,7 @@ impl Setting {
             range: [options.range.min, options.range.max],
             frames: options.frames,
             rate: options.rate,
-            focal_pixels: stage.lens.focal_pixels,
+            focal_pixels: stage.projection.focal_pixels,
         }
     }
 }

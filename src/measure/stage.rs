@@ -6,12 +6,12 @@ use super::options::{CrowdOptions, DrawnOptions, MeshDetail, NEAR, SkinningDetai
 use super::placement::{Placements, chance};
 use super::progress::{Listener, during};
 use crate::InputError;
-use crate::animation::concat::reference::concat;
 use crate::animation::instance::{Instance, Wrap};
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::lod::OMEGA_ONE;
 use crate::animation::order::Order;
-use crate::animation::{ClipSet, GateTable, Lens, Lod};
-use crate::asset::{Affine, Clip, Model, reaches};
+use crate::animation::{ClipSet, GateTable, Lod, Projection};
+use crate::asset::{Affine, Clip, Model, bone_radii};
 use crate::skinning::{Extent, poses_of};
 
 /// Lines of the picture.
@@ -33,7 +33,7 @@ pub(crate) struct Stage<'a> {
     watched: Vec<f32>,
     pub instances: Vec<Instance>,
     pub metres_a_unit: f32,
-    pub lens: Lens,
+    pub projection: Projection,
     /// What each mesh does in the clip, where the crowd is drawn.
     pub extents: Vec<Extent>,
     /// The model with levels of detail, where the crowd is drawn with these.
@@ -53,7 +53,7 @@ impl<'a> Stage<'a> {
         let (clip, skeleton) = (subject.clip()?, &subject.model.skeleton);
         let set = ClipSet::new(&[clip])?;
         let lengths = skeleton.lengths();
-        let [low, high] = corners(&concat(skeleton, &skeleton.rest()), &lengths);
+        let [low, high] = corners(&local_to_model(skeleton, &skeleton.rest()), &lengths);
         let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
         if !(extent > 0.0 && extent.is_finite()) {
             let bound = "must be finite and above 0: the model at rest is a point";
@@ -64,7 +64,7 @@ impl<'a> Stage<'a> {
         // Up, so that it reaches all the points.
         let radii: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
         let meshes = if drawn.is_some() { &subject.model.meshes[..] } else { &[] };
-        let vertices = reaches(skeleton.len(), &subject.model.skins, meshes);
+        let vertices = bone_radii(skeleton.len(), &subject.model.skins, meshes);
         let watched = radii.iter().zip(&vertices).map(|(bone, vertex)| bone.max(*vertex)).collect();
         Ok(Self {
             order: Order::new(skeleton),
@@ -73,7 +73,7 @@ impl<'a> Stage<'a> {
             radii,
             instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
             metres_a_unit,
-            lens: Lens::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit),
+            projection: Projection::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit),
             extents: extents(subject, clip, meshes.len(), listener)?,
             levelled: levelled(subject, clip, drawn, listener)?,
             middle: ((low[1] + high[1]) / 2.0) as f32,
@@ -111,20 +111,20 @@ impl<'a> Stage<'a> {
     /// All instances at one place on the axis, so many pixels large, turned every way.
     pub(crate) fn line_up(&self, tall_pixels: f32) -> Placements {
         let extent = self.options.size * self.metres_a_unit;
-        let depth = extent * self.lens.focal_pixels / tall_pixels;
+        let depth = extent * self.projection.focal_pixels / tall_pixels;
         Placements::at_one_place(self.instances.len(), [0.0, -self.middle, depth])
     }
 
     /// What gates know of instances, with errors of so many pixels allowed.
     pub(crate) fn lods(&self, placements: &Placements, table: &GateTable, pixels: f32) -> Vec<Lod> {
-        let depth = |origin: &[f32; 3]| origin[2].max(self.lens.near);
+        let depth = |origin: &[f32; 3]| origin[2].max(self.projection.near);
         let nearest = placements.origins.iter().map(depth).fold(f32::INFINITY, f32::min);
         let lod = |origin: &[f32; 3]| {
             // On the ground: the camera's height is no distance.
             let distance = origin[0].hypot(origin[2]) / self.metres_a_unit;
             let allowed = match table.radius() {
                 0.0 => 0,
-                radius => table.units(self.lens.allowed(*origin, radius, pixels)),
+                radius => table.units(self.projection.allowed(*origin, radius, pixels)),
             };
             let weight = (65535.0 * nearest / depth(origin)).round().clamp(1.0, 65535.0) as u32;
             Lod { omega: self.options.range.omega(distance), allowed, weight, flags: 0 }
@@ -138,7 +138,9 @@ impl<'a> Stage<'a> {
         match skinning {
             SkinningDetail::Full | SkinningDetail::Truncate { .. } => None,
             SkinningDetail::Fade => Some([range.min, range.max].map(|units| units * self.metres_a_unit)),
-            SkinningDetail::Bounded { pixels } => Some(self.extents[mesh].fade_range(&self.lens, pixels)),
+            SkinningDetail::Bounded { pixels } => {
+                Some(self.extents[mesh].fade_range(&self.projection, pixels))
+            }
         }
     }
 
@@ -146,7 +148,7 @@ impl<'a> Stage<'a> {
     pub(crate) fn level_begins(&self, detail: MeshDetail, mesh: usize) -> Vec<f32> {
         match (detail, &self.levelled) {
             (MeshDetail::Bounded { pixels }, Some(levelled)) => {
-                self.extents[mesh].level_ranges(&self.lens, pixels, levelled.errors.iter().copied())
+                self.extents[mesh].level_ranges(&self.projection, pixels, levelled.errors.iter().copied())
             }
             _ => Vec::new(),
         }
@@ -199,10 +201,10 @@ fn corners(models: &[Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
     let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for (model, length) in models.iter().zip(lengths) {
         for (axis, row) in model.iter().enumerate() {
-            let reach = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
+            let bone_radius = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
             // A bone points somewhere: half its length is its middle.
-            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - reach / 2.0);
-            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + reach / 2.0);
+            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - bone_radius / 2.0);
+            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + bone_radius / 2.0);
         }
     }
     corners

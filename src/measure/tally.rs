@@ -39,8 +39,8 @@ impl Tally {
     }
 
     /// A value that a share of all are at most.
-    pub(crate) fn percentile(&self, share: f64) -> f64 {
-        let mut above = (self.count as f64 * (1.0 - share)) as u64;
+    pub(crate) fn percentile(&self, fraction: f64) -> f64 {
+        let mut above = (self.count as f64 * (1.0 - fraction)) as u64;
         for (bin, count) in self.bins.iter().enumerate().rev() {
             if *count > above {
                 return f64::from(f32::from_bits((bin as u32 + 1) << BIN_SHIFT)).min(self.max);

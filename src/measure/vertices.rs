@@ -7,9 +7,9 @@ use serde::Serialize;
 use super::errors::{Errors, length};
 use super::placement::{Placement, Placements};
 use super::tally::Tally;
-use crate::animation::Lens;
+use crate::animation::Projection;
 use crate::skinning::MeshLevels;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::Vertex;
 
 /// What a crowd takes to be animated, skinned and drawn: medians over the frames that were timed; and its vertices' errors in
@@ -25,9 +25,9 @@ pub struct FrameCost {
     /// Palettes, the choice of clusters and vertices, divided by all vertices of the crowd.
     pub nanoseconds_per_vertex: f64,
     /// Clusters that were skinned, of all.
-    pub skinned_share: f64,
+    pub skinned_fraction: f64,
     /// Triangles that were drawn, of all meshes in full.
-    pub triangle_share: f64,
+    pub triangle_fraction: f64,
     /// From all vertices of the full crowd to those drawn, or where a mesh lacks them, to its surface.
     pub vertex_error: Errors,
 }
@@ -65,7 +65,7 @@ impl Skinned<'_> {
 #[derive(Clone, Copy)]
 pub(crate) struct Seen<'a> {
     /// One an instance; those that are out of view are not skinned.
-    pub reductions: &'a [Reduction],
+    pub instance_lods: &'a [InstanceLod],
     /// Of a mesh that has levels of detail: for each level of an instance its own.
     pub levels: Option<(&'a MeshLevels, &'a [u32])>,
 }
@@ -74,7 +74,7 @@ impl Seen<'_> {
     /// What an instance has of a mesh: its levels, and which of them, from 0 on, where it is not the mesh itself.
     fn level(&self, instance: usize) -> Option<(&MeshLevels, usize)> {
         let (levels, own) = self.levels?;
-        let own = own.get(self.reductions[instance].level as usize).or(own.last())?;
+        let own = own.get(self.instance_lods[instance].level as usize).or(own.last())?;
         // Its own level 1 is the first of its levels.
         Some((levels, (*own as usize).checked_sub(1)?))
     }
@@ -84,7 +84,7 @@ impl VertexMeter {
     /// Adds a frame of a mesh: how far what is drawn lies from each of the mesh's vertices.
     pub(crate) fn add(
         &mut self,
-        (placements, lens): (&Placements, Lens),
+        (placements, projection): (&Placements, Projection),
         seen: Seen<'_>,
         stale: Skinned<'_>,
         fresh: Skinned<'_>,
@@ -99,13 +99,18 @@ impl VertexMeter {
             let mut found = Self::default();
             let instances = stales.chunks(vertices).zip(freshes.chunks(vertices));
             for (instance, (stales, freshes)) in (part * each..).zip(instances) {
-                if seen.reductions[instance].most == 0 {
+                if seen.instance_lods[instance].most == 0 {
                     found.unseen += vertices as u64;
                     continue;
                 }
                 let drawn = Skinned { vertices: stales, ..stale };
                 let wanted = Skinned { vertices: freshes, ..fresh };
-                found.add_instance(&placements.get(instance, lens), seen.level(instance), drawn, wanted);
+                found.add_instance(
+                    &placements.get(instance, projection),
+                    seen.level(instance),
+                    drawn,
+                    wanted,
+                );
             }
             found
         };

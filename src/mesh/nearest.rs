@@ -35,19 +35,19 @@ pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
         return b + (c - b) * part(b_to_c - b_to_b, c_to_b - c_to_c);
     }
     let all = over_a + over_b + over_c;
-    let [to_b, to_c] = [over_b, over_c].map(|over| share(over, all));
+    let [to_b, to_c] = [over_b, over_c].map(|over| ratio(over, all));
     a + ab * to_b + ac * to_c.min(1.0 - to_b)
 }
 
 /// `one` of both.
 fn part(one: f32, other: f32) -> f32 {
-    share(one, one + other)
+    ratio(one, one + other)
 }
 
 /// 0 to 1; 0 of nothing, and of what is no number.
-fn share(one: f32, all: f32) -> f32 {
-    let share = one / all;
-    if (0.0..=1.0).contains(&share) { share } else { 0.0 }
+fn ratio(one: f32, all: f32) -> f32 {
+    let ratio = one / all;
+    if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -27,7 +27,6 @@
 //! ties go to the lower index. Time grows as n log n in triangles, and in proportion to poses. Quadrics take 88 bytes a
 //! point and pose.
 
-mod attached;
 mod attributes;
 mod melax;
 mod neighbors;
@@ -37,6 +36,7 @@ mod quadrics;
 mod queue;
 mod reducer;
 mod topology;
+mod tracked_samples;
 mod turned;
 
 use crate::InputError;
@@ -196,14 +196,14 @@ impl Simplified {
     ///
     /// # Panics
     /// Beyond the number of collapses.
-    pub fn heirs(&self, collapses: usize) -> Vec<u32> {
-        let mut heirs: Vec<u32> = (0..self.points.len() as u32).collect();
+    pub fn remap(&self, collapses: usize) -> Vec<u32> {
+        let mut remap: Vec<u32> = (0..self.points.len() as u32).collect();
         let end = collapses.checked_sub(1).map_or(0, |last| self.collapses[last].end);
         // The last first: what a vertex became has found its own heir by then.
         for &[from, to] in self.moved[..end as usize].iter().rev() {
-            heirs[from as usize] = heirs[to as usize];
+            remap[from as usize] = remap[to as usize];
         }
-        heirs
+        remap
     }
 
     /// The triangles after so many collapses, in the mesh's order: those left that have three different points.
@@ -212,12 +212,12 @@ impl Simplified {
     /// # Panics
     /// Beyond the number of collapses, and for indices of another mesh.
     pub fn triangles(&self, indices: &[u32], collapses: usize) -> Vec<u32> {
-        let heirs = self.heirs(collapses);
+        let remap = self.remap(collapses);
         let mut left = Vec::new();
         for triangle in indices.chunks_exact(3) {
-            let heirs = [0, 1, 2].map(|corner| heirs[triangle[corner] as usize]);
-            if self.are_apart(heirs) {
-                left.extend(heirs);
+            let remap = [0, 1, 2].map(|corner| remap[triangle[corner] as usize]);
+            if self.are_apart(remap) {
+                left.extend(remap);
             }
         }
         left

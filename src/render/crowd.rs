@@ -10,11 +10,11 @@ use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
-use crate::skinning::ball::ball_in_clips;
+use crate::skinning::bounding_sphere::bounding_sphere_in_clips;
 use crate::skinning::frame::SkinFrame;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
 use crate::skinning::picture::Light;
-use crate::skinning::reduction::Reduction;
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
@@ -114,13 +114,13 @@ impl CrowdScene {
             )?);
             frames.push(skin);
         }
-        let (center, radius) = ball_in_clips(model);
+        let (center, radius) = bounding_sphere_in_clips(model);
         let [near, far] = fade;
         let (clip_from_world, eye) = (Mat4::IDENTITY, Vec3::ZERO);
-        let most = Reduction::FULL.most;
+        let most = InstanceLod::FULL.most;
         let view = LodView { clip_from_world, eye, near, far, steps: STEPS, most, center, radius, levels };
-        let reductions = &frames[0].crowd.reductions;
-        let lod = self.lod.prepare(gpu, &view, placements, reductions, &drawn, &scenes[0].arguments)?;
+        let instance_lods = &frames[0].crowd.instance_lods;
+        let lod = self.lod.prepare(gpu, &view, placements, instance_lods, &drawn, &scenes[0].arguments)?;
         let is_gated = matrices.updated_bones().is_some();
         self.characters.push(DrawnCharacter { frames, scenes, drawn, view, lod, is_gated });
         Ok(self.characters.len() - 1)
@@ -151,7 +151,7 @@ impl CrowdScene {
             character.share(encoder);
             for frame in &character.frames {
                 match character.is_gated {
-                    true => frame.record_moved(encoder),
+                    true => frame.record_updated_bones(encoder),
                     false => frame.record_all(encoder),
                 }
             }
@@ -174,10 +174,10 @@ impl DrawnCharacter {
 
     /// What was decided for the first mesh holds for all of the character.
     fn share(&self, encoder: &mut wgpu::CommandEncoder) {
-        let (frame, scene) = (&self.frames[0].crowd.reductions, &self.scenes[0].arguments);
+        let (frame, scene) = (&self.frames[0].crowd.instance_lods, &self.scenes[0].arguments);
         for (other, drawn) in self.frames.iter().zip(&self.scenes).skip(1) {
-            let reductions = &other.crowd.reductions;
-            encoder.copy_buffer_to_buffer(frame.raw(), 0, reductions.raw(), 0, reductions.bytes());
+            let instance_lods = &other.crowd.instance_lods;
+            encoder.copy_buffer_to_buffer(frame.raw(), 0, instance_lods.raw(), 0, instance_lods.bytes());
             for number in (0..self.levels()).flat_map(numbers_at) {
                 encoder.copy_buffer_to_buffer(scene.raw(), number, drawn.arguments.raw(), number, 4);
             }

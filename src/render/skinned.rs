@@ -5,7 +5,7 @@ use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
 use crate::asset::material::Alpha;
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
 use crate::render::albedo::Albedo;
@@ -74,7 +74,7 @@ impl SkinnedRenderer {
             fragment: match alpha {
                 Alpha::Opaque => "opaque",
                 Alpha::Mask(_) => "masked",
-                Alpha::Screen => "screened",
+                Alpha::Dithered => "screened",
             },
             constants: &[("DOUBLE_SIDED", is(Sides::Both)), ("MIRRORED", is(Sides::OuterMirrored))],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -93,7 +93,7 @@ impl SkinnedRenderer {
     /// room for, one a place at most, and none of the others; any of them may be mirrored.
     ///
     /// # Errors
-    /// [`InputError`] for too few vertices or places, and other than whole lists of at most [`MOST_LEVELS`] levels;
+    /// [`InputError`] for too few vertices or places, and other than whole lists of at most [`MAX_LEVELS`] levels;
     /// [`GpuError`].
     pub fn scene(&self, gpu: &Gpu, instances: &SkinnedInstances<'_>) -> Result<SkinnedScene, Error> {
         let SkinnedInstances { mesh, skinned, placements, drawn, albedo, light } = *instances;
@@ -174,9 +174,9 @@ fn lists(words: usize, places: usize) -> Result<[usize; 2], InputError> {
     }
     let stride = list_stride(places);
     let levels = words / stride;
-    if !(2..=MOST_LEVELS).contains(&levels) || !words.is_multiple_of(stride) {
+    if !(2..=MAX_LEVELS).contains(&levels) || !words.is_multiple_of(stride) {
         let bound = format!(
-            "must be at most {places}, one a place, or {stride} for each of 2 to {MOST_LEVELS} levels"
+            "must be at most {places}, one a place, or {stride} for each of 2 to {MAX_LEVELS} levels"
         );
         return Err(InputError::new("drawn.len", words, bound));
     }

@@ -9,7 +9,7 @@ use crate::asset::{Influence, Influences, Mesh, MorphTarget};
 use crate::gpu::Gpu;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::Clusters;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::verify::{Shape, random_model};
 use crate::skinning::vertex::Blend;
 
@@ -23,8 +23,8 @@ pub(crate) const BONES: usize = 64;
 pub(crate) const CROWDS: [usize; 3] = [1, 100, 1000];
 
 /// Reductions of a crowd, of which one instance in `every` is seen.
-pub(crate) fn seen_of(instances: usize, every: usize) -> Vec<Reduction> {
-    let one = |at: usize| if at.is_multiple_of(every) { Reduction::FULL } else { Reduction::UNSEEN };
+pub(crate) fn seen_of(instances: usize, every: usize) -> Vec<InstanceLod> {
+    let one = |at: usize| if at.is_multiple_of(every) { InstanceLod::FULL } else { InstanceLod::UNSEEN };
     (0..instances).map(one).collect()
 }
 

@@ -6,11 +6,11 @@ use glam::UVec4;
 use super::character_levels::{level_errors, own_levels};
 use super::clusters::{ClusterLevel, Clusters};
 use crate::asset::Model;
-use crate::asset::mesh::{MOST_LEVELS, Mesh};
+use crate::asset::mesh::{MAX_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;
 use crate::asset::transform::rows;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
@@ -90,7 +90,7 @@ impl MeshBuffers {
     }
 
     /// Clusters of each level of the character, as kernels look them up: of those that there are not, the last one's.
-    pub(crate) fn clusters_of_levels(&self) -> [UVec4; MOST_LEVELS / 4] {
+    pub(crate) fn clusters_of_levels(&self) -> [UVec4; MAX_LEVELS / 4] {
         let of = |level: usize| self.level(level as u32).clusters;
         std::array::from_fn(|at| UVec4::from_array(std::array::from_fn(|lane| of(4 * at + lane))))
     }
@@ -121,8 +121,8 @@ pub struct SkinnedCrowd {
     /// Written by [`super::palette::PalettePass`]: `instance · bones of the skin + bone`; three vectors a bone, or for
     /// dual quaternions four.
     pub palette: Buffer<[f32; 4]>,
-    /// One an instance. Full at first; [`Reduction::UNSEEN`] where nothing is skinned, as [`super::lod`] says.
-    pub reductions: Buffer<Reduction>,
+    /// One an instance. Full at first; [`InstanceLod::UNSEEN`] where nothing is skinned, as [`super::lod`] says.
+    pub instance_lods: Buffer<InstanceLod>,
     /// Weights of morph targets, instance by instance. 0 at first.
     pub weights: Buffer<f32>,
     /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + place`. Clusters beyond
@@ -148,7 +148,7 @@ impl SkinnedCrowd {
         let morphed = if mesh.targets == 0 { 0 } else { instances * mesh.vertices.len() };
         Ok(Self {
             palette: Buffer::new(gpu, "palette", vectors * instances * mesh.bones.len())?,
-            reductions: Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; instances])?,
+            instance_lods: Buffer::from_slice(gpu, "instance_lods", &vec![InstanceLod::FULL; instances])?,
             weights: Buffer::new(gpu, "morph weights", instances * mesh.targets)?,
             morphed: Buffer::new(gpu, "morphed vertices", morphed)?,
             instances,

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::asset::mesh::{MOST_LEVELS, Mesh};
+use crate::asset::mesh::{MAX_LEVELS, Mesh};
 
 /// How far a character is off at most, units of the model, at its levels 1, 2 …: ascending, at most 15. The errors of all
 /// levels of its meshes; of more, those are left out without which the fewest triangles more are drawn, counted over the
@@ -21,7 +21,7 @@ pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     }
     let mut steps: Vec<Step> =
         lost.into_iter().map(|(error, lost)| Step::new(f32::from_bits(error), lost)).collect();
-    while steps.len() >= MOST_LEVELS {
+    while steps.len() >= MAX_LEVELS {
         // Without a step its triangles stay until the next one.
         let costs = steps.windows(2).map(|pair| pair[0].cost(&pair[1]));
         let cheapest = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(at, _)| at);

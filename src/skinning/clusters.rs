@@ -13,7 +13,7 @@ use crate::skinning::vertex::vertices_of;
 pub const CLUSTER: usize = 64;
 
 /// The most bones of a skin.
-pub const MOST_BONES: usize = 1 << 16;
+pub const MAX_BONES: usize = 1 << 16;
 
 /// What a level of detail has of a mesh in clusters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub struct Clusters {
     /// strongest, as bits. The strongest has what these leave of 1.
     pub influences: Vec<u32>,
     /// The bones of each cluster, as bits of [`Clusters::mask_words`] words: a bit a slot of the skeleton's [`Order`],
-    /// as gates and [`Active::dirty`](crate::animation::compact) have them.
+    /// as gates and [`Active::updated_bones`](crate::animation::compact) have them.
     pub masks: Vec<u32>,
     /// [`Order::words`].
     pub mask_words: usize,
@@ -59,12 +59,12 @@ impl Clusters {
     /// The clusters of a mesh whose skin fits a skeleton.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MOST_BONES`].
+    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MAX_BONES`].
     pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
-        if skin.bones.len() > MOST_BONES {
-            let bound = format!("must be at most {MOST_BONES}");
+        if skin.bones.len() > MAX_BONES {
+            let bound = format!("must be at most {MAX_BONES}");
             return Err(InputError::new("skin.bones.len", skin.bones.len(), bound));
         }
         skin.validate(skeleton)?;

@@ -8,7 +8,7 @@
 use glam::{DMat4, DVec3};
 
 use crate::InputError;
-use crate::animation::concat::reference::concat;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Affine;
@@ -106,7 +106,7 @@ impl<'a> State<'a> {
         let skeleton = &model.skeleton;
         let pose = |clip: &crate::asset::Clip, at: usize| {
             let time = clip.duration() * at as f32 / poses as f32;
-            concat(skeleton, &sample(clip, time, RotationPath::Slerp)).iter().map(wide).collect()
+            local_to_model(skeleton, &sample(clip, time, RotationPath::Slerp)).iter().map(wide).collect()
         };
         let models = model.clips.iter().flat_map(|clip| (0..poses).map(move |at| pose(clip, at))).collect();
         let mut holds = vec![0; skeleton.len()];
@@ -257,22 +257,22 @@ fn followers(model: &Model) -> (Vec<Vec<Follower>>, usize) {
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
+    use crate::skinning::instance_lod::InstanceLod;
     use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::Palette;
     use crate::skinning::palette::reference::palette;
-    use crate::skinning::reduction::Reduction;
     use crate::skinning::skin::reference::skin;
 
     fn model() -> Model {
         crate::samples::creature().expect("valid")
     }
 
-    /// Where the vertices are, by the twins.
+    /// Where the vertices are, by the references.
     fn skinned(model: &Model, skin_of: &Skin, clip: usize, time: f32) -> Vec<glam::Vec3> {
-        let models = concat(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp));
+        let models = local_to_model(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp));
         let mesh = &model.meshes[0];
         let palette = Palette::Linear(palette(skin_of, &models));
-        let all = skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL);
+        let all = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
         all.iter().map(|vertex| vertex.position.into()).collect()
     }
 

@@ -4,11 +4,11 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::ball::ball_in_clips;
+use super::bounding_sphere::bounding_sphere_in_clips;
 use super::lod::{MARGIN, middle_of};
 use super::pose::{Moment, Pose, mean, moments};
 use crate::InputError;
-use crate::animation::Lens;
+use crate::animation::Projection;
 use crate::asset::Mesh;
 use crate::asset::Model;
 use crate::asset::influences::Influence;
@@ -25,7 +25,7 @@ pub struct Extent {
     /// Its radius.
     pub radius: f32,
     /// No vertex is further than λ times this from where full quality has it, at any λ of
-    /// [`Reduction::fade`](crate::skinning::reduction::Reduction::fade): the largest distance that was found, divided by its λ.
+    /// [`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade): the largest distance that was found, divided by its λ.
     pub stray: f32,
 }
 
@@ -45,7 +45,7 @@ impl Extent {
     }
 
     /// All meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them: the ball's middle is that of
-    /// [`ball_in_clips`], from which a scene counts how far away instances are; the ball holds the vertices of all meshes,
+    /// [`bounding_sphere_in_clips`], from which a scene counts how far away instances are; the ball holds the vertices of all meshes,
     /// and none of these strays further. Otherwise as [`Extent::new`].
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Extent {
         if model.meshes.is_empty() {
             return Err(InputError::new("model.meshes", "none", "must be at least one"));
         }
-        let mut all = Self { center: ball_in_clips(model).0, radius: 0.0, stray: 0.0 };
+        let mut all = Self { center: bounding_sphere_in_clips(model).0, radius: 0.0, stray: 0.0 };
         for index in 0..model.meshes.len() {
             let moments = moments(model, index, clips, poses)?;
             let mesh = &model.meshes[index];
@@ -75,7 +75,7 @@ impl Extent {
     /// more than `pixels` off on screen, wherever it is. Placements neither stretch nor shrink. 0 pixels allow no fade.
     ///
     /// A point at depth z and distance d that is off by e shows focal·e·(d/z)/(z − e) pixels at most. Let q be what the
-    /// middle of an instance counts as ([`LodView::away`](super::lod::LodView::away)), its depth squared over its
+    /// middle of an instance counts as ([`LodView::projected_distance`](super::lod::LodView::projected_distance)), its depth squared over its
     /// distance. No point of its ball, of radius r, lies at less than Z = middle's depth − r or further than D = middle's
     /// distance + r, and a = Z²/D ≥ (q − r)²/(q + r) ≥ q − 3r, since neither depth nor distance is below q. So it shows
     /// focal·e·(Z/a)/(Z − e) at most, and since Z ≥ a no more than focal·e/(a − e): at most ε pixels where
@@ -83,9 +83,9 @@ impl Extent {
     /// up to [`Extent::stray`].
     ///
     /// What else is off adds to it: bones that a gate holds back by ε′ pixels, and a fade by ε, together show ε + ε′.
-    pub fn fade_range(&self, lens: &Lens, pixels: f32) -> [f32; 2] {
-        let near = self.beyond(lens, pixels, 0.0);
-        [near, self.beyond(lens, pixels, self.stray).max(near.next_up())]
+    pub fn fade_range(&self, projection: &Projection, pixels: f32) -> [f32; 2] {
+        let near = self.beyond(projection, pixels, 0.0);
+        [near, self.beyond(projection, pixels, self.stray).max(near.next_up())]
     }
 
     /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be
@@ -97,17 +97,22 @@ impl Extent {
     /// each other the one is off, the other its right place. Both are in the ball, as the vertices of triangles are.
     ///
     /// What else is off adds to it, a fade too: within ε pixels a crowd may fade by a share and have levels by the rest.
-    pub fn level_ranges(&self, lens: &Lens, pixels: f32, errors: impl IntoIterator<Item = f32>) -> Vec<f32> {
-        errors.into_iter().map(|error| self.beyond(lens, pixels, error)).collect()
+    pub fn level_ranges(
+        &self,
+        projection: &Projection,
+        pixels: f32,
+        errors: impl IntoIterator<Item = f32>,
+    ) -> Vec<f32> {
+        errors.into_iter().map(|error| self.beyond(projection, pixels, error)).collect()
     }
 
     /// How far away an instance must count for what is `off` in it to be so many pixels off at most; finite.
-    fn beyond(&self, lens: &Lens, pixels: f32, off: f32) -> f32 {
+    fn beyond(&self, projection: &Projection, pixels: f32, off: f32) -> f32 {
         let [focal, pixels, radius, off] =
-            [lens.focal_pixels, pixels.max(0.0), self.radius, off].map(f64::from);
-        let away = 3.0 * radius + off * (focal + pixels) / pixels;
+            [projection.focal_pixels, pixels.max(0.0), self.radius, off].map(f64::from);
+        let projected_distance = 3.0 * radius + off * (focal + pixels) / pixels;
         // Nothing is off, or nothing may be.
-        away.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
+        projected_distance.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
     }
 }
 
@@ -140,9 +145,9 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
     let mut all = Look::NONE;
     for vertex in 0..mesh.vertices() {
         let influences = mesh.influences.of(vertex);
-        let places = pose.places(vertex, influences);
-        let place = mean(influences, &places);
-        all = all.with(Look { low: place, high: place, stray: stray(influences, &places) });
+        let points = pose.points(vertex, influences);
+        let point = mean(influences, &points);
+        all = all.with(Look { low: point, high: point, stray: stray(influences, &points) });
     }
     all
 }
@@ -150,20 +155,20 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
 /// Of a ball around a place that holds all vertices.
 fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     let farthest = |moment: &Moment| {
-        let places = Pose::new(model, mesh, *moment).positions(mesh);
-        places.into_iter().map(|place| place.distance(center)).fold(0.0, f32::max)
+        let points = Pose::new(model, mesh, *moment).positions(mesh);
+        points.into_iter().map(|point| point.distance(center)).fold(0.0, f32::max)
     };
     MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
 }
 
 /// The largest of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, over i > 1 and all λ. In 1/λ the sum is straight between the values at
 /// which one of the minima changes sides, where λ is wᵢ/w₂, and so longest at one of them.
-fn stray(influences: &[Influence], places: &[Vec3]) -> f32 {
+fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     let Some(second) = influences.get(1) else { return 0.0 };
     let off = |fade: f32| {
-        let others = influences.iter().zip(places).skip(1);
+        let others = influences.iter().zip(points).skip(1);
         let sum: Vec3 = others
-            .map(|(other, place)| (other.weight / fade).min(second.weight) * (*place - places[0]))
+            .map(|(other, point)| (other.weight / fade).min(second.weight) * (*point - points[0]))
             .sum();
         sum.length()
     };
@@ -177,14 +182,14 @@ mod tests {
 
     #[test]
     fn strays_are_the_largest_of_all_fades() {
-        let places = [Vec3::ZERO, Vec3::X, Vec3::Y, -2.0 * Vec3::X];
+        let points = [Vec3::ZERO, Vec3::X, Vec3::Y, -2.0 * Vec3::X];
         let weights = [0.4_f32, 0.3, 0.2, 0.1];
         let influences: Vec<_> =
             (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight }).collect();
         // At small λ every minimum is 0.3 λ: (0.3 − 0.6, 0.3). At λ = 1: (0.3 − 0.2, 0.2).
-        assert!((stray(&influences, &places) - 0.3 * 2.0_f32.sqrt()).abs() < 1e-6);
-        assert!((stray(&influences[..2], &places[..2]) - 0.3).abs() < 1e-6);
-        assert_eq!(stray(&influences[..1], &places[..1]), 0.0);
+        assert!((stray(&influences, &points) - 0.3 * 2.0_f32.sqrt()).abs() < 1e-6);
+        assert!((stray(&influences[..2], &points[..2]) - 0.3).abs() < 1e-6);
+        assert_eq!(stray(&influences[..1], &points[..1]), 0.0);
     }
 
     #[test]
@@ -209,9 +214,12 @@ mod tests {
         let all = Extent::of_model(&model, &[0], 9).expect("valid");
         let each = [0, 1].map(|mesh| Extent::new(&model, mesh, &[0], 9).expect("valid"));
         assert_eq!(each[0], one);
-        assert_eq!((all.center, all.stray), (ball_in_clips(&model).0, each[0].stray.max(each[1].stray)));
-        let places = |mesh: &Mesh| Pose::new(&model, mesh, Moment::In(0, 0.3)).positions(mesh);
-        let farthest = model.meshes.iter().flat_map(places).map(|place| place.distance(all.center));
+        assert_eq!(
+            (all.center, all.stray),
+            (bounding_sphere_in_clips(&model).0, each[0].stray.max(each[1].stray))
+        );
+        let points = |mesh: &Mesh| Pose::new(&model, mesh, Moment::In(0, 0.3)).positions(mesh);
+        let farthest = model.meshes.iter().flat_map(points).map(|point| point.distance(all.center));
         let farthest = farthest.fold(0.0, f32::max);
         assert!((0.9 * all.radius..=all.radius).contains(&farthest), "{farthest} of {}", all.radius);
         assert!(all.radius > one.radius + 1.0);
@@ -226,9 +234,9 @@ mod tests {
 
     #[test]
     fn ranges_begin_where_the_model_does() {
-        let lens = Lens::new(1080, 1.0, 0.1);
+        let projection = Projection::new(1080, 1.0, 0.1);
         let extent = Extent { center: Vec3::ZERO, radius: 1.5, stray: 0.02 };
-        let range = |extent: &Extent, pixels| extent.fade_range(&lens, pixels);
+        let range = |extent: &Extent, pixels| extent.fade_range(&projection, pixels);
         let [near, far] = range(&extent, 0.5);
         assert_eq!(near, 4.5);
         // Twice the pixels, half the way.
@@ -244,19 +252,20 @@ mod tests {
 
     #[test]
     fn levels_begin_where_their_errors_are_so_many_pixels() {
-        let lens = Lens::new(1080, 1.0, 0.1);
+        let projection = Projection::new(1080, 1.0, 0.1);
         let extent = Extent { center: Vec3::ZERO, radius: 0.5, stray: 0.02 };
-        let ranges = |pixels, errors: &[f32]| extent.level_ranges(&lens, pixels, errors.iter().copied());
+        let ranges =
+            |pixels, errors: &[f32]| extent.level_ranges(&projection, pixels, errors.iter().copied());
         let errors = [0.0, 0.02, 0.02, 0.5];
         let begins = ranges(1.0, &errors);
-        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&lens, 1.0)[1]));
+        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&projection, 1.0)[1]));
         assert!(begins.is_sorted() && LevelRanges::new(&begins).is_ok());
         assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
         assert!(ranges(1.0, &[]).is_empty());
 
         // Off in every direction, at the places of the ball that are nearest, straight ahead and far to the side.
-        let focal = lens.focal_pixels;
-        let screen = |place: Vec3| place.truncate() * (focal / place.z);
+        let focal = projection.focal_pixels;
+        let screen = |point: Vec3| point.truncate() * (focal / point.z);
         let unit = |at: i32| {
             let [a, b] = [0.1 * at as f32, 0.37 * at as f32];
             Vec3::new(libm::cosf(a) * libm::cosf(b), libm::sinf(a) * libm::cosf(b), libm::sinf(b))
@@ -268,11 +277,12 @@ mod tests {
                 for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
                     // As far as counts as much.
                     let middle = towards * (begin / (towards.z * towards.z));
-                    let ball = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
-                    for (place, off) in
-                        ball.into_iter().flat_map(|p| (0..500).map(move |at| (p, error * unit(at))))
+                    let bounding_sphere = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
+                    for (point, off) in bounding_sphere
+                        .into_iter()
+                        .flat_map(|p| (0..500).map(move |at| (p, error * unit(at))))
                     {
-                        largest = largest.max(screen(place).distance(screen(place + off)));
+                        largest = largest.max(screen(point).distance(screen(point + off)));
                     }
                 }
                 assert!(

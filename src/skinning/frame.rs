@@ -24,7 +24,7 @@ pub struct SkinFrame {
     pub crowd: SkinnedCrowd,
     /// The bones that moved: those that the model matrices know to be updated, or where they do not, what the caller writes.
     pub select: SelectBuffers,
-    /// The clusters of the last [`SkinFrame::record_moved`].
+    /// The clusters of the last [`SkinFrame::record_updated_bones`].
     pub active: ActiveClusters,
     /// `instance · vertices + place`. Those of clusters beyond an instance's level of detail are old.
     pub skinned: Buffer<Vertex>,
@@ -62,7 +62,7 @@ impl SkinFrame {
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
         let mut select = SelectBuffers::new(gpu, &mesh, &crowd)?;
         if let Some(updated) = matrices.updated_bones() {
-            select.moved = updated.clone();
+            select.updated_bones = updated.clone();
         }
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
@@ -87,7 +87,7 @@ impl SkinFrame {
     /// vertex that targets move otherwise than in the frame before, of those beyond the level of the frame before, and of
     /// all clusters where influences count otherwise, as those of what was not seen do. The first time that is all that is
     /// seen. Frames are counted here ([`SelectBuffers::skinned`]): record it once a frame.
-    pub fn record_moved(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
         [&self.palette, &self.selection].into_iter().for_each(|job| job.record(encoder));
         self.some.iter().for_each(|job| job.record(encoder));
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::pose::{Moment, Pose, moments};
 use crate::InputError;
 use crate::asset::Model;
-use crate::asset::mesh::{MOST_LEVELS, Mesh, MeshLevel};
+use crate::asset::mesh::{MAX_LEVELS, Mesh, MeshLevel};
 use crate::mesh::simplify::{Options, Simplified, Surface, simplify_within};
 use keys::Keys;
 use near::{Near, Sides};
@@ -77,8 +77,8 @@ impl MeshLevels {
         let errors = moments
             .par_iter()
             .map(|moment| {
-                let places = places(model, mesh, *moment, unit);
-                sides.iter().map(|sides| sides.error(&places)).collect::<Vec<f32>>()
+                let points = points(model, mesh, *moment, unit);
+                sides.iter().map(|sides| sides.error(&points)).collect::<Vec<f32>>()
             })
             .reduce(|| vec![0.0; sides.len()], |a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect());
         let mut most = 0.0_f32;
@@ -93,13 +93,13 @@ impl MeshLevels {
     }
 
     /// The place on level `level + 1` of the mesh that is nearest to where a vertex of the mesh should be, among the
-    /// triangles that were nearest in some pose; `place` of a level's vertices says where they are. A vertex that the
+    /// triangles that were nearest in some pose; `point` of a level's vertices says where they are. A vertex that the
     /// level has is at its own place.
     ///
     /// # Panics
     /// For levels and vertices that there are not.
-    pub fn nearest(&self, level: usize, vertex: usize, wanted: Vec3, place: impl Fn(u32) -> Vec3) -> Vec3 {
-        self.near[level].nearest(vertex, wanted, &place).unwrap_or_else(|| place(vertex as u32))
+    pub fn nearest(&self, level: usize, vertex: usize, wanted: Vec3, point: impl Fn(u32) -> Vec3) -> Vec3 {
+        self.near[level].nearest(vertex, wanted, &point).unwrap_or_else(|| point(vertex as u32))
     }
 }
 
@@ -118,9 +118,9 @@ pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Ve
 }
 
 /// Where all vertices are, in multiples of `unit`.
-fn places(model: &Model, mesh: &Mesh, moment: Moment, unit: f32) -> Vec<Vec3> {
+fn points(model: &Model, mesh: &Mesh, moment: Moment, unit: f32) -> Vec<Vec3> {
     let all = Pose::new(model, mesh, moment).positions(mesh);
-    all.into_iter().map(|place| place / unit).collect()
+    all.into_iter().map(|point| point / unit).collect()
 }
 
 fn simplified(mesh: &Mesh, welded: &Welded, keys: &Keys) -> Result<Simplified, InputError> {
@@ -131,14 +131,14 @@ fn simplified(mesh: &Mesh, welded: &Welded, keys: &Keys) -> Result<Simplified, I
         .collect();
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
-        successors(Some(FIRST * keys.size), |last| Some(STEP * last)).take(MOST_LEVELS - 1).collect();
+        successors(Some(FIRST * keys.size), |last| Some(STEP * last)).take(MAX_LEVELS - 1).collect();
     simplify_within(&surface, &Options::default(), &distances)
 }
 
 /// A level on its way.
 struct Found {
     /// What each vertex has become.
-    heirs: Vec<u32>,
+    remap: Vec<u32>,
     indices: Vec<u32>,
 }
 
@@ -149,15 +149,15 @@ fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
     let mut last = mesh.indices.len();
     let mut used = vec![true; mesh.vertices()];
     let level = |distance: f32| {
-        let heirs = welded.heirs(simplified, simplified.collapses_near(distance));
-        let indices = welded.triangles(mesh, simplified, &heirs, &used);
+        let remap = welded.remap(simplified, simplified.collapses_near(distance));
+        let indices = welded.triangles(mesh, simplified, &remap, &used);
         if indices.is_empty() || indices.len() as f64 > WORTHWHILE * last as f64 {
             return None;
         }
         last = indices.len();
         used.fill(false);
         indices.iter().for_each(|vertex| used[*vertex as usize] = true);
-        Some(Found { heirs, indices })
+        Some(Found { remap, indices })
     };
     distances.into_iter().filter_map(level).collect()
 }
@@ -190,8 +190,8 @@ mod tests {
             assert!(levels.len() > 9, "{} at {scale}", levels.len());
             for (MeshLevel { indices, error }, kept) in found.iter().zip(&levels) {
                 assert_eq!(*indices, kept.indices);
-                let heirs = |distance: f32| welded.heirs(&simplified, simplified.collapses_near(distance));
-                let distance = distances.iter().find(|distance| heirs(**distance) == kept.heirs);
+                let remap = |distance: f32| welded.remap(&simplified, simplified.collapses_near(distance));
+                let distance = distances.iter().find(|distance| remap(**distance) == kept.remap);
                 let part = error / (ERROR_MARGIN * keys.unit * distance.expect("one of them"));
                 assert!((0.95..=1.001).contains(&part), "{part} at {scale}");
             }
@@ -215,14 +215,14 @@ mod tests {
         assert!(5 * triangles(0.011) < mesh.indices.len() && 9 * triangles(0.018) < mesh.indices.len());
         for (level, MeshLevel { indices, error }) in found.levels.iter().enumerate() {
             let mut worst = 0.0_f32;
-            for (clip, share) in [(0, 0.123), (0, 0.77), (2, 0.41)] {
-                let places = Pose::new(&model, mesh, Moment::In(clip, share)).positions(mesh);
-                let mut drawn = vec![Vec3::NAN; places.len()];
-                indices.iter().for_each(|vertex| drawn[*vertex as usize] = places[*vertex as usize]);
-                for (vertex, place) in places.iter().enumerate() {
-                    let nearest = found.nearest(level, vertex, *place, |vertex| drawn[vertex as usize]);
+            for (clip, fraction) in [(0, 0.123), (0, 0.77), (2, 0.41)] {
+                let points = Pose::new(&model, mesh, Moment::In(clip, fraction)).positions(mesh);
+                let mut drawn = vec![Vec3::NAN; points.len()];
+                indices.iter().for_each(|vertex| drawn[*vertex as usize] = points[*vertex as usize]);
+                for (vertex, point) in points.iter().enumerate() {
+                    let nearest = found.nearest(level, vertex, *point, |vertex| drawn[vertex as usize]);
                     assert!(nearest.is_finite(), "level {level}: vertex {vertex}");
-                    worst = worst.max(nearest.distance(*place));
+                    worst = worst.max(nearest.distance(*point));
                 }
             }
             assert!(worst <= *error && worst > 0.5 * error, "level {level}: {worst} of {error}");

@@ -1,8 +1,8 @@
 //! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
 
-pub mod ball;
 #[cfg(feature = "verify")]
 pub mod bench;
+pub mod bounding_sphere;
 #[cfg(feature = "gpu")]
 pub mod buffers;
 pub mod character_levels;
@@ -12,6 +12,7 @@ pub mod export;
 pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
+pub mod instance_lod;
 pub mod levels;
 pub mod lod;
 pub mod morph;
@@ -19,7 +20,6 @@ pub mod morph_weights;
 pub mod palette;
 pub mod picture;
 mod pose;
-pub mod reduction;
 pub mod select;
 pub mod skin;
 #[cfg(feature = "verify")]
@@ -28,7 +28,7 @@ pub mod vertex;
 
 pub use character_levels::{level_errors, own_levels};
 pub use extent::Extent;
+pub use instance_lod::InstanceLod;
 pub use levels::{MeshLevels, add_levels};
 pub use pose::poses_of;
-pub use reduction::Reduction;
 pub use vertex::{Blend, Vertex};

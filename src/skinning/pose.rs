@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use super::Reduction;
+use super::InstanceLod;
 use super::palette::Palette;
 use crate::InputError;
-use crate::animation::concat::reference::concat;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::{Affine, Transform};
@@ -76,16 +76,16 @@ pub(super) fn moments(
     if clips.is_empty() {
         return Ok(vec![Moment::Rest]);
     }
-    let share = |at: usize| at as f32 / (poses - 1).max(1) as f32;
-    Ok(clips.iter().flat_map(|clip| (0..poses).map(move |at| Moment::In(*clip, share(at)))).collect())
+    let fraction = |at: usize| at as f32 / (poses - 1).max(1) as f32;
+    Ok(clips.iter().flat_map(|clip| (0..poses).map(move |at| Moment::In(*clip, fraction(at)))).collect())
 }
 
 impl Pose {
     pub(super) fn new(model: &Model, mesh: &Mesh, moment: Moment) -> Self {
         match moment {
             Moment::Rest => Self::of(model, mesh, &model.skeleton.rest(), &mesh.weights),
-            Moment::In(clip, share) => {
-                let time = share * model.clips[clip].duration();
+            Moment::In(clip, fraction) => {
+                let time = fraction * model.clips[clip].duration();
                 let locals = sample(&model.clips[clip], time, RotationPath::Slerp);
                 Self::of(model, mesh, &locals, &mesh.weights_at(clip, time))
             }
@@ -93,24 +93,24 @@ impl Pose {
     }
 
     fn of(model: &Model, mesh: &Mesh, locals: &[Transform], weights: &[f32]) -> Self {
-        let models = concat(&model.skeleton, locals);
+        let models = local_to_model(&model.skeleton, locals);
         Self { palette: palette(&model.skins[mesh.skin], &models), vertices: morph(mesh, weights) }
     }
 
     /// Where each of a vertex's bones alone would have it.
-    pub(super) fn places(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
-        let place = |influence: &Influence| {
+    pub(super) fn points(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
+        let point = |influence: &Influence| {
             let bone = &self.palette[influence.bone as usize];
             Vec3::from(transformed(&self.vertices[vertex], bone).position)
         };
-        influences.iter().map(place).collect()
+        influences.iter().map(point).collect()
     }
 
     /// Where all vertices are.
     pub(super) fn positions(&self, mesh: &Mesh) -> Vec<Vec3> {
         let position = |vertex: usize| {
             let influences = mesh.influences.of(vertex);
-            mean(influences, &self.places(vertex, influences))
+            mean(influences, &self.points(vertex, influences))
         };
         (0..self.vertices.len()).map(position).collect()
     }
@@ -118,13 +118,13 @@ impl Pose {
     /// Where all vertices face: unit vectors, or 0.
     pub(super) fn normals(self, mesh: &Mesh) -> Vec<[f32; 3]> {
         let palette = Palette::Linear(self.palette);
-        let placed = skin(&self.vertices, &mesh.influences, &palette, Reduction::FULL);
+        let placed = skin(&self.vertices, &mesh.influences, &palette, InstanceLod::FULL);
         placed.into_iter().map(|vertex| vertex.normal).collect()
     }
 }
 
-pub(super) fn mean(influences: &[Influence], places: &[Vec3]) -> Vec3 {
-    influences.iter().zip(places).map(|(influence, place)| influence.weight * *place).sum()
+pub(super) fn mean(influences: &[Influence], points: &[Vec3]) -> Vec3 {
+    influences.iter().zip(points).map(|(influence, point)| influence.weight * *point).sum()
 }
 
 #[cfg(all(test, feature = "samples"))]
@@ -154,8 +154,8 @@ mod tests {
         assert_eq!(moments(&model, 0, &[], 9), Ok(vec![Moment::Rest]));
         let mesh = &model.meshes[0];
         // It was bound as it rests.
-        let places = Pose::new(&model, mesh, Moment::Rest).positions(mesh);
-        let off = places.iter().zip(&mesh.positions).map(|(a, b)| a.distance(Vec3::from(*b)));
+        let points = Pose::new(&model, mesh, Moment::Rest).positions(mesh);
+        let off = points.iter().zip(&mesh.positions).map(|(a, b)| a.distance(Vec3::from(*b)));
         assert!(off.fold(0.0, f32::max) < 1e-5);
     }
 }

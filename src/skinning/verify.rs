@@ -1,7 +1,7 @@
 //! Parity of `kernels/skinning/`.
 
 use crate::InputError;
-use crate::animation::concat::reference::{affine, product};
+use crate::animation::local_to_model::reference::{affine, product};
 use crate::animation::verify::{Draw, random_skeleton};
 use crate::asset::Model;
 use crate::asset::morph::MorphDelta;
@@ -9,7 +9,7 @@ use crate::asset::skeleton::Skin;
 use crate::asset::transform::{Affine, Transform};
 use crate::asset::{Influence, Influences, Mesh, MeshLevel, MorphTarget};
 use crate::harness::poison::POISON;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::Vertex;
 
 /// A random mesh, and the skeleton and skin that it follows.
@@ -155,18 +155,18 @@ pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine>
 }
 
 /// Full, truncated, fading and unseen ones in turn, half of them at coarse levels, which the mesh may lack.
-pub fn random_reductions(case: u32, instances: usize) -> Vec<Reduction> {
+pub fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceLod> {
     let mut draw = Draw::new(case ^ 0xfade);
-    let reduction = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
-        0 => Reduction::FULL,
-        1 => Reduction { most: 1 + draw.word() % 8, ..Reduction::FULL },
-        2 => Reduction { fade: draw.signed().abs(), ..Reduction::FULL },
-        3 => Reduction { fade: (draw.word() % 2) as f32, ..Reduction::FULL },
-        _ => Reduction::UNSEEN,
+    let instance_lod = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
+        0 => InstanceLod::FULL,
+        1 => InstanceLod { most: 1 + draw.word() % 8, ..InstanceLod::FULL },
+        2 => InstanceLod { fade: draw.signed().abs(), ..InstanceLod::FULL },
+        3 => InstanceLod { fade: (draw.word() % 2) as f32, ..InstanceLod::FULL },
+        _ => InstanceLod::UNSEEN,
     };
     let levelled = |instance| {
         let level = [0, 0, 0, 0, 1, 2, 3, 15, u32::MAX][draw.word() as usize % 9];
-        Reduction { level, ..reduction(instance, &mut draw) }
+        InstanceLod { level, ..instance_lod(instance, &mut draw) }
     };
     (0..instances).map(levelled).collect()
 }

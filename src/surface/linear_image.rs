@@ -15,14 +15,14 @@ impl LinearImage {
     /// The mean of each `factor` × `factor` pixels; edges that do not divide are cut off.
     pub fn reduced(&self, factor: u32) -> Self {
         let size = self.size.map(|edge| edge / factor);
-        let share = 1.0 / (factor * factor) as f32;
+        let fraction = 1.0 / (factor * factor) as f32;
         let mean = |x: u32, y: u32| {
             let mut sum = [0.0; 3];
             for (dx, dy) in (0..factor).flat_map(|dy| (0..factor).map(move |dx| (dx, dy))) {
                 let index = (y * factor + dy) as usize * self.size[0] as usize + (x * factor + dx) as usize;
                 sum.iter_mut().zip(self.pixels[index]).for_each(|(sum, channel)| *sum += channel);
             }
-            sum.map(|channel| channel * share)
+            sum.map(|channel| channel * fraction)
         };
         let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| mean(x, y));
         Self { size, pixels: pixels.collect() }

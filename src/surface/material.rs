@@ -1,7 +1,7 @@
 //! What a relief is drawn with: depth, plane, light, the width of its shadows.
 
 use crate::InputError;
-use crate::surface::relief::MOST_SCALE;
+use crate::surface::relief::MAX_SCALE;
 
 /// How the surface shades itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -42,7 +42,7 @@ pub enum Green {
 /// and silhouettes is not part of it (`render::ReliefOptions`, `reference::surface::picture::Scene`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
-    /// Depth of the relief in uv units, 0 to [`MOST_SCALE`].
+    /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].
     pub scale: f32,
     /// Height of the polygon in the relief, 0 (bottom) to 1 (top).
     pub plane: f32,
@@ -79,11 +79,11 @@ impl Material {
             true => Ok(()),
             false => Err(InputError::new(field, value, format!("must be in {low}..={high}"))),
         };
-        within("scale", self.scale, 0.0, MOST_SCALE)?;
+        within("scale", self.scale, 0.0, MAX_SCALE)?;
         within("plane", self.plane, 0.0, 1.0)?;
         within("ambient", self.ambient, 0.0, 1.0)?;
         within("softness", self.softness, 1e-3, 1e3)?;
-        if !(1..=crate::surface::relief::MOST_STEPS).contains(&self.shadow_steps) {
+        if !(1..=crate::surface::relief::MAX_STEPS).contains(&self.shadow_steps) {
             return Err(InputError::new("shadow_steps", self.shadow_steps, "must be in 1..=1024"));
         }
         let length: f32 = self.light.iter().map(|axis| axis * axis).sum();

@@ -35,8 +35,8 @@ impl Measured {
         let mut errors: Vec<f64> = found.iter().map(|(error, _)| *error).collect();
         errors.par_sort_unstable_by(f64::total_cmp);
         let count = errors.len().max(1) as f64;
-        let quantile = |share: f64| {
-            let rank = (share * errors.len() as f64).ceil() as usize;
+        let quantile = |fraction: f64| {
+            let rank = (fraction * errors.len() as f64).ceil() as usize;
             errors.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
         };
         Self {

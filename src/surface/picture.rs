@@ -1,4 +1,4 @@
-//! The picture of a square of relief: twin of `wgsl/render/relief.wgsl` under a parallel projection.
+//! The picture of a square of relief: reference of `wgsl/render/relief.wgsl` under a parallel projection.
 
 use rayon::prelude::*;
 

@@ -109,7 +109,7 @@ impl Features {
     pub fn add(&mut self, config: &Config, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
         // A place that no patch can have could never be seen.
-        Window { patch, reach: 0 }.validate(config)?;
+        Window { patch, apron: 0 }.validate(config)?;
         let spacing = config.sample_spacing();
         let seamless = config.border == Border::Seamless;
         let world = self.worlds.entry(Self::world_of(config, patch)).or_default();
@@ -185,10 +185,10 @@ impl Features {
 
     /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend` a
     /// window's rim shows other patches, or the other side of its own, and their features with them.
-    pub fn in_windows(&self, config: &Config, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<(u32, u32)>> {
+    pub fn in_windows(&self, config: &Config, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         if config.border == Border::Seamless || self.is_empty() {
             let points = |patch: &[i32; 2]| {
-                let lattice = Window { patch: *patch, reach }.lattice(config);
+                let lattice = Window { patch: *patch, apron }.lattice(config);
                 let points = self.on_lattice(Self::world_of(config, *patch), lattice, false);
                 points.into_iter().map(|(x, y, _)| (x, y)).collect()
             };
@@ -198,18 +198,18 @@ impl Features {
         let marks: Vec<Vec<i32>> = (patches.iter())
             .map(|patch| {
                 let mut marks = vec![0; (size * size) as usize];
-                let lattice = Window { patch: *patch, reach: 0 }.lattice(config);
+                let lattice = Window { patch: *patch, apron: 0 }.lattice(config);
                 for (x, y, _) in self.on_lattice(Self::world_of(config, *patch), lattice, false) {
                     marks[(y * size + x) as usize] = 1;
                 }
                 marks
             })
             .collect();
-        let width = size + 2 * reach;
+        let width = size + 2 * apron;
         (surrounds(config, patches).into_iter())
             .map(|around| {
                 let around = around.map(|tile| tile.map(|index| marks[index].as_slice()));
-                let window = pad(size as usize, reach as usize, around);
+                let window = pad(size as usize, apron as usize, around);
                 let marked = window.into_iter().enumerate().filter(|(_, mark)| *mark != 0);
                 marked.map(|(at, _)| (at as u32 % width, at as u32 / width)).collect()
             })

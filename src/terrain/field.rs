@@ -1,4 +1,4 @@
-//! Whole fields on the CPU: the twins in the order of a recipe.
+//! Whole fields on the CPU: the references in the order of a recipe.
 
 use rayon::prelude::*;
 
@@ -31,32 +31,32 @@ pub fn field_with(
     progress: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<i32>>, InputError> {
     recipe.validate(patches, margin)?;
-    let reach = recipe.reach(margin);
+    let apron = recipe.apron(margin);
     let (config, features) = (&recipe.config, &recipe.features);
-    let width = (config.patch_size + 2 * reach) as usize;
+    let width = (config.patch_size + 2 * apron) as usize;
     let finished = |window: Vec<i32>, injected: &[(u32, u32)]| {
         let field = finish(recipe, width, injected, window);
         progress();
         field
     };
-    let injected = recipe.injected(patches, reach);
+    let injected = recipe.injected(patches, apron);
     // The patches of `blend` depend on each other; the others are made one by one from start to end.
     if let Border::Blend(_) = config.border {
-        let windows = generate(config, features, patches, reach);
+        let windows = generate(config, features, patches, apron);
         return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
     }
     let made = |(patch, at): (&[i32; 2], &Vec<_>)| {
-        let window = generate(config, features, std::slice::from_ref(patch), reach).swap_remove(0);
+        let window = generate(config, features, std::slice::from_ref(patch), apron).swap_remove(0);
         finished(window, at)
     };
     Ok(patches.par_iter().zip(&injected).map(made).collect())
 }
 
 /// The windows of `patches` before despiking and erosion.
-pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<i32>> {
+pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<i32>> {
     if config.border == Border::Seamless {
         let window =
-            |patch: &[i32; 2]| height::reference::height(config, features, Window { patch: *patch, reach });
+            |patch: &[i32; 2]| height::reference::height(config, features, Window { patch: *patch, apron });
         return patches.par_iter().map(window).collect();
     }
     let mut fields: Vec<_> =
@@ -73,7 +73,7 @@ pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], reac
         .map(|around| {
             pad::reference::pad(
                 size,
-                reach as usize,
+                apron as usize,
                 around.map(|tile| tile.map(|index| fields[index].as_slice())),
             )
         })

@@ -1,4 +1,4 @@
-//! Exact arithmetic of heights: twin of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
+//! Exact arithmetic of heights: reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
 use crate::terrain::config::{Config, Offset};

@@ -52,7 +52,7 @@ impl Generator {
 
     /// Patches that one part of the result may hold.
     pub fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
-        Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.reach(margin))
+        Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
     }
 
     /// The final heights of `patches` with `margin` samples around each, in parts that fit one storage binding;
@@ -69,38 +69,38 @@ impl Generator {
         progress: &mut dyn FnMut(usize),
     ) -> Result<Vec<Fields>, Error> {
         self.recipe.validate(patches, margin)?;
-        let reach = self.recipe.reach(margin);
+        let apron = self.recipe.apron(margin);
         if patches.is_empty() {
             return Ok(Vec::new());
         }
         if let Border::Blend(_) = self.recipe.config.border {
             // Patches of one part read those of another.
-            let fields = self.by_themselves(gpu, patches, reach)?;
+            let fields = self.by_themselves(gpu, patches, apron)?;
             progress(patches.len());
             return Ok(fields);
         }
         let mut parts = Vec::new();
         for part in patches.chunks(self.patches_per_part(gpu, margin)) {
             if self.recipe.config.border == Border::Wrap {
-                parts.extend(self.by_themselves(gpu, part, reach)?);
+                parts.extend(self.by_themselves(gpu, part, apron)?);
             } else {
-                let windows = self.windows(gpu, part, reach)?;
-                let injected = self.recipe.injected(part, reach);
-                parts.push(self.finish(gpu, reach, &injected, windows)?);
+                let windows = self.windows(gpu, part, apron)?;
+                let injected = self.recipe.injected(part, apron);
+                parts.push(self.finish(gpu, apron, &injected, windows)?);
             }
             progress(part.len());
         }
         Ok(parts)
     }
 
-    fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Fields, Error> {
+    fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Fields, Error> {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         let count = patches.len() as u32;
-        let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * reach, count)?;
-        debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, reach));
-        let scratch = HeightScratch::new(gpu, &self.height, config, count, reach)?;
-        let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, reach })).sum();
-        let job = self.height.prepare(gpu, config, [count, reach], capacity, &windows.heights, &scratch)?;
+        let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
+        debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, apron));
+        let scratch = HeightScratch::new(gpu, &self.height, config, count, apron)?;
+        let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, apron })).sum();
+        let job = self.height.prepare(gpu, config, [count, apron], capacity, &windows.heights, &scratch)?;
         job.set(gpu, patches, features)?;
         gpu.run("terrain/height", |encoder| job.record(encoder))?;
         Ok(windows)
@@ -121,34 +121,34 @@ impl Generator {
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
     }
 
-    fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], reach: u32) -> Result<Vec<Fields>, Error> {
+    fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
         let alone = self.alone(gpu, patches)?;
-        if reach == 0 {
+        if apron == 0 {
             return Ok(alone);
         }
-        let width = config.patch_size + 2 * reach;
+        let width = config.patch_size + 2 * apron;
         let mut sizes = part_sizes(patches.len(), Fields::most(gpu, width));
         let all = surrounds(config, patches);
-        let injected = self.recipe.injected(patches, reach);
+        let injected = self.recipe.injected(patches, apron);
         // The last part is what is left.
         sizes.pop();
         let windows = |around: &[Surround]| -> Result<Fields, Error> {
             let windows = Fields::new(gpu, "terrain windows", width, around.len() as u32)?;
-            let job = self.pad.prepare(gpu, reach, around, &alone, &windows.heights)?;
+            let job = self.pad.prepare(gpu, apron, around, &alone, &windows.heights)?;
             gpu.run("terrain/pad", |encoder| job.record(encoder))?;
             Ok(windows)
         };
         let (mut parts, mut start) = (Vec::new(), 0);
         for size in sizes {
             let part = start..start + size;
-            parts.push(self.finish(gpu, reach, &injected[part.clone()], windows(&all[part])?)?);
+            parts.push(self.finish(gpu, apron, &injected[part.clone()], windows(&all[part])?)?);
             start += size;
         }
         let last = windows(&all[start..])?;
         // Nobody reads them any more, and the last windows need the room.
         drop(alone);
-        parts.push(self.finish(gpu, reach, &injected[start..], last)?);
+        parts.push(self.finish(gpu, apron, &injected[start..], last)?);
         Ok(parts)
     }
 
@@ -181,7 +181,7 @@ impl Generator {
     fn finish(
         &self,
         gpu: &Gpu,
-        reach: u32,
+        apron: u32,
         injected: &[Vec<(u32, u32)>],
         windows: Fields,
     ) -> Result<Fields, Error> {
@@ -193,7 +193,7 @@ impl Generator {
         let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
         let (mut current, mut other) = (windows, other);
         if let Some(despike) = self.recipe.despike {
-            let features = self.index(gpu, reach, injected)?;
+            let features = self.index(gpu, apron, injected)?;
             let job = self.despike.prepare(gpu, despike, &current, &features, &other)?;
             gpu.run("terrain/despike", |encoder| job.record(encoder))?;
             (current, other) = (other, current.cropped(1));
@@ -210,8 +210,8 @@ impl Generator {
     }
 
     /// An index of every injected point of windows, given for each as (column, row).
-    fn index(&self, gpu: &Gpu, reach: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
-        let width = self.recipe.config.patch_size + 2 * reach;
+    fn index(&self, gpu: &Gpu, apron: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
+        let width = self.recipe.config.patch_size + 2 * apron;
         let points = injected.iter().map(Vec::len).sum::<usize>();
         let capacity = if self.recipe.features.is_empty() { 0 } else { points.max(1) };
         let index = FeatureIndex::new(gpu, &[width], injected.len() as u32, capacity)?;

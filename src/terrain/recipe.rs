@@ -28,15 +28,15 @@ impl Recipe {
     }
 
     /// Samples beyond the final field that generation must give.
-    pub fn reach(&self, margin: u32) -> u32 {
+    pub fn apron(&self, margin: u32) -> u32 {
         let iterations = self.thermal.map_or(0, |thermal| thermal.iterations);
         margin.saturating_add(self.despike.map_or(0, |_| 1)).saturating_add(iterations)
     }
 
     /// (column, row) of the injected points of each window: what despiking leaves alone. Empty without it.
-    pub(crate) fn injected(&self, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<(u32, u32)>> {
+    pub(crate) fn injected(&self, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         match self.despike {
-            Some(_) => self.features.in_windows(&self.config, patches, reach),
+            Some(_) => self.features.in_windows(&self.config, patches, apron),
             None => vec![Vec::new(); patches.len()],
         }
     }
@@ -50,12 +50,12 @@ impl Recipe {
         self.features.check(&self.config)?;
         self.despike.map_or(Ok(()), |despike| despike.validate())?;
         self.thermal.map_or(Ok(()), |thermal| thermal.validate())?;
-        let reach = self.reach(margin);
+        let apron = self.apron(margin);
         if self.config.border != Border::Seamless {
-            pad::validate(self.config.patch_size, reach)?;
+            pad::validate(self.config.patch_size, apron)?;
         }
         for &patch in patches {
-            Window { patch, reach }.validate(&self.config)?;
+            Window { patch, apron }.validate(&self.config)?;
         }
         Ok(())
     }

@@ -4,15 +4,15 @@ use crate::InputError;
 use crate::terrain::config::{Border, Config};
 
 /// The most samples that a window may reach beyond its patch.
-pub const MAX_REACH: u32 = 4096;
+pub const MAX_APRON: u32 = 4096;
 
 /// A patch and the samples around it: (patchSize + 2·reach)² of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
     /// Patch coordinates.
     pub patch: [i32; 2],
-    /// Samples beyond the patch on every side, at most [`MAX_REACH`].
-    pub reach: u32,
+    /// Samples beyond the patch on every side, at most [`MAX_APRON`].
+    pub apron: u32,
 }
 
 /// Indices of lattice points along one axis, both ends included, in units of the lattice's spacing.
@@ -39,14 +39,14 @@ impl Span {
 impl Window {
     /// Samples along an edge.
     pub fn width(&self, config: &Config) -> u32 {
-        config.patch_size + 2 * self.reach
+        config.patch_size + 2 * self.apron
     }
 
     /// The columns and rows of the window, in samples.
     pub fn spans(&self, config: &Config) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
-            let first = i64::from(patch) * edge - i64::from(self.reach);
+            let first = i64::from(patch) * edge - i64::from(self.apron);
             Span { first, last: first + i64::from(self.width(config)) - 1 }
         })
     }
@@ -68,7 +68,7 @@ impl Window {
         let origin = if config.border == Border::Seamless {
             self.spans(config).map(|span| span.first * spacing)
         } else {
-            [-i64::from(self.reach) * spacing; 2]
+            [-i64::from(self.apron) * spacing; 2]
         };
         Lattice { origin, width: self.width(config), spacing }
     }
@@ -78,8 +78,8 @@ impl Window {
     /// # Errors
     /// [`InputError`] when the reach is too large, or world coordinates with their halo leave `i32`.
     pub fn validate(&self, config: &Config) -> Result<(), InputError> {
-        if self.reach > MAX_REACH {
-            return Err(InputError::new("reach", self.reach, format!("must be at most {MAX_REACH} samples")));
+        if self.apron > MAX_APRON {
+            return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));
         }
         let base_spacing = config.sample_spacing() << config.levels();
         let base = if config.border == Border::Seamless {

@@ -1,7 +1,7 @@
 //! The shaders' whole numbers, on the adapter, against wider ones.
 
 use relievo::animation::budget::reference::rank_of;
-use relievo::animation::gate::reference::{motion_at, motion_between, share_of};
+use relievo::animation::gate::reference::{motion_at, motion_between, scale_by_fraction};
 use relievo::animation::verify::Draw;
 use relievo::gpu::shaders::{ANIMATION_BUDGET, ANIMATION_GATE};
 
@@ -44,7 +44,8 @@ fn motion_of_the_shaders_is_exact() {
             0,
         ];
         assert_eq!(found, expected, "the shader of {given:?}");
-        let reference = [share_of(x, fraction), motion_at([x, y], fraction), motion_between(x, y, z), 0];
+        let reference =
+            [scale_by_fraction(x, fraction), motion_at([x, y], fraction), motion_between(x, y, z), 0];
         assert_eq!(reference, expected, "the reference of {given:?}");
     }
 }

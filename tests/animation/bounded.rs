@@ -29,7 +29,7 @@ fn clip(skeleton: &Skeleton, bones: &[BoneKeys], duration: f32) -> Clip {
 struct Run<'a> {
     skeleton: &'a Skeleton,
     clips: &'a [Clip],
-    reaches: &'a [f32],
+    bone_radii: &'a [f32],
     path: RotationPath,
     allowed: f32,
 }
@@ -46,10 +46,10 @@ impl Run<'_> {
         let clips: Vec<&Clip> = self.clips.iter().collect();
         let (set, order) = (ClipSet::new(&clips).expect("fits"), Order::new(self.skeleton));
         let bounds =
-            GateTable::of_bounds(self.skeleton, &set, &clips, self.reaches, self.path).expect("fits");
-        let movers = GateTable::of_movers(&order, &set, &clips).expect("fits");
+            GateTable::of_bounds(self.skeleton, &set, &clips, self.bone_radii, self.path).expect("fits");
+        let animated_bones = GateTable::of_animated_bones(&order, &set, &clips).expect("fits");
         let crowd = |table| Crowd::new(&order, &set, table, self.path, instances.to_vec()).expect("one path");
-        let (mut lazy, mut full) = (crowd(&bounds), crowd(&movers));
+        let (mut lazy, mut full) = (crowd(&bounds), crowd(&animated_bones));
         lazy.lods.iter_mut().for_each(|lod| lod.allowed = bounds.units(self.allowed));
         let (mut worst, mut elapsed) = (0.0_f64, 0.0);
         for number in 0..frames {
@@ -61,7 +61,8 @@ impl Run<'_> {
             let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
             lazy.advance(Choice::Gate(Gate::Bounded), &frame, elapsed);
             full.advance(Choice::Gate(Gate::Off), &frame, elapsed);
-            worst = worst.max(self.error(&lazy.models, &full.models) / f64::from(self.allowed));
+            worst =
+                worst.max(self.error(&lazy.model_matrices, &full.model_matrices) / f64::from(self.allowed));
         }
         worst
     }
@@ -69,8 +70,8 @@ impl Run<'_> {
     fn error(&self, stale: &[Affine], fresh: &[Affine]) -> f64 {
         let (mut worst, mut size) = (0.0_f64, 0.0_f64);
         for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
-            let reach = f64::from(self.reaches[pair % self.reaches.len()]);
-            for (axis, side) in (0..3).flat_map(|axis| [(axis, -reach), (axis, reach)]) {
+            let bone_radius = f64::from(self.bone_radii[pair % self.bone_radii.len()]);
+            for (axis, side) in (0..3).flat_map(|axis| [(axis, -bone_radius), (axis, bone_radius)]) {
                 let at = |model: &Affine, row: usize| {
                     f64::from(model[row][3]) + side * f64::from(model[row][axis])
                 };
@@ -106,7 +107,7 @@ fn a_jump_at_the_first_key_is_seen() {
         let run = Run {
             skeleton: &skeleton,
             clips: &clips,
-            reaches: &[0.1],
+            bone_radii: &[0.1],
             path: RotationPath::Slerp,
             allowed: 0.1,
         };
@@ -121,8 +122,13 @@ fn slow_stretches_hide_nothing() {
     let translation = keys(&[0.0, 100.0], &[[0.0; 4], [100.0, 0.0, 0.0, 0.0]], Interpolation::Linear);
     let (skeleton, clips) = one(BoneKeys { translation, ..BoneKeys::default() }, 0.0);
     for allowed in [0.0001, 0.0005, 0.01] {
-        let run =
-            Run { skeleton: &skeleton, clips: &clips, reaches: &[0.1], path: RotationPath::Slerp, allowed };
+        let run = Run {
+            skeleton: &skeleton,
+            clips: &clips,
+            bone_radii: &[0.1],
+            path: RotationPath::Slerp,
+            allowed,
+        };
         let worst = run.worst(&looping(), 900, |_| 0.001);
         assert!(worst <= 1.0, "{worst} of {allowed}");
     }
@@ -139,7 +145,7 @@ fn splines_through_nothing_are_always_sampled() {
         let run = Run {
             skeleton: &skeleton,
             clips: &clips,
-            reaches: &[1.0],
+            bone_radii: &[1.0],
             path: RotationPath::Slerp,
             allowed: 1.2,
         };
@@ -219,12 +225,17 @@ fn random_clips_keep_the_promise() {
                 clip(&skeleton, &bones, 7.0 * f32::from(draw.word().is_multiple_of(3)))
             })
             .collect();
-        let reaches: Vec<f32> = (0..bones).map(|_| draw.signed().abs()).collect();
+        let bone_radii: Vec<f32> = (0..bones).map(|_| draw.signed().abs()).collect();
         let path = [RotationPath::Slerp, RotationPath::Nlerp][case as usize % 2];
         let instances: Vec<_> = (0..4).map(|_| random_instance(&mut draw)).collect();
         for allowed in [0.003, 0.1, 1.0, 10.0] {
-            let run =
-                Run { skeleton: &skeleton, clips: &clips, reaches: &reaches, path, allowed: allowed * size };
+            let run = Run {
+                skeleton: &skeleton,
+                clips: &clips,
+                bone_radii: &bone_radii,
+                path,
+                allowed: allowed * size,
+            };
             let worst = run.worst(&instances, 60, |instances| {
                 let at = draw.word() as usize % instances.len();
                 match draw.word() % 20 {

@@ -1,9 +1,9 @@
-//! The bounds' twin against the exact box in double precision.
+//! The bounds' reference against the exact box in double precision.
 
 use relievo::animation::Bounds;
-use relievo::animation::bounds::bone_reaches;
+use relievo::animation::bounds::bone_radii;
 use relievo::animation::bounds::reference::bounds;
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
@@ -57,7 +57,7 @@ fn shear_is_covered() {
         Transform { scale: [10.0, 1.0, 1.0], ..Transform::IDENTITY },
         Transform { rotation: [0.0, 0.0, eighth.sin(), eighth.cos()], ..Transform::IDENTITY },
     ];
-    let models = concat(&skeleton, &locals);
+    let models = local_to_model(&skeleton, &locals);
     let found = bounds(&models, &[0.0, 1.0])[0];
     assert!(directions().iter().all(|direction| contains(&found, moved(&models[1], *direction))));
     let column = |axis: usize| models[1].map(|row| row[axis]).iter().map(|x| x * x).sum::<f32>().sqrt();
@@ -69,23 +69,23 @@ fn shear_is_covered() {
 #[test]
 fn all_that_bones_reach_lies_inside() {
     let model = creature().expect("valid");
-    let reaches = bone_reaches(&model.skeleton);
+    let bone_radii = bone_radii(&model.skeleton);
     let directions = directions();
     for time in [0.0, 0.21, 0.6] {
-        let models = concat(&model.skeleton, &sample(&model.clips[0], time, RotationPath::Slerp));
-        let found = bounds(&models, &reaches)[0];
+        let models = local_to_model(&model.skeleton, &sample(&model.clips[0], time, RotationPath::Slerp));
+        let found = bounds(&models, &bone_radii)[0];
         let mut reached = [[f64::MAX; 3], [f64::MIN; 3]];
-        for (at, (own, reach)) in models.iter().zip(&reaches).enumerate() {
+        for (at, (own, bone_radius)) in models.iter().zip(&bone_radii).enumerate() {
             for (turn, direction) in directions.iter().enumerate() {
-                let point = moved(own, direction.map(|x| x * f64::from(*reach)));
+                let point = moved(own, direction.map(|x| x * f64::from(*bone_radius)));
                 assert!(contains(&found, point), "bone {at}: {point:?} outside {found:?}");
                 let other = (at * 31 + turn) % models.len();
                 let shared = moved(
                     &models[other],
-                    directions[(turn * 7) % 500].map(|x| x * f64::from(reaches[other])),
+                    directions[(turn * 7) % 500].map(|x| x * f64::from(bone_radii[other])),
                 );
-                let share = turn as f64 / 505.0;
-                let between = std::array::from_fn(|i| point[i] + (shared[i] - point[i]) * share);
+                let fraction = turn as f64 / 505.0;
+                let between = std::array::from_fn(|i| point[i] + (shared[i] - point[i]) * fraction);
                 assert!(contains(&found, between));
                 for i in 0..3 {
                     reached[0][i] = reached[0][i].min(point[i]);

@@ -1,6 +1,6 @@
-//! The concatenation twin against 4×4 products in double precision.
+//! The concatenation reference against 4×4 products in double precision.
 
-use relievo::animation::concat::reference::{affine, concat, concat_into};
+use relievo::animation::local_to_model::reference::{affine, local_to_model, local_to_model_into};
 use relievo::asset::transform::{AFFINE_IDENTITY, column_major};
 use relievo::asset::{Bone, Skeleton, Transform};
 
@@ -19,7 +19,7 @@ fn chains_of_every_length_are_products() {
                 Transform { translation: [w[0], w[1], w[2]], rotation, scale }
             })
             .collect();
-        let found = concat(&skeleton, &locals);
+        let found = local_to_model(&skeleton, &locals);
         let mut expected: Vec<Matrix> = Vec::new();
         for (bone, local) in skeleton.bones().iter().zip(&locals) {
             let local = matrix(wide(local.translation), wide(local.rotation), wide(local.scale));
@@ -57,7 +57,7 @@ fn the_parents_scale_reaches_the_child() {
     let bone = |parent| Bone { name: String::new(), parent, rest: Transform::IDENTITY };
     let skeleton = Skeleton::of_joints(vec![bone(None), bone(Some(0))]).expect("valid");
     let parent = Transform { scale: [2.0, 2.0, -2.0], ..Transform::IDENTITY };
-    let models = concat(&skeleton, &[parent, Transform::from_translation([1.0, 2.0, 3.0])]);
+    let models = local_to_model(&skeleton, &[parent, Transform::from_translation([1.0, 2.0, 3.0])]);
     assert_eq!(models[1].map(|row| row[3]), [2.0, 4.0, -6.0]);
 }
 
@@ -70,8 +70,8 @@ fn crowds_are_concatenated_instance_by_instance() {
         .map(|w| Transform { translation: [w[0], w[1], w[2]], ..Transform::IDENTITY })
         .collect();
     let mut models = vec![AFFINE_IDENTITY; 20];
-    concat_into(&skeleton, &locals, &mut models);
-    let expected: Vec<_> = locals.chunks(5).flat_map(|locals| concat(&skeleton, locals)).collect();
+    local_to_model_into(&skeleton, &locals, &mut models);
+    let expected: Vec<_> = locals.chunks(5).flat_map(|locals| local_to_model(&skeleton, locals)).collect();
     assert_eq!(models, expected);
     assert_ne!(models[..5], models[5..10]);
 }

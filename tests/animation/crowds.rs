@@ -1,16 +1,16 @@
 //! Crowds on the device at hand.
 
 use relievo::Error;
-use relievo::animation::bounds::{BoundsPass, Share, bone_reaches};
+use relievo::animation::bounds::{BoundsPass, Share, bone_radii};
 use relievo::animation::chosen::ChosenBones;
-use relievo::animation::concat::reference::concat;
-use relievo::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::layers::{MOST_LAYERS, all_instances};
-use relievo::animation::place::PlacePass;
-use relievo::animation::place::reference::places;
+use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::animation::keyframe_cursor::reference::cursors;
+use relievo::animation::layers::{MAX_LAYERS, all_instances};
+use relievo::animation::local_to_model::reference::local_to_model;
+use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass, Walk};
 use relievo::animation::sample::reference::sample_layers;
 use relievo::animation::sample::{SAMPLE_BOUND, SamplePass};
 use relievo::animation::{ClipSet, Layer};
@@ -42,12 +42,13 @@ fn field(error: Error) -> String {
 
 fn sampled(gpu: &Gpu, set: &ClipSet, crowd: &Crowd, elapsed: f32) -> Vec<Transform> {
     let clips = ClipBuffers::new(gpu, set).expect("uploaded");
-    let place = PlacePass::new(gpu).expect("compiled").prepare(gpu, &clips, crowd).expect("prepared");
+    let cursor =
+        KeyframeCursorPass::new(gpu).expect("compiled").prepare(gpu, &clips, crowd).expect("prepared");
     let sample = SamplePass::layered(gpu, RotationPath::Slerp).expect("compiled");
     let sample = sample.prepare(gpu, &clips, crowd).expect("prepared");
-    place.set(gpu, elapsed).expect("set");
+    cursor.set(gpu, elapsed).expect("set");
     gpu.run("test", |encoder| {
-        place.record(encoder);
+        cursor.record(encoder);
         sample.record(encoder);
     })
     .expect("run");
@@ -65,7 +66,7 @@ fn layers_play_from_places_to_poses() {
     assert_eq!((crowd.len(), crowd.layers, crowd.pairs()), (5, 3, 5 * 153));
     for frame in 0..2 {
         let elapsed = 0.3 + frame as f32;
-        let found = places(&set, &all_instances(&base, &layers), elapsed);
+        let found = cursors(&set, &all_instances(&base, &layers), elapsed);
         let expected = sample_layers(&set, &base, &layers, &found, RotationPath::Slerp);
         // Places may be off by 1e-3 of a key, and move bones so much.
         for (actual, expected) in sampled(&gpu, &set, &crowd, elapsed).iter().zip(&expected) {
@@ -89,7 +90,7 @@ fn layers_that_do_not_fit_are_refused() {
     let crowd = Crowd::layered(&gpu, &set, &plays(0, 2), std::slice::from_ref(&layer)).expect("fits");
     let refused =
         |layers: &[Layer]| field(Crowd::layered(&gpu, &set, &plays(0, 2), layers).expect_err("refused"));
-    assert_eq!(refused(&vec![layer.clone(); MOST_LAYERS]), "layers.len");
+    assert_eq!(refused(&vec![layer.clone(); MAX_LAYERS]), "layers.len");
     assert_eq!(refused(&[layer.clone(), Layer { weights: vec![0.0, 2.0], ..layer }]), "layers[1].weights[1]");
     let refused =
         |layer, weights: &[f32]| field(crowd.set_weights(&gpu, layer, weights).expect_err("refused"));
@@ -111,14 +112,18 @@ fn layered_crowds_are_concatenated() {
     let crowd = Crowd::layered(&gpu, &set, &plays(0, 5), &layers).expect("fits");
     overwrite(&gpu, &crowd, &vec![[[f32::NAN; 4]; 3]; crowd.pairs()]);
     let locals = sampled(&gpu, &set, &crowd, 0.3);
-    let expected: Vec<f32> =
-        locals.chunks(153).flat_map(|locals| concat(&model.skeleton, locals)).flatten().flatten().collect();
-    let pass = ConcatPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
+    let expected: Vec<f32> = locals
+        .chunks(153)
+        .flat_map(|locals| local_to_model(&model.skeleton, locals))
+        .flatten()
+        .flatten()
+        .collect();
+    let pass = LocalToModelPass::new(&gpu, Walk::of(&gpu)).expect("compiled");
     let job = pass.prepare(&gpu, &model.skeleton, &crowd).expect("prepared");
     gpu.run("test", |encoder| job.record(encoder)).expect("run");
     let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
     let actual = crowd.model_matrices().read_blocking(&gpu).expect("read");
-    let found = absolute(&flat(&actual), &expected, 20.0 * CONCAT_BOUND * 3.0);
+    let found = absolute(&flat(&actual), &expected, 20.0 * LOCAL_TO_MODEL_BOUND * 3.0);
     assert!(found.holds, "{found:?}");
 }
 
@@ -143,7 +148,7 @@ fn the_palettes_of_the_frame_before_are_kept() {
         gpu.run("test", |encoder| crowd.record_previous(encoder)).expect("run");
         // Concatenation of a part: what it leaves alone is the same in both.
         overwrite(&gpu, &crowd, &numbered(100, frame));
-        let previous = crowd.previous.as_ref().expect("kept").read_blocking(&gpu).expect("read");
+        let previous = crowd.previous.as_ref().expect("remaining").read_blocking(&gpu).expect("read");
         let before = if frame == 1 { vec![[[0.0; 4]; 3]; 100] } else { numbered(100, frame - 1) };
         assert_eq!((previous.len(), &previous[..100]), (3 * 153, &before[..]));
         assert!(previous[100..].iter().all(|model| *model == [[0.0; 4]; 3]));
@@ -195,11 +200,14 @@ fn bounds_that_do_not_fit_are_refused() {
     let (gpu, (model, set)) = (gpu(), scene());
     let crowd = Crowd::new(&gpu, &set, &plays(0, 3)).expect("fits");
     let pass = BoundsPass::new(&gpu, Share::of(&gpu)).expect("compiled");
-    let refused = |reaches: &[f32], room| {
+    let refused = |bone_radii: &[f32], room| {
         let bounds = Buffer::new(&gpu, "bounds", room).expect("allocated");
-        field(pass.prepare(&gpu, &crowd, reaches, &bounds).expect_err("refused"))
+        field(pass.prepare(&gpu, &crowd, bone_radii, &bounds).expect_err("refused"))
     };
-    let reaches = bone_reaches(&model.skeleton);
-    assert_eq!((refused(&reaches[1..], 3), refused(&reaches, 2)), ("reaches.len".into(), "bounds".into()));
-    assert_eq!(refused(&[&reaches[..152], &[f32::NAN]].concat(), 3), "reaches[152]");
+    let bone_radii = bone_radii(&model.skeleton);
+    assert_eq!(
+        (refused(&bone_radii[1..], 3), refused(&bone_radii, 2)),
+        ("bone_radii.len".into(), "bounds".into())
+    );
+    assert_eq!(refused(&[&bone_radii[..152], &[f32::NAN]].concat(), 3), "reaches[152]");
 }

@@ -3,13 +3,13 @@
 
 use relievo::Error;
 use relievo::animation::active::Active;
-use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::decide::{DecidePass, Dispatches};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::gate::GatePass;
-use relievo::animation::gating::Gating;
+use relievo::animation::gate_state::GateState;
 use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::local_to_model::{LocalToModelPass, Walk};
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Choice, ClipSet, Gate, GateTable, ModelMatrices, Order};
 use relievo::asset::Model;
@@ -45,8 +45,8 @@ impl Rig {
         let (gpu, model) = (gpu(), creature().expect("valid"));
         let clips = [&model.clips[0]];
         let set = ClipSet::new(&clips).expect("one skeleton");
-        let reaches = vec![0.1; model.skeleton.len()];
-        let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+        let bone_radii = vec![0.1; model.skeleton.len()];
+        let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
         Self {
             order: Order::new(&model.skeleton),
             clips: ClipBuffers::new(&gpu, &set).expect("uploaded"),
@@ -69,8 +69,8 @@ impl Rig {
         Active::new(&self.gpu, &self.order, crowd).expect("fits")
     }
 
-    fn gating(&self, crowd: &Crowd) -> Gating {
-        Gating::new(&self.gpu, &self.table, crowd).expect("fits")
+    fn gate_state(&self, crowd: &Crowd) -> GateState {
+        GateState::new(&self.gpu, &self.table, crowd).expect("fits")
     }
 
     fn framed(&self, crowd: &Crowd, choice: Choice) -> Result<GatedFrame, Error> {
@@ -80,14 +80,14 @@ impl Rig {
     /// Every way to put a crowd under `bounded`.
     fn bound(&self, way: usize, crowd: &Crowd) -> Option<Result<(), Error>> {
         let (gpu, bounded) = (&self.gpu, Choice::Gate(Gate::Bounded));
-        let (active, gating) = (self.active(crowd), self.gating(crowd));
+        let (active, gate_state) = (self.active(crowd), self.gate_state(crowd));
         Some(match way {
             0 => self.framed(crowd, bounded).map(drop),
-            1 => self.gate.prepare(gpu, crowd, &gating, &active).map(drop),
+            1 => self.gate.prepare(gpu, crowd, &gate_state, &active).map(drop),
             2 => {
                 let decide = DecidePass::new(gpu, bounded, Dispatches::of(gpu, bounded, &active));
                 let decide = decide.expect("compiled");
-                decide.prepare(gpu, &self.clips, crowd, &gating, &active).map(drop)
+                decide.prepare(gpu, &self.clips, crowd, &gate_state, &active).map(drop)
             }
             3 => self.framed(&crowd.clone(), bounded).map(drop),
             _ => return None,
@@ -97,14 +97,14 @@ impl Rig {
     /// Every way to blend the matrices of a crowd.
     fn skin(&self, way: usize, crowd: &Crowd, blend: Blend) -> Option<Result<(), Error>> {
         let own = crowd.model_matrices();
-        let updated = own.with_updated_bones(&self.active(crowd).dirty);
+        let updated = own.with_updated_bones(&self.active(crowd).updated_bones);
         Some(match way {
             0 => self.skinned(own, blend),
             1 => self.skinned(&updated, blend),
             2 => self.drawn(own, blend),
             3 => self.drawn(&updated, blend),
             4 => self.blended(own, blend),
-            5 => self.blended(crowd.previous.as_ref().expect("kept"), blend),
+            5 => self.blended(crowd.previous.as_ref().expect("remaining"), blend),
             6 => self.blended(crowd.clone().model_matrices(), blend),
             _ => return None,
         })
@@ -202,12 +202,12 @@ fn lists_of_active_bones_are_of_one_crowd() {
     let (gpu, crowd, other) = (&rig.gpu, rig.crowd(), rig.crowd());
     let active = rig.active(&crowd);
     let sample = SamplePass::new(gpu, RotationPath::Slerp).expect("compiled");
-    let concat = ConcatPass::new(gpu, Walk::of(gpu)).expect("compiled");
+    let local_to_model = LocalToModelPass::new(gpu, Walk::of(gpu)).expect("compiled");
     let prepared = |crowd: &Crowd| {
         [
-            rig.gate.prepare(gpu, crowd, &rig.gating(crowd), &active).map(drop),
+            rig.gate.prepare(gpu, crowd, &rig.gate_state(crowd), &active).map(drop),
             sample.prepare_active(gpu, &rig.clips, crowd, &active.pairs).map(drop),
-            concat.prepare_active(gpu, &rig.model.skeleton, crowd, &active).map(drop),
+            local_to_model.prepare_active(gpu, &rig.model.skeleton, crowd, &active).map(drop),
         ]
     };
     assert!(prepared(&crowd).iter().all(Result::is_ok));

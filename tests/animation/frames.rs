@@ -3,15 +3,15 @@
 use relievo::Error;
 use relievo::animation::active::Active;
 use relievo::animation::compact::Stages;
-use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::decide::{DecidePass, Dispatches};
 use relievo::animation::frame::GatedFrame;
-use relievo::animation::gating::Gating;
+use relievo::animation::gate_state::GateState;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
+use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::animation::local_to_model::{LocalToModelPass, Walk};
 use relievo::animation::order::Order;
-use relievo::animation::place::PlacePass;
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Choice, ClipSet, Frame, Gate, GateTable, Layer, Lod};
 use relievo::asset::Affine;
@@ -41,8 +41,8 @@ fn a_gate_that_misses_nothing_changes_nothing() {
     let clips: Vec<_> = model.clips.iter().collect();
     let (set, order) = (ClipSet::new(&clips).expect("one skeleton"), Order::new(&model.skeleton));
     let buffers = ClipBuffers::new(&gpu, &set).expect("uploaded");
-    let reaches = vec![0.1; model.skeleton.len()];
-    let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
+    let bone_radii = vec![0.1; model.skeleton.len()];
+    let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
     let table = table.expect("fits");
     let plays = |clip: u32| -> Vec<Instance> {
         (0..5).map(|at| Instance::new(clip, Wrap::Loop, 0.2 * at as f32, 1.0 - 0.4 * at as f32)).collect()
@@ -51,20 +51,22 @@ fn a_gate_that_misses_nothing_changes_nothing() {
     for walk in [Walk::Levels, Walk::Whole] {
         let crowd = || Crowd::layered(&gpu, &set, &plays(0), &layers).expect("fits");
         let (lazy, full) = (crowd(), crowd());
-        let gating = Gating::new(&gpu, &table, &lazy).expect("fits");
-        gating.lods.write(&gpu, &[Lod::FULL; 5]).expect("written");
+        let gate_state = GateState::new(&gpu, &table, &lazy).expect("fits");
+        gate_state.lods.write(&gpu, &[Lod::FULL; 5]).expect("written");
         let active = Active::new(&gpu, &order, &lazy).expect("fits");
-        let (place, sample) = (PlacePass::new(&gpu), SamplePass::layered(&gpu, RotationPath::Slerp));
-        let (place, sample) = (place.expect("compiled"), sample.expect("compiled"));
-        let concat = ConcatPass::new(&gpu, walk).expect("compiled");
+        let (cursor, sample) =
+            (KeyframeCursorPass::new(&gpu), SamplePass::layered(&gpu, RotationPath::Slerp));
+        let (cursor, sample) = (cursor.expect("compiled"), sample.expect("compiled"));
+        let local_to_model = LocalToModelPass::new(&gpu, walk).expect("compiled");
         let decide = DecidePass::new(&gpu, BOUNDED, Dispatches::Each).expect("compiled");
-        let decide = decide.prepare(&gpu, &buffers, &lazy, &gating, &active).expect("prepared");
-        let places = place.prepare_active(&gpu, &buffers, &lazy, &gating, &active).expect("prepared");
+        let decide = decide.prepare(&gpu, &buffers, &lazy, &gate_state, &active).expect("prepared");
+        let cursors = cursor.prepare_active(&gpu, &buffers, &lazy, &gate_state, &active).expect("prepared");
         let samples = sample.prepare_active(&gpu, &buffers, &lazy, &active.pairs).expect("prepared");
-        let palettes = concat.prepare_active(&gpu, &model.skeleton, &lazy, &active).expect("prepared");
-        let all_places = place.prepare(&gpu, &buffers, &full).expect("prepared");
+        let palettes =
+            local_to_model.prepare_active(&gpu, &model.skeleton, &lazy, &active).expect("prepared");
+        let all_cursors = cursor.prepare(&gpu, &buffers, &full).expect("prepared");
         let all_samples = sample.prepare(&gpu, &buffers, &full).expect("prepared");
-        let all_palettes = concat.prepare(&gpu, &model.skeleton, &full).expect("prepared");
+        let all_palettes = local_to_model.prepare(&gpu, &model.skeleton, &full).expect("prepared");
         for number in 0..8_u32 {
             let elapsed = 0.15 * number as f32;
             if number == 3 {
@@ -74,14 +76,14 @@ fn a_gate_that_misses_nothing_changes_nothing() {
                 }
             }
             decide.set(&gpu, &frame(number), elapsed).expect("set");
-            places.set(&gpu, elapsed).expect("set");
-            all_places.set(&gpu, elapsed).expect("set");
+            cursors.set(&gpu, elapsed).expect("set");
+            all_cursors.set(&gpu, elapsed).expect("set");
             gpu.run("test", |encoder| {
                 decide.record(encoder);
-                places.record(encoder);
+                cursors.record(encoder);
                 samples.record(encoder);
                 palettes.record(encoder);
-                all_places.record(encoder);
+                all_cursors.record(encoder);
                 all_samples.record(encoder);
                 all_palettes.record(encoder);
             })
@@ -99,11 +101,11 @@ fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
     let model = creature().expect("valid");
     let set = ClipSet::new(&[&model.clips[0]]).expect("one skeleton");
     let (skeleton, clips, path) = (&model.skeleton, [&model.clips[0]], RotationPath::Slerp);
-    let reaches = vec![0.1; skeleton.len()];
+    let bone_radii = vec![0.1; skeleton.len()];
     let table = match choice {
-        BOUNDED => GateTable::of_bounds(skeleton, &set, &clips, &reaches, path),
-        Choice::Gate(_) => GateTable::of_movers(&Order::new(skeleton), &set, &clips),
-        Choice::Budget(_) => GateTable::of_expectations(skeleton, &set, &clips, &reaches, path),
+        BOUNDED => GateTable::of_bounds(skeleton, &set, &clips, &bone_radii, path),
+        Choice::Gate(_) => GateTable::of_animated_bones(&Order::new(skeleton), &set, &clips),
+        Choice::Budget(_) => GateTable::of_expectations(skeleton, &set, &clips, &bone_radii, path),
     };
     let table = table.expect("fits");
     let buffers = ClipBuffers::new(gpu, &set).expect("uploaded");
@@ -113,7 +115,7 @@ fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
     let prepared = prepared.expect("prepared");
     let allowed = table.units(0.01);
     let lod = |at: u32| Lod { omega: 65536 / (1 + at % 2), allowed, ..Lod::FULL };
-    prepared.gating.lods.write(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
+    prepared.gate_state.lods.write(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
     for number in 0..4 {
         prepared.set(gpu, &frame(number), number as f32 / 8.0).expect("set");
         gpu.run("test", |encoder| prepared.record(encoder)).expect("run");
@@ -144,7 +146,7 @@ fn bounds_of_one_path_meet_no_sampling_of_the_other() {
     let model = creature().expect("valid");
     let clips = [&model.clips[0]];
     let set = ClipSet::new(&clips).expect("one skeleton");
-    let (skeleton, reaches) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
+    let (skeleton, bone_radii) = (&model.skeleton, vec![0.1; model.skeleton.len()]);
     let (buffers, order) = (ClipBuffers::new(&gpu, &set).expect("uploaded"), Order::new(skeleton));
     let (slerp, nlerp) = (RotationPath::Slerp, RotationPath::Nlerp);
     let plays = [Instance::new(0, Wrap::Loop, 0.0, 1.0)];
@@ -152,16 +154,16 @@ fn bounds_of_one_path_meet_no_sampling_of_the_other() {
         let crowd = |path| Crowd::new(&gpu, &set, &plays).expect("fits").with_path(path);
         let (own, foreign) = (crowd(path), crowd(other));
         let active = Active::new(&gpu, &order, &own).expect("fits");
-        let bounds = GateTable::of_bounds(skeleton, &set, &clips, &reaches, path).expect("fits");
-        let expected = GateTable::of_expectations(skeleton, &set, &clips, &reaches, path).expect("fits");
+        let bounds = GateTable::of_bounds(skeleton, &set, &clips, &bone_radii, path).expect("fits");
+        let expected = GateTable::of_expectations(skeleton, &set, &clips, &bone_radii, path).expect("fits");
         for (table, choice) in [(&bounds, BOUNDED), (&expected, Choice::Budget(9))] {
             let frame = |crowd| GatedFrame::new(&gpu, skeleton, &buffers, crowd, table, choice).map(|_| ());
             assert!(frame(&own).is_ok(), "{path:?}, {choice:?}");
             names_both(frame(&foreign), [path, other]);
             // The decision of another crowd than the gate knows.
-            let gating = Gating::new(&gpu, table, &own).expect("fits");
+            let gate_state = GateState::new(&gpu, table, &own).expect("fits");
             let decide = DecidePass::new(&gpu, choice, Dispatches::Each).expect("compiled");
-            let decided = |crowd| decide.prepare(&gpu, &buffers, crowd, &gating, &active).map(|_| ());
+            let decided = |crowd| decide.prepare(&gpu, &buffers, crowd, &gate_state, &active).map(|_| ());
             assert!(decided(&own).is_ok(), "{path:?}, {choice:?}");
             names_both(decided(&foreign), [path, other]);
         }

@@ -23,15 +23,15 @@ struct Stage {
     clips: Vec<Clip>,
     order: Order,
     set: ClipSet,
-    reaches: Vec<f32>,
+    bone_radii: Vec<f32>,
 }
 
 impl Stage {
     fn new(skeleton: Skeleton, clips: Vec<Clip>) -> Self {
         let set = ClipSet::new(&clips.iter().collect::<Vec<_>>()).expect("one skeleton");
         let order = Order::new(&skeleton);
-        let reaches = (0..skeleton.len()).map(|bone| 0.05 + 0.1 * (bone % 4) as f32).collect();
-        Self { skeleton, clips, order, set, reaches }
+        let bone_radii = (0..skeleton.len()).map(|bone| 0.05 + 0.1 * (bone % 4) as f32).collect();
+        Self { skeleton, clips, order, set, bone_radii }
     }
 
     fn random(case: u32, bones: usize) -> Self {
@@ -50,11 +50,11 @@ impl Stage {
     }
 
     fn bounds(&self, path: RotationPath) -> GateTable {
-        GateTable::of_bounds(&self.skeleton, &self.set, &self.clips(), &self.reaches, path).expect("fits")
+        GateTable::of_bounds(&self.skeleton, &self.set, &self.clips(), &self.bone_radii, path).expect("fits")
     }
 
-    fn movers(&self) -> GateTable {
-        GateTable::of_movers(&self.order, &self.set, &self.clips()).expect("fits")
+    fn animated_bones(&self) -> GateTable {
+        GateTable::of_animated_bones(&self.order, &self.set, &self.clips()).expect("fits")
     }
 
     fn crowd<'a>(&'a self, table: &'a GateTable, path: RotationPath, instances: &[Instance]) -> Crowd<'a> {
@@ -66,8 +66,8 @@ impl Stage {
     fn error(&self, stale: &[Affine], fresh: &[Affine]) -> f64 {
         let mut worst = 0.0_f64;
         for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
-            let reach = f64::from(self.reaches[pair % self.skeleton.len()]);
-            for (axis, side) in (0..3).flat_map(|axis| [(axis, -reach), (axis, reach)]) {
+            let bone_radius = f64::from(self.bone_radii[pair % self.skeleton.len()]);
+            for (axis, side) in (0..3).flat_map(|axis| [(axis, -bone_radius), (axis, bone_radius)]) {
                 let off = |row: usize| {
                     let minus = |column: usize| f64::from(stale[row][column]) - f64::from(fresh[row][column]);
                     minus(3) + side * minus(axis)
@@ -94,9 +94,9 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
         Instance::new(clip, wrap, 2.0 * draw.signed(), [1.0, -1.0, 0.25, 2.5][draw.word() as usize % 4])
     };
     let instances: Vec<Instance> = (0..6).map(|_| instance(&mut draw)).collect();
-    let (bounds, movers) = (stage.bounds(path), stage.movers());
+    let (bounds, animated_bones) = (stage.bounds(path), stage.animated_bones());
     let mut lazy = stage.crowd(&bounds, path, &instances);
-    let mut full = stage.crowd(&movers, path, &instances);
+    let mut full = stage.crowd(&animated_bones, path, &instances);
     lazy.lods.iter_mut().for_each(|lod| lod.allowed = times * bounds.units(allowed));
     let (mut elapsed, mut worst, mut sampled) = (0.0, 0.0_f64, 0);
     let frames = 150;
@@ -110,7 +110,7 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
         }
         sampled += lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed).pairs.len();
         full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
-        worst = worst.max(stage.error(&lazy.models, &full.models));
+        worst = worst.max(stage.error(&lazy.model_matrices, &full.model_matrices));
     }
     let pairs = frames as usize * instances.len() * stage.skeleton.len();
     (worst / f64::from(allowed), sampled as f64 / pairs as f64)
@@ -146,16 +146,16 @@ fn a_gate_that_allows_too_much_is_seen() {
 #[test]
 fn nothing_allowed_is_nothing_missed() {
     let stage = Stage::creature();
-    let (bounds, movers) = (stage.bounds(RotationPath::Slerp), stage.movers());
+    let (bounds, animated_bones) = (stage.bounds(RotationPath::Slerp), stage.animated_bones());
     let instances: Vec<_> =
         (0..5).map(|at| Instance::new(at % 3, Wrap::Loop, 0.3 * at as f32, 1.0)).collect();
     let mut lazy = stage.crowd(&bounds, RotationPath::Slerp, &instances);
-    let mut full = stage.crowd(&movers, RotationPath::Slerp, &instances);
+    let mut full = stage.crowd(&animated_bones, RotationPath::Slerp, &instances);
     for number in 0..90 {
         let elapsed = number as f32 / 60.0;
         lazy.advance(Choice::Gate(Gate::Bounded), &frame(number), elapsed);
         full.advance(Choice::Gate(Gate::Off), &frame(number), elapsed);
-        assert!(lazy.models == full.models, "frame {number}");
+        assert!(lazy.model_matrices == full.model_matrices, "frame {number}");
     }
 }
 
@@ -163,13 +163,17 @@ fn nothing_allowed_is_nothing_missed() {
 #[test]
 fn bones_that_never_move_are_sampled_once() {
     let stage = Stage::creature();
-    let movers = stage.movers();
-    let mut crowd = stage.crowd(&movers, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
+    let animated_bones = stage.animated_bones();
+    let mut crowd =
+        stage.crowd(&animated_bones, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0)]);
     let first = crowd.advance(Choice::Gate(Gate::Off), &frame(0), 0.0);
     let next = crowd.advance(Choice::Gate(Gate::Off), &frame(1), 0.4);
     assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
     let locals = relievo::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
-    assert_eq!(crowd.models, relievo::animation::concat::reference::concat(&stage.skeleton, &locals));
+    assert_eq!(
+        crowd.model_matrices,
+        relievo::animation::local_to_model::reference::local_to_model(&stage.skeleton, &locals)
+    );
 }
 
 fn pairs_a_frame(stage: &Stage, table: &GateTable, choice: Choice, lod: Lod, frames: u32) -> Vec<Work> {
@@ -182,20 +186,24 @@ fn pairs_a_frame(stage: &Stage, table: &GateTable, choice: Choice, lod: Lod, fra
 #[test]
 fn uniform_and_random_take_their_share_of_the_bones() {
     let stage = Stage::creature();
-    let table = stage.movers();
+    let table = stage.animated_bones();
     let moving = pairs_a_frame(&stage, &table, Choice::Gate(Gate::Off), Lod::FULL, 2)[1].pairs.len();
-    for share in [0.0, 0.1, 0.33, 0.75, 1.0] {
-        let lod = Lod { omega: (share * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
+    for fraction in [0.0, 0.1, 0.33, 0.75, 1.0] {
+        let lod = Lod { omega: (fraction * f64::from(OMEGA_ONE)) as u32, ..Lod::FULL };
         for mode in [Gate::Uniform, Gate::Random] {
             let done = pairs_a_frame(&stage, &table, Choice::Gate(mode), lod, 121);
             assert_eq!(done[0].pairs.len(), 20 * 153, "a first frame is full");
             let mean = done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / 120.0;
             let found = mean / moving as f64;
-            assert!((found - share).abs() < 0.01, "{mode:?}: {found} of {share}");
+            assert!((found - fraction).abs() < 0.01, "{mode:?}: {found} of {fraction}");
             // Together, or each for itself.
             let is_whole = |work: &Work| work.pairs.len() == work.instances.len() * moving / 20;
             let whole = done[1..].iter().all(is_whole);
-            assert_eq!(whole, mode == Gate::Uniform || share == 0.0 || share == 1.0, "{mode:?} {share}");
+            assert_eq!(
+                whole,
+                mode == Gate::Uniform || fraction == 0.0 || fraction == 1.0,
+                "{mode:?} {fraction}"
+            );
         }
     }
 }
@@ -224,23 +232,24 @@ fn skip_period_skips_once_a_period() {
         GateTable::of_priorities(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
     // A second, of 65,536 ticks.
     let mode = Choice::Gate(Gate::SkipPeriod { period: 65536 });
-    let share = |omega: u32| {
+    let fraction = |omega: u32| {
         let done = pairs_a_frame(&stage, &table, mode, Lod { omega, ..Lod::FULL }, 241);
         done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
     };
-    let moving = share(OMEGA_ONE);
+    let moving = fraction(OMEGA_ONE);
     // Priorities near ½ at Ω = ½: a skip each quarter of a second, of 15 frames.
-    let half = share(OMEGA_ONE / 2) / moving;
+    let half = fraction(OMEGA_ONE / 2) / moving;
     assert!((0.8..0.96).contains(&half), "{half}");
-    let tenth = share(OMEGA_ONE / 10) / moving;
+    let tenth = fraction(OMEGA_ONE / 10) / moving;
     assert!(tenth < half && tenth > 0.1, "{tenth}");
-    assert_eq!(share(0), 0.0);
+    assert_eq!(fraction(0), 0.0);
 }
 
 #[test]
 fn hidden_instances_cost_nothing_and_come_back_whole() {
     let stage = Stage::creature();
-    for (table, mode) in [(stage.movers(), Gate::Uniform), (stage.bounds(RotationPath::Slerp), Gate::Bounded)]
+    for (table, mode) in
+        [(stage.animated_bones(), Gate::Uniform), (stage.bounds(RotationPath::Slerp), Gate::Bounded)]
     {
         let instances = [Instance::new(0, Wrap::Loop, 0.0, 1.0); 2];
         let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
@@ -269,7 +278,7 @@ fn budgets_are_kept_and_spent_on_what_missed_most() {
         &stage.skeleton,
         &stage.set,
         &stage.clips(),
-        &stage.reaches,
+        &stage.bone_radii,
         RotationPath::Slerp,
     )
     .expect("fits");
@@ -325,15 +334,16 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
     let wrong = |path| Some(("crowd.path".to_owned(), format!("{path:?}")));
     let (slerp, nlerp) = (RotationPath::Slerp, RotationPath::Nlerp);
     for (path, other) in [(slerp, nlerp), (nlerp, slerp)] {
-        let (bounds, reaches) = (stage.bounds(path), &stage.reaches);
-        let expected = GateTable::of_expectations(&stage.skeleton, &stage.set, &stage.clips(), reaches, path);
+        let (bounds, bone_radii) = (stage.bounds(path), &stage.bone_radii);
+        let expected =
+            GateTable::of_expectations(&stage.skeleton, &stage.set, &stage.clips(), bone_radii, path);
         for table in [bounds, expected.expect("fits")] {
             assert_eq!((refused(&table, path), refused(&table, other)), (None, wrong(other)));
         }
     }
-    let movers = stage.movers();
-    assert_eq!(movers.path(), None);
-    assert_eq!([slerp, nlerp].map(|path| refused(&movers, path)), [None, None]);
+    let animated_bones = stage.animated_bones();
+    assert_eq!(animated_bones.path(), None);
+    assert_eq!([slerp, nlerp].map(|path| refused(&animated_bones, path)), [None, None]);
 }
 
 /// A table of another clip, or reaches that are none, are refused by name.
@@ -342,23 +352,24 @@ fn tables_refuse_what_does_not_fit() {
     let stage = Stage::creature();
     let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
-    assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &clips[..1])), "clips.len");
+    assert_eq!(field(GateTable::of_animated_bones(&stage.order, &stage.set, &clips[..1])), "clips.len");
     // As many clips, but in another order, or another one among them.
     let slow: Vec<BoneKeys> = (0..stage.skeleton.len()).map(|_| BoneKeys::default()).collect();
     let slow = Clip::new("slow", &stage.skeleton, &slow, clips[1].duration()).expect("valid");
     for (others, wrong) in
         [([clips[1], clips[0], clips[2]], "clips[0]"), ([clips[0], &slow, clips[2]], "clips[1]")]
     {
-        assert_eq!(field(GateTable::of_movers(&stage.order, &stage.set, &others)), wrong);
+        assert_eq!(field(GateTable::of_animated_bones(&stage.order, &stage.set, &others)), wrong);
     }
     assert_eq!(field(GateTable::of_priorities(&stage.order, &stage.set, &clips, &[])), "priorities.len");
-    let bounds = |reaches: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, reaches, path);
-    assert_eq!(field(bounds(&[])), "reaches.len");
-    let mut reaches = stage.reaches.clone();
-    reaches[3] = f32::NAN;
-    assert_eq!(field(bounds(&reaches)), "reaches[3]");
+    let bounds =
+        |bone_radii: &[f32]| GateTable::of_bounds(&stage.skeleton, &stage.set, &clips, bone_radii, path);
+    assert_eq!(field(bounds(&[])), "bone_radii.len");
+    let mut bone_radii = stage.bone_radii.clone();
+    bone_radii[3] = f32::NAN;
+    assert_eq!(field(bounds(&bone_radii)), "reaches[3]");
     let other = Stage::random(0, 7);
-    assert_eq!(field(GateTable::of_movers(&other.order, &stage.set, &clips)), "skeleton.len");
-    // The twin alone, without phases, has nothing to decide.
-    assert!(gate(&stage.movers(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
+    assert_eq!(field(GateTable::of_animated_bones(&other.order, &stage.set, &clips)), "skeleton.len");
+    // The reference alone, without phases, has nothing to decide.
+    assert!(gate(&stage.animated_bones(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
 }

@@ -1,6 +1,6 @@
 //! glTF documents as they may be.
 
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::clip::{Interpolation, Part};
 use relievo::asset::keyframe::RotationPath;
@@ -18,7 +18,7 @@ fn read(scene: &Scene) -> Model {
 }
 
 fn pose(model: &Model, clip: usize, time: f32) -> Vec<Affine> {
-    concat(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp))
+    local_to_model(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp))
 }
 
 fn place(affine: &Affine) -> [f32; 3] {
@@ -237,7 +237,7 @@ fn chains_may_be_long() {
     // Empty lists are not allowed.
     scene.json["nodes"][bones - 1].as_object_mut().expect("an object").remove("children");
     let model = read(&scene);
-    let models = concat(&model.skeleton, &model.skeleton.rest());
+    let models = local_to_model(&model.skeleton, &model.skeleton.rest());
     assert_eq!(place(models.last().expect("bones")), [0.0, bones as f32, 0.0]);
     assert_eq!(model.skeleton.joint_parents(), [Some(1), None]);
 }

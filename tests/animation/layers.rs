@@ -2,8 +2,8 @@
 
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
+use relievo::animation::keyframe_cursor::reference::cursors;
 use relievo::animation::layers::{all_instances, mask_below};
-use relievo::animation::place::reference::places;
 use relievo::animation::sample::reference::{blend, sample, sample_layers};
 use relievo::animation::{ClipSet, Layer};
 use relievo::asset::Transform;
@@ -15,13 +15,13 @@ use crate::player::{angle, dot, unit, wide};
 use crate::sampling::{noise, skeleton};
 
 /// below + (over − below) · share, part by part.
-fn expected(below: &Transform, over: &Transform, share: f64) -> ([f64; 3], [f64; 4], [f64; 3]) {
+fn expected(below: &Transform, over: &Transform, weight: f64) -> ([f64; 3], [f64; 4], [f64; 3]) {
     let line = |a: [f32; 3], b: [f32; 3]| {
-        std::array::from_fn(|i| f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * share)
+        std::array::from_fn(|i| f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * weight)
     };
     let (a, b) = (wide(below.rotation), wide(over.rotation));
     let sign = if dot(a, b) < 0.0 { -1.0 } else { 1.0 };
-    let rotation = unit(std::array::from_fn(|i| a[i] + (sign * b[i] - a[i]) * share));
+    let rotation = unit(std::array::from_fn(|i| a[i] + (sign * b[i] - a[i]) * weight));
     (line(below.translation, over.translation), rotation, line(below.scale, over.scale))
 }
 
@@ -34,16 +34,16 @@ fn random(words: &[f32]) -> Transform {
 fn blends_are_their_definition() {
     for (case, words) in noise(31, 21 * 2000).chunks_exact(21).enumerate() {
         let (below, over) = (random(&words[..10]), random(&words[10..]));
-        let share = [0.0, 1.0, (words[20] + 1.0) / 2.0][case % 3];
-        let found = blend(&below, &over, share);
-        let (translation, rotation, scale) = expected(&below, &over, f64::from(share));
+        let weight = [0.0, 1.0, (words[20] + 1.0) / 2.0][case % 3];
+        let found = blend(&below, &over, weight);
+        let (translation, rotation, scale) = expected(&below, &over, f64::from(weight));
         let error = |a: [f32; 3], b: [f64; 3]| {
             a.iter().zip(b).map(|(a, b)| (f64::from(*a) - b).abs()).fold(0.0, f64::max)
         };
         assert!(error(found.translation, translation) < 2e-7 && error(found.scale, scale) < 2e-7, "{case}");
         assert!(angle(wide(found.rotation), rotation) < 2e-6, "{case}");
         assert!((dot(wide(found.rotation), wide(found.rotation)).sqrt() - 1.0).abs() < 3e-7);
-        if share == 1.0 {
+        if weight == 1.0 {
             assert_eq!((found.translation, found.scale), (over.translation, over.scale));
         }
     }
@@ -69,7 +69,7 @@ fn masks_confine_a_layer() {
     let layers = |weight| [Layer::new(vec![wave], vec![weight]).masked(mask.clone())];
     let pose = |weight| {
         let layers = layers(weight);
-        let found = places(&set, &all_instances(&[walk], &layers), 0.0);
+        let found = cursors(&set, &all_instances(&[walk], &layers), 0.0);
         sample_layers(&set, &[walk], &layers, &found, RotationPath::Slerp)
     };
     let (walking, waving) = (
@@ -105,7 +105,7 @@ fn layers_fold_upwards() {
     let plays = |clip| Instance::new(clip, Wrap::Loop, 0.0, 1.0);
     let layers =
         [Layer::new(vec![plays(1)], vec![0.5]), Layer::new(vec![plays(2)], vec![0.25]).masked(vec![0.5])];
-    let found = places(&set, &all_instances(&[plays(0)], &layers), 0.0);
+    let found = cursors(&set, &all_instances(&[plays(0)], &layers), 0.0);
     let pose = sample_layers(&set, &[plays(0)], &layers, &found, RotationPath::Slerp);
     // 0 → 4 → 4 + 96/8.
     assert_eq!(pose[0].translation, [16.0, 0.0, 0.0]);

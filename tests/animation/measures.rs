@@ -38,7 +38,7 @@ fn a_gate_that_is_off_saves_nothing_and_errs_nowhere() {
     let (bones, moving) = (report.bones as u64, report.moving_bones as u64);
     assert!(bones > moving && moving > 0);
     for row in &report.distances {
-        assert_eq!((row.interpolated, row.skipped, row.share), (moving * 5 * 12, 0, 1.0));
+        assert_eq!((row.interpolated, row.skipped, row.fraction), (moving * 5 * 12, 0, 1.0));
         assert_eq!((row.error.max_metres, row.jump.max_metres), (0.0, 0.0));
         assert_eq!((row.error.points, row.error.unseen), (bones * 5 * 12 * 6, 0));
         assert!(row.full_nanoseconds_per_bone.total > 0.0);

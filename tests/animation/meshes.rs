@@ -234,18 +234,18 @@ fn full() -> Scene {
 
 /// Whatever is read can be skinned, and stays finite.
 fn skin_all(model: &Model) {
-    use relievo::animation::concat::reference::concat;
-    use relievo::asset::reaches;
+    use relievo::animation::local_to_model::reference::local_to_model;
+    use relievo::asset::bone_radii;
     use relievo::skinning::clusters::Clusters;
+    use relievo::skinning::instance_lod::InstanceLod;
     use relievo::skinning::morph::reference::morph;
     use relievo::skinning::palette::reference::palette_for;
-    use relievo::skinning::reduction::Reduction;
     use relievo::skinning::skin::reference::skin;
     use relievo::skinning::vertex::Blend;
-    let models = concat(&model.skeleton, &model.skeleton.rest());
+    let models = local_to_model(&model.skeleton, &model.skeleton.rest());
     // Scales may drive places out of range; that is the pose's fault.
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
-    assert_eq!(reaches(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
+    assert_eq!(bone_radii(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
     for mesh in &model.meshes {
         assert!(model.material(mesh).is_ok());
         assert_eq!(mesh.validate(&model.skins), Ok(()));
@@ -253,7 +253,7 @@ fn skin_all(model: &Model) {
         let weights = mesh.weights_at(0, 0.5);
         let large = |weights: &[f32]| weights.iter().any(|weight| weight.abs() > 1e6);
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
-        let vertices = skin(&morph(mesh, &weights), &mesh.influences, &palette, Reduction::FULL);
+        let vertices = skin(&morph(mesh, &weights), &mesh.influences, &palette, InstanceLod::FULL);
         let small = mesh.positions.as_flattened().iter().all(|x| x.abs() < 1e6)
             && mesh
                 .targets

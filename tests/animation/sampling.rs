@@ -1,15 +1,15 @@
-//! The sampling twin against glTF's own formulas in double precision.
+//! The sampling reference against glTF's own formulas in double precision.
 
 use relievo::animation::ClipSet;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::place::reference::{inside_clip, places};
+use relievo::animation::keyframe_cursor::reference::{cursors, inside_clip};
 use relievo::animation::sample::SLERP_BOUND;
 use relievo::animation::sample::reference::{sample, sample_bone, sample_set_into, slerp};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
-use relievo::asset::keyframe::Place;
+use relievo::asset::keyframe::KeyframeCursor;
 use relievo::asset::keyframe::RotationPath;
-use relievo::asset::keyframe::place;
+use relievo::asset::keyframe::keyframe_cursor;
 use relievo::asset::{Bone, Skeleton, Transform};
 use relievo::hash::{LANES, threefry2x32};
 
@@ -241,14 +241,14 @@ fn keys_are_found_wherever_they_lie() {
             .map(|x| (x + 1.0) * 1.1 * times[count - 1].max(0.1))
             .collect::<Vec<_>>();
         for time in times.iter().copied().chain(between) {
-            let found = place(&times, time);
+            let found = keyframe_cursor(&times, time);
             let key = times.iter().rposition(|key| *key <= time);
             let expected = key.unwrap_or(0);
             assert_eq!(found.key as usize, expected, "{times:?} at {time}");
             let inside = key.is_some() && expected + 1 < count;
             let width = if inside { times[expected + 1] - times[expected] } else { 0.0 };
             let fraction = if inside { (time - times[expected]) / width } else { 0.0 };
-            assert_eq!(found, Place { key: expected as u32, fraction });
+            assert_eq!(found, KeyframeCursor { key: expected as u32, fraction });
         }
     }
 }
@@ -300,11 +300,11 @@ fn crowds_are_sampled_as_bones_are_one_by_one() {
         let set = ClipSet::new(&[&clip]).expect("one skeleton");
         let starts = [0.0, 0.1, 0.25, 0.6, 0.75, 1.3, 1.9, 2.0];
         let instances = starts.map(|start| Instance::new(0, Wrap::Clamp, start, 1.0));
-        let places = places(&set, &instances, 0.0);
+        let cursors = cursors(&set, &instances, 0.0);
         for path in [RotationPath::Slerp, RotationPath::Nlerp] {
             // Whatever lay there before is overwritten.
             let mut transforms = vec![Transform { rotation: [9.0; 4], ..Transform::IDENTITY }; 8 * bones];
-            sample_set_into(&set, &instances, &places, path, &mut transforms);
+            sample_set_into(&set, &instances, &cursors, path, &mut transforms);
             let expected: Vec<_> = starts.iter().flat_map(|time| sample(&clip, *time, path)).collect();
             assert_eq!(transforms, expected, "{bones} bones, {path:?}");
         }

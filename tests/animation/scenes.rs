@@ -1,10 +1,10 @@
 //! Which part of a document is imported: the default scene, with or without skins, and extensions that it requires.
 
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::transform::Affine;
-use relievo::skinning::Reduction;
+use relievo::skinning::InstanceLod;
 use relievo::skinning::vertex::Blend;
 use serde_json::{Value, json};
 
@@ -48,7 +48,7 @@ fn places(model: &Model, models: &[Affine]) -> Vec<Vec<[f32; 3]>> {
     use relievo::skinning::skin::reference::skin;
     let place = |mesh: &relievo::asset::Mesh| {
         let palette = palette_for(&model.skins[mesh.skin], models, Blend::Linear);
-        let vertices = skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, Reduction::FULL);
+        let vertices = skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, InstanceLod::FULL);
         vertices.iter().map(|vertex| vertex.position).collect()
     };
     model.meshes.iter().map(place).collect()
@@ -123,7 +123,7 @@ fn joints_outside_the_scene_pose_the_vertices_that_follow_them() {
     skinned.0.json["scenes"] = json!([{"nodes": [2]}]);
     let model = read(&skinned.0);
     assert_eq!((bones(&model), meshes(&model)), (vec!["root", "tip"], vec!["body_0"]));
-    let at_rest = |model: &Model| places(model, &concat(&model.skeleton, &model.skeleton.rest()));
+    let at_rest = |model: &Model| places(model, &local_to_model(&model.skeleton, &model.skeleton.rest()));
     assert_eq!(at_rest(&model)[0][1], [1.0, 0.75 * 7.0, 0.0]);
     assert_eq!(at_rest(&model), at_rest(&inside));
 }
@@ -151,7 +151,7 @@ fn rigid_parts_need_no_skin() {
     assert_eq!(meshes(&model), ["wagon_0", "wheel_0"]);
     let clip = &model.clips[0];
     let locals = sample(clip, 1.0, relievo::asset::keyframe::RotationPath::Slerp);
-    let found = places(&model, &concat(&model.skeleton, &locals));
+    let found = places(&model, &local_to_model(&model.skeleton, &locals));
     // Half way: the wagon has gone 2, the wheel has turned a quarter about its own axle, at (1, −1) of the wagon.
     let near = |found: [f32; 3], wanted: [f32; 3]| {
         assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?} for {wanted:?}");
@@ -177,7 +177,7 @@ fn what_never_moves_is_imported_too() {
     assert_eq!((at_rest.name(), at_rest.duration()), ("rest", 0.0));
     let locals = sample(&at_rest, 0.0, relievo::asset::keyframe::RotationPath::Slerp);
     assert_eq!(locals, model.skeleton.rest());
-    assert_eq!(places(&model, &concat(&model.skeleton, &locals))[0][1], [4.0, 2.0, 0.0]);
+    assert_eq!(places(&model, &local_to_model(&model.skeleton, &locals))[0][1], [4.0, 2.0, 0.0]);
     // Nothing that could be shown.
     scene.json["nodes"] = json!([{"name": "lamp"}]);
     refused(&scene, "nodes", "must have a mesh, a skin or an animated node");

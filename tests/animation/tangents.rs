@@ -181,7 +181,7 @@ fn a_globe_has_tangents_along_its_latitudes() {
     let (rows, columns) = (16_u32, 32_u32);
     let place = |row: u32, column: u32| {
         let [polar, turn] = [row as f32 / rows as f32, 2.0 * column as f32 / columns as f32]
-            .map(|share| share * std::f32::consts::PI);
+            .map(|fraction| fraction * std::f32::consts::PI);
         [polar.sin() * turn.cos(), -polar.cos(), -polar.sin() * turn.sin()]
     };
     let all = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (row, column)));
@@ -239,12 +239,12 @@ fn crowded_vertices_are_solved() {
 }
 
 /// So many triangles, or one less, around a middle.
-fn wheel(spokes: u32) {
-    let rim = (0..spokes).map(|spoke| std::f32::consts::TAU * spoke as f32 / spokes as f32);
+fn wheel(one_ring: u32) {
+    let rim = (0..one_ring).map(|ring| std::f32::consts::TAU * ring as f32 / one_ring as f32);
     let positions: Vec<[f32; 3]> =
         std::iter::once([0.0; 3]).chain(rim.map(|turn| [turn.cos(), turn.sin(), 0.0])).collect();
     let uv: Vec<[f32; 2]> = positions.iter().map(|[x, y, _]| [*x, -y]).collect();
-    let indices: Vec<u32> = (1..spokes).flat_map(|spoke| [0, spoke, spoke + 1]).collect();
+    let indices: Vec<u32> = (1..one_ring).flat_map(|ring| [0, ring, ring + 1]).collect();
     let mesh = Surface::new(&positions, &vec![[0.0, 0.0, 1.0]; positions.len()], &uv, &indices)
         .read()
         .expect("valid");

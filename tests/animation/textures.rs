@@ -84,7 +84,7 @@ fn what_a_material_leaves_open_is_what_gltf_says() {
     let material = of(&skinned);
     assert_eq!((material.color, material.alpha), ([1.0; 4], Alpha::Opaque));
     assert_eq!(material.texture, Some(Texture { image: 0, sampling: Sampling::default() }));
-    for (mode, alpha) in [("MASK", Alpha::Mask(0.5)), ("BLEND", Alpha::Screen), ("OPAQUE", Alpha::Opaque)] {
+    for (mode, alpha) in [("MASK", Alpha::Mask(0.5)), ("BLEND", Alpha::Dithered), ("OPAQUE", Alpha::Opaque)] {
         skinned.0.json["materials"][0]["alphaMode"] = json!(mode);
         assert_eq!(of(&skinned).alpha, alpha);
     }

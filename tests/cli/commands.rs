@@ -48,7 +48,7 @@ fn bench_writes_the_documented_summary() {
     assert!(summary["threads"].as_u64().is_some_and(|threads| threads > 0));
     let rows = summary["rows"].as_array().expect("rows");
     let backends: Vec<_> = rows.iter().map(|row| row["backend"].as_str().expect("a backend")).collect();
-    assert_eq!(backends, ["gpu", "copy", "twin"]);
+    assert_eq!(backends, ["gpu", "copy", "reference"]);
     for row in rows {
         assert!(["name", "case", "item", "timed_by"].iter().all(|field| row[field].is_string()), "{row}");
         let figure = |field: &str| row[field].as_f64().expect("a figure");
@@ -85,7 +85,7 @@ fn shaders_are_flat_and_described() {
         &["slerp", "inside_clip"][..],
         &["rows_of_dual", "placed_normal"],
         &["surface_trace", "surface_soft_shadow"],
-        &["zone_share", "slope_normal", "threefry2x32"],
+        &["zone_fraction", "slope_normal", "threefry2x32"],
     ]) {
         let file = folder.path().join("wgsl").join(module["file"].as_str().expect("a name"));
         let source = std::fs::read_to_string(file).expect("written");

@@ -56,7 +56,7 @@ const GATES: [&[&str]; 6] = [
     &["--gate", "bounded", "--pixels", "2"],
 ];
 
-/// The device decides as the twins do; what it computes is off by rounding alone.
+/// The device decides as the references do; what it computes is off by rounding alone.
 #[test]
 fn backends_decide_alike_and_reports_add_up() {
     for gate in GATES {
@@ -65,14 +65,14 @@ fn backends_decide_alike_and_reports_add_up() {
         assert_eq!((&gpu["gate"], gpu["gate"]["mode"].as_str()), (&cpu["gate"], Some(gate[1])));
         assert_eq!((&gpu["bones"], rows(&gpu).len(), rows(&cpu).len()), (&Value::from(153), 3, 3));
         let moving = number(&gpu["moving_bones"]) * 9.0 * 20.0;
-        for (row, twin) in rows(&gpu).iter().zip(rows(&cpu)) {
+        for (row, reference) in rows(&gpu).iter().zip(rows(&cpu)) {
             for field in ["interpolated", "concatenated", "mean_omega", "skipped"] {
-                assert_eq!(row[field], twin[field], "{gate:?} {field} at {}", row["distance"]);
+                assert_eq!(row[field], reference[field], "{gate:?} {field} at {}", row["distance"]);
             }
             let done = number(&row["interpolated"]);
             assert_eq!(done + number(&row["skipped"]), moving, "{gate:?}");
-            assert!((number(&row["share"]) - done / moving).abs() < 1e-12);
-            let [a, b] = [row, twin].map(|row| &row["error"]);
+            assert!((number(&row["fraction"]) - done / moving).abs() < 1e-12);
+            let [a, b] = [row, reference].map(|row| &row["error"]);
             let [rms, p99, max] = ["rms_pixels", "p99_pixels", "max_pixels"]
                 .map(|field| (number(&a[field]), number(&b[field])));
             for (gpu, cpu) in [rms, p99, max] {
@@ -80,10 +80,10 @@ fn backends_decide_alike_and_reports_add_up() {
             }
             assert!(rms.0 <= max.0 && p99.0 <= max.0);
             assert_eq!((number(&a["points"]), number(&a["unseen"])), (9.0 * 20.0 * 153.0 * 6.0, 0.0));
-            for stage in ["gate", "sample", "concat", "total"] {
+            for stage in ["gate", "sample", "local_to_model", "total"] {
                 assert!(number(&row["nanoseconds_per_bone"][stage]) > 0.0, "{gate:?} {stage}");
             }
-            assert!(number(&twin["full_nanoseconds_per_bone"]["total"]) > 0.0);
+            assert!(number(&reference["full_nanoseconds_per_bone"]["total"]) > 0.0);
         }
     }
 }
@@ -94,20 +94,20 @@ fn gates_save_and_err_as_they_say() {
     let cpu = |gate: &[&str]| report(&[gate, &["--backend", "cpu"]].concat());
     let off = cpu(GATES[0]);
     for row in rows(&off) {
-        assert_eq!((number(&row["share"]), number(&row["error"]["max_metres"])), (1.0, 0.0));
+        assert_eq!((number(&row["fraction"]), number(&row["error"]["max_metres"])), (1.0, 0.0));
         assert_eq!(number(&row["jump"]["max_pixels"]), 0.0);
     }
     let uniform = cpu(GATES[2]);
     let [near, middle, far] = rows(&uniform) else { panic!("three distances") };
-    assert!(number(&near["share"]) > number(&middle["share"]) && number(&middle["share"]) > 0.2);
-    assert_eq!((number(&far["share"]), number(&far["concatenated"])), (0.0, 0.0));
+    assert!(number(&near["fraction"]) > number(&middle["fraction"]) && number(&middle["fraction"]) > 0.2);
+    assert_eq!((number(&far["fraction"]), number(&far["concatenated"])), (0.0, 0.0));
     assert!(number(&far["error"]["max_metres"]) > 0.1 && number(&far["jump"]["max_metres"]) > 0.01);
     let budget = cpu(GATES[4]);
     assert!(rows(&budget).iter().all(|row| number(&row["interpolated"]) == 300.0 * 20.0));
     let bounded = cpu(GATES[5]);
     for row in rows(&bounded) {
         let worst = number(&row["error"]["max_pixels"]);
-        assert!(worst <= 2.01 && number(&row["share"]) < 1.0, "{row}");
+        assert!(worst <= 2.01 && number(&row["fraction"]) < 1.0, "{row}");
     }
     assert!(number(&rows(&bounded)[2]["error"]["max_pixels"]) > 0.3, "far too careful");
 }

@@ -52,8 +52,8 @@ fn crowds_are_drawn_and_timed() {
         assert_eq!((number(&error["points"]), number(&error["unseen"])), (4.0 * 5284.0 * 11.0, 0.0));
     }
     // Beyond the range nothing moves, so that nothing is skinned, and what is drawn is the first frame.
-    assert_eq!(number(&far["skinned_share"]), 0.0);
-    assert!(number(&near["skinned_share"]) > 0.4);
+    assert_eq!(number(&far["skinned_fraction"]), 0.0);
+    assert!(number(&near["skinned_fraction"]) > 0.4);
     assert!(number(&far["vertex_error"]["max_metres"]) > 0.02);
     let [near, far] = ["crowd_300.png", "crowd_2000.png"].map(|name| {
         let picture = image::open(out.join(name)).expect("a PNG").into_rgba8();
@@ -69,7 +69,7 @@ fn the_gate_off_is_exact() {
     let ([near, far], ..) = rows("report.json", &["--gate", "off", "--image"]);
     for row in [near, far] {
         assert_eq!(number(&row["vertex_error"]["max_metres"]), 0.0);
-        assert!(number(&row["skinned_share"]) > 0.9);
+        assert!(number(&row["skinned_fraction"]) > 0.9);
     }
 }
 
@@ -87,7 +87,7 @@ fn scenes_compare_five_ways() {
         assert!(worst(row, "both") <= worst(row, "skinning") + bound, "{row}");
         for way in ["off", "animation", "skinning", "both", "all"] {
             assert!(number(&row[way]["frame_nanoseconds"]) > 0.0, "{way}");
-            assert!(way == "all" || number(&row[way]["triangle_share"]) == 1.0, "{way}");
+            assert!(way == "all" || number(&row[way]["triangle_fraction"]) == 1.0, "{way}");
         }
         for (way, field) in [("both", "cheaper"), ("all", "all_cheaper")] {
             let cheaper = number(&row["off"]["frame_nanoseconds"]) / number(&row[way]["frame_nanoseconds"]);
@@ -131,7 +131,7 @@ fn levels_of_detail_keep_their_pixels() {
         assert!(worst("animation") <= 0.501 && worst("skinning") <= 0.501 && worst("both") <= 1.002, "{row}");
         assert!(worst("all") <= 1.503 && worst("skinning") > 0.03 && worst("both") >= 0.03, "{row}");
     }
-    assert!(number(&far["all"]["triangle_share"]) < 0.5 * number(&near["all"]["triangle_share"]));
+    assert!(number(&far["all"]["triangle_fraction"]) < 0.5 * number(&near["all"]["triangle_fraction"]));
 }
 
 /// A triangle that a morph target makes ten times as high in two seconds; the one bone that moves has no vertices.
@@ -189,7 +189,7 @@ fn morph_targets_move_in_crowds() {
         let text = std::fs::read(folder.path().join("out/report.json")).expect("written");
         let report: Value = serde_json::from_slice(&text).expect("JSON");
         let row = &report["distances"][0];
-        assert_eq!((number(&row["interpolated"]), number(&row["skinned_share"])), (0.0, 1.0));
+        assert_eq!((number(&row["interpolated"]), number(&row["skinned_fraction"])), (0.0, 1.0));
         assert_eq!(number(&row["vertex_error"]["max_metres"]), 0.0);
         covered(&image::open(folder.path().join("out/crowd_2000.png")).expect("a PNG").into_rgba8()) as f64
     };

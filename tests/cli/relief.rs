@@ -150,7 +150,7 @@ fn backends_draw_the_same() {
         let astray = gpu.iter().zip(&cpu).filter(|pair| !near(pair)).count();
         assert!(astray * 200 <= gpu.len(), "{case:?}: {astray} of {} hits differ", gpu.len());
         let difference = Difference::of(&bench.image("gpu/relief.png"), &bench.image("cpu/relief.png"), 3);
-        // The rasterizer and the twin disagree about who owns a pixel on the square's edge.
+        // The rasterizer and the reference disagree about who owns a pixel on the square's edge.
         assert!(difference.outliers <= 0.02 && difference.flip <= 0.01, "{case:?}: {difference:?}");
         let report = bench.report("cpu");
         assert!(report["adapter"].is_null() && report["backend"] == "cpu");

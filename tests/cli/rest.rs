@@ -141,5 +141,5 @@ fn rigid_parts_form_crowds() {
     assert_eq!((&report["bones"], &report["moving_bones"]), (&json!(2), &json!(1)));
     assert!(row["error"]["max_pixels"].as_f64().is_some_and(|pixels| pixels <= 1.0), "{row}");
     assert!(row["vertex_error"]["max_pixels"].as_f64().is_some_and(|pixels| pixels <= 1.5), "{row}");
-    assert!(row["skinned_share"].as_f64().is_some_and(|share| share > 0.0), "{row}");
+    assert!(row["skinned_fraction"].as_f64().is_some_and(|fraction| fraction > 0.0), "{row}");
 }

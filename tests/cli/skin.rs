@@ -63,8 +63,8 @@ impl Bench {
         // Something is seen, in the middle of something else.
         let corner = picture.get_pixel(0, 0);
         let covered = picture.pixels().filter(|pixel| *pixel != corner).count() as f64;
-        let share = covered / f64::from(picture.width() * picture.height());
-        assert!((0.02..0.9).contains(&share), "{share}");
+        let fraction = covered / f64::from(picture.width() * picture.height());
+        assert!((0.02..0.9).contains(&fraction), "{fraction}");
         let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name));
         let text = read("mesh.obj").or_else(|_| read("attached.obj")).expect("written");
         text.lines().map(str::to_owned).collect()
@@ -359,7 +359,7 @@ fn textures_are_seen() {
         let picture =
             image::open(Path::new(&bench.path("out")).join("skin.png")).expect("a picture").to_rgb8();
         for (color, [x, y]) in colors.iter().zip([[0.3, 0.3], [0.7, 0.3], [0.3, 0.7], [0.7, 0.7]]) {
-            let at = |share: f64, edge: u32| (share * f64::from(edge)) as u32;
+            let at = |fraction: f64, edge: u32| (fraction * f64::from(edge)) as u32;
             let found = picture.get_pixel(at(x, picture.width()), at(y, picture.height())).0;
             for (found, wanted) in found.iter().zip(color) {
                 assert!(

@@ -2,7 +2,7 @@
 
 use glam::{Vec3, camera};
 use relievo::animation::ModelMatrices;
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::order::Order;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
@@ -12,7 +12,7 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::samples::creature;
-use relievo::skinning::lod::standing;
+use relievo::skinning::lod::placed;
 use relievo::skinning::picture::Light;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
@@ -35,16 +35,17 @@ impl Instances {
         let clip = &model.clips[0];
         let pose = |index: usize| {
             let time = (index as f32 * 0.618).fract() * clip.duration();
-            concat(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
+            local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
         };
         let place = |index: usize| {
             let z = [18.0, 2.0, -3.0, -9.0, -18.0][index / 4];
             let at = Vec3::new((index % 4) as f32 * 2.2 - 3.9 + aside, 0.0, z);
-            standing(at, 0.4 * index as f32, 1.0)
+            placed(at, 0.4 * index as f32, 1.0)
         };
         let models: Vec<Affine> = (0..COUNT).flat_map(pose).collect();
         let places: Vec<Affine> = (0..COUNT).map(place).collect();
-        let matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "models", &models).expect("uploaded"));
+        let matrices =
+            ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &models).expect("uploaded"));
         let words = COUNT * Order::new(&model.skeleton).words();
         let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
         Self {
@@ -106,7 +107,7 @@ fn creatures_and_figures_in_one_picture() {
         let fades = |frame: &relievo::skinning::frame::SkinFrame| {
             frame
                 .crowd
-                .reductions
+                .instance_lods
                 .read_blocking(&gpu)
                 .expect("read")
                 .iter()

@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3, camera};
 use relievo::animation::ModelMatrices;
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
@@ -12,9 +12,9 @@ use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::samples::creature;
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, ball, standing};
+use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, bounding_sphere, placed};
 use relievo::skinning::picture::Light;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::select::SKINNED_WORDS;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::mips::Mips;
@@ -49,11 +49,12 @@ impl Stage {
         let bones = CREATURES * model.skeleton.len();
         let eye = Vec3::new(0.0, 1.0, 9.0);
         let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.8, 0.0), Vec3::Y);
-        let lens = camera::rh::proj::directx::perspective(0.3, 160.0 / 96.0, 0.2, 100.0);
-        let (center, radius) = ball(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
-        let clip_from_world: Mat4 = lens * look;
+        let projection = camera::rh::proj::directx::perspective(0.3, 160.0 / 96.0, 0.2, 100.0);
+        let (center, radius) =
+            bounding_sphere(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
+        let clip_from_world: Mat4 = projection * look;
         Self {
-            models: Buffer::new(&gpu, "models", bones).expect("allocated"),
+            models: Buffer::new(&gpu, "model matrices", bones).expect("allocated"),
             placements: Buffer::new(&gpu, "placements", CREATURES).expect("allocated"),
             view: LodView {
                 clip_from_world,
@@ -91,7 +92,7 @@ impl Stage {
         scene.set_camera(gpu, view.clip_from_world).expect("set");
         let lod = LodPass::new(gpu)
             .expect("compiled")
-            .prepare(gpu, view, placements, &skin.crowd.reductions, &drawn, &scene.arguments)
+            .prepare(gpu, view, placements, &skin.crowd.instance_lods, &drawn, &scene.arguments)
             .expect("prepared");
         Crowd { skin, lod, scene }
     }
@@ -101,14 +102,18 @@ impl Stage {
         let walk = self.model.clip("walk").expect("there");
         let pose = |at: usize| {
             let time = 0.13 * at as f32 + if at.is_multiple_of(2) { frame as f32 / 30.0 } else { 0.0 };
-            concat(&self.model.skeleton, &sample(walk, time % walk.duration(), RotationPath::Slerp))
+            local_to_model(&self.model.skeleton, &sample(walk, time % walk.duration(), RotationPath::Slerp))
         };
         let models: Vec<Affine> = (0..CREATURES).flat_map(pose).collect();
         self.models.write(&self.gpu, &models).expect("written");
         let place = |at: usize| {
             // Out and in again: the whole way there and back.
-            let way = (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin();
-            standing(Vec3::new(8.0 * way + 0.9 * (at as f32 - 4.0), 0.0, 0.3 * at as f32 - 1.5), 1.57, 1.0)
+            let fade_fraction = (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin();
+            placed(
+                Vec3::new(8.0 * fade_fraction + 0.9 * (at as f32 - 4.0), 0.0, 0.3 * at as f32 - 1.5),
+                1.57,
+                1.0,
+            )
         };
         let placements: Vec<Affine> = (0..CREATURES).map(place).collect();
         self.placements.write(&self.gpu, &placements).expect("written");
@@ -131,7 +136,7 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
     let (gpu, [culled, whole]) = (&stage.gpu, [stage.crowd(), stage.crowd()]);
     let target = Target::new(gpu, SIZE).expect("allocated");
     let words = culled.skin.mesh.mask_words;
-    culled.skin.select.moved.write(gpu, &stage.moved(words)).expect("written");
+    culled.skin.select.updated_bones.write(gpu, &stage.moved(words)).expect("written");
     let clusters = culled.skin.clusters.len();
     let mut seen_before = [0_u32; CREATURES];
     let (mut skinned, mut empty, mut back) = (0, 0, 0);
@@ -139,14 +144,16 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         stage.pose(frame);
         gpu.run("frame", |encoder| {
             culled.lod.record(encoder);
-            culled.skin.record_moved(encoder);
+            culled.skin.record_updated_bones(encoder);
         })
         .expect("run");
         // The other one skins and draws everybody, as far faded where that is known.
-        let reductions = culled.skin.crowd.reductions.read_blocking(gpu).expect("read");
-        let full = |reduction: &Reduction| if reduction.most == 0 { Reduction::FULL } else { *reduction };
-        let all: Vec<_> = reductions.iter().map(full).collect();
-        whole.skin.crowd.reductions.write(gpu, &all).expect("written");
+        let instance_lods = culled.skin.crowd.instance_lods.read_blocking(gpu).expect("read");
+        let full = |instance_lod: &InstanceLod| {
+            if instance_lod.most == 0 { InstanceLod::FULL } else { *instance_lod }
+        };
+        let all: Vec<_> = instance_lods.iter().map(full).collect();
+        whole.skin.crowd.instance_lods.write(gpu, &all).expect("written");
         gpu.run("whole", |encoder| whole.skin.record_all(encoder)).expect("run");
         let [some, all] = [&culled, &whole].map(|crowd| stage.picture(&target, crowd));
         // Two pipelines skin them: a device may round one otherwise, and an edge may fall on the other side.
@@ -155,12 +162,12 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         assert!(differing <= drawn / 500, "frame {frame}: {differing} of {drawn} pixels differ");
         let known = culled.skin.select.skinned.read_blocking(gpu).expect("read");
         let mut expected = 0;
-        for (at, reduction) in reductions.iter().enumerate() {
+        for (at, instance_lod) in instance_lods.iter().enumerate() {
             let seen = known[SKINNED_WORDS * at + 3];
-            let wanted = if reduction.most == 0 { 0 } else { (seen_before[at] + 1).min(2) };
+            let wanted = if instance_lod.most == 0 { 0 } else { (seen_before[at] + 1).min(2) };
             assert_eq!(seen, wanted, "creature {at} of frame {frame}");
             // What stands still is skinned when it comes back, or fades.
-            if reduction.most > 0 && at.is_multiple_of(2) || seen == 1 {
+            if instance_lod.most > 0 && at.is_multiple_of(2) || seen == 1 {
                 expected += clusters;
             }
             back += usize::from(seen == 1 && frame > 0);
@@ -169,7 +176,7 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         let now = culled.skin.active.dispatched.read_blocking(gpu).expect("read")[3] as usize;
         assert!((expected..=expected + 5 * clusters).contains(&now), "{now} of {expected}, frame {frame}");
         let drawn = culled.scene.arguments.read_blocking(gpu).expect("read")[1];
-        assert_eq!(drawn as usize, reductions.iter().filter(|reduction| reduction.most > 0).count());
+        assert_eq!(drawn as usize, instance_lods.iter().filter(|instance_lod| instance_lod.most > 0).count());
         if drawn == 0 {
             assert_eq!(now, 0, "frame {frame}");
             empty += 1;

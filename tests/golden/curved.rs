@@ -161,7 +161,7 @@ fn reliefs_intersect_by_their_own_depth() {
     };
     assert!(same(&flat, &alone[0]) > 0.99, "equal depths: the first drawn stays");
     let shares = [same(&deep, &alone[0]), same(&deep, &alone[1])];
-    assert!(shares.iter().all(|share| (0.3..0.95).contains(share)), "both show: {shares:?}");
+    assert!(shares.iter().all(|fraction| (0.3..0.95).contains(fraction)), "both show: {shares:?}");
     let from_either = deep.pixels().zip(alone[0].pixels().zip(alone[1].pixels()));
     assert!(from_either.filter(|(deep, (a, b))| deep != a && deep != b).count() == 0, "nothing else shows");
 }

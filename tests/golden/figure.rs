@@ -39,10 +39,10 @@ fn sheet(
 ) -> Value {
     let (mut positions, mut uv, mut weights, mut indices) = (vec![], vec![], vec![], vec![]);
     for (row, column) in (0..=rows).flat_map(|row| (0..=columns).map(move |column| (row, column))) {
-        let (place, at, share) = corner(column as f32 / columns as f32, row as f32 / rows as f32);
+        let (place, at, fraction) = corner(column as f32 / columns as f32, row as f32 / rows as f32);
         positions.push(place);
         uv.extend(at);
-        weights.extend([1.0 - share, share, 0.0, 0.0]);
+        weights.extend([1.0 - fraction, fraction, 0.0, 0.0]);
         if row < rows && column < columns {
             let first = row * (columns + 1) + column;
             let [a, b, c, d] = [first, first + 1, first + columns + 2, first + columns + 1];
@@ -95,18 +95,18 @@ pub fn figure() -> Model {
     let shield = scene.push("materials", colored([0.15, 0.4, 0.9, 0.6]));
     scene.json["materials"][shield]["alphaMode"] = json!("BLEND");
     scene.push("materials", colored([0.7, 0.05, 0.03, 1.0]));
-    let share = |y: f32| {
-        let way = (y - 0.5).clamp(0.0, 1.0);
-        way * way * (3.0 - 2.0 * way)
+    let fraction = |y: f32| {
+        let fade_fraction = (y - 0.5).clamp(0.0, 1.0);
+        fade_fraction * fade_fraction * (3.0 - 2.0 * fade_fraction)
     };
     let body = sheet(&mut scene, [16, 12], 0, |u, v| {
         let angle = std::f32::consts::TAU * u;
         let y = 2.0 * v;
-        ([0.35 * libm::sinf(angle), y, 0.35 * libm::cosf(angle)], [3.0 * u, 1.0 - v], share(y))
+        ([0.35 * libm::sinf(angle), y, 0.35 * libm::cosf(angle)], [3.0 * u, 1.0 - v], fraction(y))
     });
     let cape = sheet(&mut scene, [4, 8], 1, |u, v| {
         let y = 0.2 + 1.7 * v;
-        ([1.6 * u - 0.8, y, -0.6 + 0.15 * v], [2.0 * u, 1.0 - v], share(y))
+        ([1.6 * u - 0.8, y, -0.6 + 0.15 * v], [2.0 * u, 1.0 - v], fraction(y))
     });
     let shield = sheet(&mut scene, [1, 1], 2, |u, v| ([0.9 * u - 0.75, 0.25 + 0.8 * v, 0.6], [u, v], 0.0));
     let dressed = scene.push("meshes", json!({"primitives": [body, cape, shield]}));

@@ -1,4 +1,4 @@
-//! Levels of detail of skinned meshes: a crowd near and far, on the device and in the twin.
+//! Levels of detail of skinned meshes: a crowd near and far, on the device and in the reference.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use relievo::asset::{MeshLevel, Model};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
-use relievo::skinning::ball::ball_in_clips;
+use relievo::skinning::bounding_sphere::bounding_sphere_in_clips;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::level_errors;
 use relievo::skinning::lod::reference::{lod, seen};
-use relievo::skinning::lod::{LevelRanges, LodView, NO_FADE, standing};
+use relievo::skinning::lod::{LevelRanges, LodView, NO_FADE, placed};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::Light;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::{skin, transformed};
 use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
@@ -79,7 +79,7 @@ impl Crowd {
             let (row, column) = (index / 3, index % 3);
             let at =
                 Vec3::new(2.5 * column as f32 - 2.5 + 0.4 * row as f32, 0.4 * row as f32, -5.0 * row as f32);
-            standing(at, 0.3 * index as f32, 1.0)
+            placed(at, 0.3 * index as f32, 1.0)
         };
         Self {
             gpu: gpu(),
@@ -91,7 +91,7 @@ impl Crowd {
 
     fn view(&self, eye: Vec3) -> LodView {
         let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.5, -6.0), Vec3::Y);
-        let (center, radius) = ball_in_clips(&self.model);
+        let (center, radius) = bounding_sphere_in_clips(&self.model);
         let [near, far] = NO_FADE;
         LodView {
             clip_from_world: camera::rh::proj::directx::perspective(0.6, 176.0 / 112.0, 0.2, 100.0) * look,
@@ -112,14 +112,14 @@ impl Crowd {
         all.flat_map(|(models, place)| {
             self.model.meshes.iter().map(|mesh| {
                 let palette = palette_for(&self.model.skins[0], models, Blend::Linear);
-                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL);
+                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
                 vertices.iter().map(|vertex| transformed(vertex, place)).collect()
             })
         })
         .collect()
     }
 
-    /// The twin's picture, with these levels.
+    /// The reference's picture, with these levels.
     fn drawn(&self, view: &LodView, levels: &[u32]) -> RgbaImage {
         let skinned = self.skinned();
         let surface = Surface::plain(CLAY.map(relievo::srgb::linear));
@@ -137,7 +137,7 @@ impl Crowd {
 }
 
 /// From afar, from near, from aside and from afar again: what a level lacks is skinned when a finer one is used, what it
-/// has is not skinned anew, and the picture is the twin's.
+/// has is not skinned anew, and the picture is the reference's.
 #[test]
 fn a_crowd_with_levels() {
     let crowd = Crowd::new();
@@ -147,7 +147,7 @@ fn a_crowd_with_levels() {
     let clay = Mips::of_color(RgbaImage::from_pixel(1, 1, image::Rgba([r, g, b, 255])));
     let clay: Albedo = ColorTexture::linear(gpu, &clay, true).expect("uploaded").into();
     let words = COUNT * Order::new(&model.skeleton).words();
-    let models = Buffer::from_slice(gpu, "models", models).expect("uploaded");
+    let models = Buffer::from_slice(gpu, "model matrices", models).expect("uploaded");
     let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
     let character = Character {
         model,
@@ -159,13 +159,15 @@ fn a_crowd_with_levels() {
         albedos: &[clay.clone(), clay],
     };
     scene.add(gpu, &character).expect("prepared");
-    let mut last = [Reduction::UNSEEN; COUNT];
+    let mut last = [InstanceLod::UNSEEN; COUNT];
     let mut used = [0; 5];
     for eye in [[1.0, 5.0, 22.0], [-0.5, 2.0, 5.0], [9.0, 3.0, -3.0], [1.0, 5.0, 22.0]].map(Vec3::from) {
         let view = crowd.view(eye);
-        let near = |place: &Affine| BEGINS.iter().any(|begin| (seen(&view, place).away - begin).abs() < 1e-3);
+        let near = |place: &Affine| {
+            BEGINS.iter().any(|begin| (seen(&view, place).projected_distance - begin).abs() < 1e-3)
+        };
         assert!(!places.iter().any(near), "too near to tell");
-        let now: Vec<Reduction> = places.iter().map(|place| lod(&view, place)).collect();
+        let now: Vec<InstanceLod> = places.iter().map(|place| lod(&view, place)).collect();
         scene.set_camera(gpu, view.clip_from_world, eye).expect("set");
         let target = Target::linear(gpu, SIZE).expect("allocated");
         gpu.run("skin", |encoder| scene.record(encoder)).expect("run");
@@ -173,7 +175,7 @@ fn a_crowd_with_levels() {
         let picture = LinearImage { size: SIZE, pixels: target.read_linear(gpu).expect("read") };
         let picture = picture.reduced(2).encoded();
 
-        let levels: Vec<u32> = now.iter().map(|reduction| reduction.level).collect();
+        let levels: Vec<u32> = now.iter().map(|instance_lod| instance_lod.level).collect();
         let difference =
             |levels: &[u32]| Difference::of(&picture, &crowd.drawn(&view, levels), Tolerance::IMAGE.levels);
         assert!(difference(&levels).within(Tolerance::IMAGE), "{eye}: {:?}", difference(&levels));
@@ -196,7 +198,7 @@ fn a_crowd_with_levels() {
             }
             // Nobody moves: only what comes into view, or gets finer.
             let clusters =
-                |of: &Reduction| if of.most == 0 { 0 } else { frame.clusters.level(of.level).clusters };
+                |of: &InstanceLod| if of.most == 0 { 0 } else { frame.clusters.level(of.level).clusters };
             let anew: u32 =
                 now.iter().zip(&last).map(|(now, last)| clusters(now).saturating_sub(clusters(last))).sum();
             assert_eq!(frame.active.dispatched.read_blocking(gpu).expect("read")[3], anew, "{eye}");

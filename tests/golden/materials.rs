@@ -1,20 +1,20 @@
-//! Materials of glTF: textures, colours, holes and what one sees through; on the device and in the twin.
+//! Materials of glTF: textures, colours, holes and what one sees through; on the device and in the reference.
 
 use image::RgbaImage;
 use relievo::animation::ModelMatrices;
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine};
 use relievo::gpu::Buffer;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
@@ -28,17 +28,18 @@ const SIZE: [u32; 2] = [2 * 160; 2];
 #[test]
 fn a_figure_in_its_materials() {
     let (gpu, model) = (gpu(), figure());
-    let models: Vec<Affine> = concat(&model.skeleton, &sample(&model.clips[0], 0.8, RotationPath::Slerp));
+    let models: Vec<Affine> =
+        local_to_model(&model.skeleton, &sample(&model.clips[0], 0.8, RotationPath::Slerp));
     let vertices = |mesh: &relievo::asset::Mesh| -> Vec<Vertex> {
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
-        skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL)
+        skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL)
     };
     let skinned: Vec<_> = model.meshes.iter().map(vertices).collect();
     let clip_from_model = framing(skinned.iter().flatten());
 
     let albedos = Albedo::of_meshes(&gpu, &model, &checks(&gpu), ColorTexture::linear).expect("uploaded");
     let mut crowd = CrowdScene::new(&gpu, LINEAR_FORMAT, Light::default()).expect("compiled");
-    let matrices = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
+    let matrices = Buffer::from_slice(&gpu, "model matrices", &models).expect("uploaded");
     let character = Character {
         model: &model,
         matrices: &ModelMatrices::new(&matrices),
@@ -63,8 +64,8 @@ fn a_figure_in_its_materials() {
         .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
         .collect();
     let scene = Scene { clip_from_model, light: Light::default(), size: SIZE };
-    let twin = scene.draw(&parts, SKY.map(|light| light as f32)).reduced(2).encoded();
-    let difference = Difference::of(&picture, &twin, Tolerance::IMAGE.levels);
+    let reference = scene.draw(&parts, SKY.map(|light| light as f32)).reduced(2).encoded();
+    let difference = Difference::of(&picture, &reference, Tolerance::IMAGE.levels);
     assert!(difference.within(Tolerance::IMAGE), "{difference:?}");
 
     if let Err(error) = check_golden("skin_materials", &picture, Tolerance::IMAGE) {

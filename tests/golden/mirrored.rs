@@ -19,7 +19,7 @@ use relievo::skinning::picture::Light;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::skin::reference::{skin, transformed};
-use relievo::skinning::{Blend, Reduction, Vertex};
+use relievo::skinning::{Blend, InstanceLod, Vertex};
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
 
@@ -67,7 +67,7 @@ fn reference(double_sided: bool, clip_from_world: Mat4) -> RgbaImage {
     let (model, bones) = posed(double_sided);
     let palette = palette_for(&model.skins[0], &bones, Blend::Linear);
     let mesh = &model.meshes[0];
-    let skinned = skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL);
+    let skinned = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
     let placed = places().map(|place| {
         let vertices: Vec<Vertex> = skinned.iter().map(|vertex| transformed(vertex, &place)).collect();
         let [x, y, z] = place.map(|row| Vec3::from_slice(&row));
@@ -94,7 +94,7 @@ fn drawn(gpu: &Gpu, double_sided: bool, clip_from_world: Mat4, is_by_hand: bool)
     let character = Character {
         model: &model,
         matrices: &ModelMatrices::new(
-            &Buffer::from_slice(gpu, "models", &bones.repeat(4)).expect("uploaded"),
+            &Buffer::from_slice(gpu, "model matrices", &bones.repeat(4)).expect("uploaded"),
         ),
         placements,
         fade: NO_FADE,

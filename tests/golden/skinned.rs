@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
 use relievo::animation::ModelMatrices;
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
@@ -13,9 +13,9 @@ use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::samples::creature;
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::{LevelRanges, LodPass, LodView, ball, standing};
+use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::lod::{LevelRanges, LodPass, LodView, bounding_sphere, placed};
 use relievo::skinning::picture::Light;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
@@ -64,9 +64,12 @@ pub fn limb() -> Model {
         positions.push((around * 0.28 + Vec3::X * along).to_array());
         normals.push(around.to_array());
         uv.push([along, side as f32 / SIDES as f32]);
-        let share = (along / 0.8 + 0.5).clamp(0.0, 1.0);
-        let share = share * share * (3.0 - 2.0 * share);
-        follows.push(vec![Influence { bone: 0, weight: 1.0 - share }, Influence { bone: 1, weight: share }]);
+        let fraction = (along / 0.8 + 0.5).clamp(0.0, 1.0);
+        let fraction = fraction * fraction * (3.0 - 2.0 * fraction);
+        follows.push(vec![
+            Influence { bone: 0, weight: 1.0 - fraction },
+            Influence { bone: 1, weight: fraction },
+        ]);
     }
     let rings = (0..RINGS - 1).flat_map(|ring| (0..SIDES).flat_map(move |side| quad(ring, side, 1)));
     let mesh = Mesh {
@@ -110,13 +113,13 @@ fn limbs(lower: Mat4) -> RgbaImage {
     let mut all = RgbaImage::new(size[0], 2 * size[1] / 2);
     for (row, blend) in (0..).zip([Blend::Linear, Blend::DualQuaternion]) {
         let pose = [rows(Mat4::IDENTITY), rows(lower)];
-        let models = Buffer::from_slice(&gpu, "models", &pose.repeat(3)).expect("uploaded");
+        let models = Buffer::from_slice(&gpu, "model matrices", &pose.repeat(3)).expect("uploaded");
         let matrices = ModelMatrices::new(&models);
         let frame = SkinFrame::new(&gpu, &model, 0, &matrices, 3, blend).expect("prepared");
-        let fades = [0.0, 0.5, 1.0].map(|fade| Reduction::fade(fade).expect("in range"));
-        frame.crowd.reductions.write(&gpu, &fades).expect("written");
+        let fades = [0.0, 0.5, 1.0].map(|fade| InstanceLod::fade(fade).expect("in range"));
+        frame.crowd.instance_lods.write(&gpu, &fades).expect("written");
         gpu.run("skin", |encoder| frame.record_all(encoder)).expect("run");
-        let places = [-2.2, 0.0, 2.2].map(|x| standing(Vec3::X * x, 0.0, 1.0));
+        let places = [-2.2, 0.0, 2.2].map(|x| placed(Vec3::X * x, 0.0, 1.0));
         let instances = SkinnedInstances {
             mesh: &frame.mesh,
             skinned: &frame.skinned,
@@ -166,15 +169,15 @@ fn a_crowd_near_and_far() {
         // The first row is behind the eye.
         let z = [9.0, 3.0, 0.0, -5.0, -12.0, -22.0][row];
         let at = Vec3::new(column as f32 * 1.5 - 3.75 + 0.3 * row as f32, 0.0, z);
-        standing(at, 0.5 * index as f32, 1.0)
+        placed(at, 0.5 * index as f32, 1.0)
     };
     let places: Vec<Affine> = (0..36).map(place).collect();
     let pose = |index: usize| {
         let time = (index as f32 * 0.618).fract() * walk.duration();
-        concat(&model.skeleton, &sample(walk, time, RotationPath::Slerp))
+        local_to_model(&model.skeleton, &sample(walk, time, RotationPath::Slerp))
     };
     let models: Vec<Affine> = (0..36).flat_map(pose).collect();
-    let models = Buffer::from_slice(&gpu, "models", &models).expect("uploaded");
+    let models = Buffer::from_slice(&gpu, "model matrices", &models).expect("uploaded");
     let matrices = ModelMatrices::new(&models);
     let skin = SkinFrame::new(&gpu, &model, 0, &matrices, 36, Blend::Linear).expect("prepared");
     let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
@@ -193,7 +196,8 @@ fn a_crowd_near_and_far() {
     let eye = Vec3::new(-1.0, 2.6, 7.0);
     let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.4, -4.0), Vec3::Y);
     let clip_from_world = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0) * look;
-    let (center, radius) = ball(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
+    let (center, radius) =
+        bounding_sphere(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
     let view = LodView {
         clip_from_world,
         eye,
@@ -207,12 +211,12 @@ fn a_crowd_near_and_far() {
     };
     let lod = LodPass::new(&gpu)
         .expect("compiled")
-        .prepare(&gpu, &view, &placements, &skin.crowd.reductions, &drawn, &scene.arguments)
+        .prepare(&gpu, &view, &placements, &skin.crowd.instance_lods, &drawn, &scene.arguments)
         .expect("prepared");
     let frame = || {
         gpu.run("frame", |encoder| {
             lod.record(encoder);
-            skin.record_moved(encoder);
+            skin.record_updated_bones(encoder);
         })
         .expect("run");
         skin.active.dispatched.read_blocking(&gpu).expect("read")[3] as usize
@@ -226,7 +230,7 @@ fn a_crowd_near_and_far() {
     // One bone of one instance: the clusters that follow it.
     let mut moved = vec![0; 36 * skin.mesh.mask_words];
     moved[14 * skin.mesh.mask_words] = 1 << 4;
-    skin.select.moved.write(&gpu, &moved).expect("written");
+    skin.select.updated_bones.write(&gpu, &moved).expect("written");
     assert!((1..20).contains(&frame()));
     check("skin_crowd", &draw(&gpu, &mut scene, clip_from_world, size));
 }

@@ -2,14 +2,14 @@
 
 use std::time::Instant;
 
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::mesh::{Options, Stopped, Surface, simplify};
 use relievo::samples::creature;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::Blend;
 use relievo::terrain::export::sha256;
@@ -25,9 +25,9 @@ fn walking(poses: usize) -> Shape {
     let vertices = morph(mesh, &mesh.weights);
     let pose = |at: usize| {
         let time = clip.duration() * at as f32 / poses as f32;
-        let models = concat(&model.skeleton, &sample(clip, time, RotationPath::Slerp));
+        let models = local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp));
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
-        let skinned = skin(&vertices, &mesh.influences, &palette, Reduction::FULL);
+        let skinned = skin(&vertices, &mesh.influences, &palette, InstanceLod::FULL);
         skinned.iter().map(|vertex| vertex.position).collect()
     };
     Shape { poses: (0..poses).map(pose).collect(), uv: mesh.uv.clone(), indices: mesh.indices.clone() }

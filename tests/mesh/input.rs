@@ -50,7 +50,7 @@ fn nothing_to_do_is_fine() {
     assert_eq!((simplified.stopped(), simplified.collapses().len()), (Stopped::Triangles, 0));
     assert_eq!(simplified.triangles(&shape.indices, 0), shape.indices);
     let loose = bare(vec![[0.0; 3]; 5], Vec::new());
-    assert_eq!(loose.simplified(&Options::default()).heirs(0), [0, 1, 2, 3, 4]);
+    assert_eq!(loose.simplified(&Options::default()).remap(0), [0, 1, 2, 3, 4]);
 }
 
 #[test]
@@ -104,18 +104,18 @@ fn levels_agree_with_heirs() {
     let points = shape.points();
     for surface in [shape.bare(), shape.with_uv()] {
         let simplified = simplify(&surface, &Options::default()).expect("valid");
-        let mut heirs: Vec<u32> = (0..shape.uv.len() as u32).collect();
+        let mut remap: Vec<u32> = (0..shape.uv.len() as u32).collect();
         for collapses in 0..=simplified.collapses().len() {
             if let Some(last) = collapses.checked_sub(1) {
                 for [from, to] in simplified.moved(last) {
-                    assert_eq!(heirs[*from as usize], *from, "it went before");
-                    assert_eq!(heirs[*to as usize], *to, "it is gone");
-                    heirs.iter_mut().filter(|heir| *heir == from).for_each(|heir| *heir = *to);
+                    assert_eq!(remap[*from as usize], *from, "it went before");
+                    assert_eq!(remap[*to as usize], *to, "it is gone");
+                    remap.iter_mut().filter(|target| *target == from).for_each(|target| *target = *to);
                 }
             }
-            assert_eq!(simplified.heirs(collapses), heirs);
+            assert_eq!(simplified.remap(collapses), remap);
             let level =
-                shape.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|at| heirs[corners[at] as usize]));
+                shape.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|at| remap[corners[at] as usize]));
             let is_left = |corners: &[u32; 3]| {
                 let [a, b, c] = corners.map(|corner| points[corner as usize]);
                 a != b && b != c && c != a

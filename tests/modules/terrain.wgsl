@@ -18,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         fold = zone_folded(fold, z, zones[z], height);
     }
     for (var z = 0u; z < 3u; z++) {
-        results[3u * id.x + z] = bitcast<u32>(zone_share(fold, z, zones[z], height, ADDITIVE));
+        results[3u * id.x + z] = bitcast<u32>(zone_fraction(fold, z, zones[z], height, ADDITIVE));
     }
     if id.x == 0u {
         let words = threefry2x32(vec2<u32>(17u, 4u), vec4<u32>(0u, 1u, 2u, 3u), vec4<u32>(5u));

@@ -1,10 +1,10 @@
 //! Where vertices, normals and tangents go.
 
 use glam::{Mat4, Vec3};
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::{dual, palette, palette_for};
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
 
@@ -22,11 +22,15 @@ fn vertex(position: Vec3, normal: Vec3, tangent: Vec3) -> Vertex {
 fn at_rest_nothing_moves() {
     let model = model();
     let mesh = &model.meshes[0];
-    let rest = relievo::animation::concat::reference::concat(&model.skeleton, &model.skeleton.rest());
+    let rest = relievo::animation::local_to_model::reference::local_to_model(
+        &model.skeleton,
+        &model.skeleton.rest(),
+    );
     let vertices = morph(mesh, &[]);
     for blend in [Blend::Linear, Blend::DualQuaternion] {
         let palette = palette_for(&model.skins[0], &rest, blend);
-        for (old, new) in vertices.iter().zip(skin(&vertices, &mesh.influences, &palette, Reduction::FULL)) {
+        for (old, new) in vertices.iter().zip(skin(&vertices, &mesh.influences, &palette, InstanceLod::FULL))
+        {
             assert!(close(old.position, new.position, 1e-5) && close(old.normal, new.normal, 1e-5));
             assert!(old.tangent.iter().zip(new.tangent).all(|(a, b)| (a - b).abs() < 1e-5));
         }
@@ -44,7 +48,7 @@ fn a_walking_creature_is_where_gltf_puts_it() {
             &morph(mesh, &[]),
             &mesh.influences,
             &Palette::Linear(palette(skin_of, &models)),
-            Reduction::FULL,
+            InstanceLod::FULL,
         );
         for (at, found) in found.iter().enumerate() {
             let mut expected = [0.0_f64; 3];
@@ -79,7 +83,7 @@ fn normals_and_tangents_stay_on_the_surface() {
         let normal = tangent.cross(Vec3::new(0.1, 0.7, 1.0)).normalize();
         let bitangent = normal.cross(tangent);
         let palette = Palette::Linear(vec![rows(matrix)]);
-        let found = skin(&[vertex(Vec3::ONE, normal, tangent)], &one, &palette, Reduction::FULL)[0];
+        let found = skin(&[vertex(Vec3::ONE, normal, tangent)], &one, &palette, InstanceLod::FULL)[0];
         let [t, b] = [tangent, bitangent].map(|along| matrix.transform_vector3(along));
         // Along the matrix's image of the normal's own side.
         let face = t.cross(b).normalize();
@@ -100,7 +104,7 @@ fn one_bone_does_the_same_in_both_kinds_of_blending() {
         let vertex = vertex(Vec3::new(0.3, -0.8, 1.1), Vec3::Y, Vec3::X);
         let affine = rows(matrix);
         let [linear, dual] = [Palette::Linear(vec![affine]), Palette::Dual(vec![dual(&affine)])]
-            .map(|palette| skin(&[vertex], &one, &palette, Reduction::FULL)[0]);
+            .map(|palette| skin(&[vertex], &one, &palette, InstanceLod::FULL)[0]);
         let size = matrix.to_cols_array().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
         assert!(close(linear.position, dual.position, 2e-6 * size), "{case}: {linear:?} {dual:?}");
         assert!(close(linear.normal, dual.normal, 1e-5), "{case}: {linear:?} {dual:?}");
@@ -116,7 +120,7 @@ fn twisted_limbs_keep_their_volume_with_dual_quaternions() {
     let affines = vec![rows(Mat4::IDENTITY), rows(twist)];
     let vertex = vertex(Vec3::new(0.5, 1.0, 0.0), Vec3::Y, Vec3::X);
     let radius = |palette: &Palette| {
-        let [_, y, z] = skin(&[vertex], &half, palette, Reduction::FULL)[0].position;
+        let [_, y, z] = skin(&[vertex], &half, palette, InstanceLod::FULL)[0].position;
         y.hypot(z)
     };
     let thin = radius(&Palette::Linear(affines.clone()));
@@ -137,7 +141,8 @@ fn nothing_becomes_nan() {
         let dual = Palette::Dual(affines.iter().map(dual).collect());
         for palette in [Palette::Linear(affines), dual] {
             for normal in [Vec3::Y, Vec3::ZERO] {
-                let found = skin(&[vertex(Vec3::ONE, normal, Vec3::X)], &both, &palette, Reduction::FULL)[0];
+                let found =
+                    skin(&[vertex(Vec3::ONE, normal, Vec3::X)], &both, &palette, InstanceLod::FULL)[0];
                 let all =
                     [found.position, found.normal, [found.tangent[0], found.tangent[1], found.tangent[2]]];
                 assert!(all.as_flattened().iter().all(|value| value.is_finite()), "{found:?}");

@@ -1,13 +1,13 @@
 //! Fewer influences with distance, seen on a walking creature.
 
 use glam::Vec3;
-use relievo::animation::Lens;
+use relievo::animation::Projection;
 use relievo::asset::{Influence, Influences};
 use relievo::skinning::Extent;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::palette;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::Vertex;
 
@@ -30,7 +30,7 @@ fn a_fade_does_not_pop() {
     // Where each bone alone would have the vertex.
     let alone = |at: usize, bone: u32| {
         let follows = Influences::new("w", 153, [vec![Influence { bone, weight: 1.0 }]]).expect("valid");
-        places(&skin(&vertices[at..=at], &follows, &whole, Reduction::FULL))[0]
+        places(&skin(&vertices[at..=at], &follows, &whole, InstanceLod::FULL))[0]
     };
     let bounds: Vec<f32> = (0..mesh.vertices())
         .map(|at| {
@@ -43,7 +43,7 @@ fn a_fade_does_not_pop() {
         })
         .collect();
     let at = |step: usize| {
-        let fade = Reduction::fade(step as f32 / STEPS as f32).expect("in range");
+        let fade = InstanceLod::fade(step as f32 / STEPS as f32).expect("in range");
         places(&skin(&vertices, &mesh.influences, &whole, fade))
     };
     let mut before = at(0);
@@ -59,8 +59,8 @@ fn a_fade_does_not_pop() {
     }
     assert!((1e-5..1e-3).contains(&largest), "{largest} m of 1.8 m");
     // Cutting off pops by far more.
-    let full = places(&skin(&vertices, &mesh.influences, &whole, Reduction::FULL));
-    let one = places(&skin(&vertices, &mesh.influences, &whole, Reduction::truncate(1).expect("in range")));
+    let full = places(&skin(&vertices, &mesh.influences, &whole, InstanceLod::FULL));
+    let one = places(&skin(&vertices, &mesh.influences, &whole, InstanceLod::truncate(1).expect("in range")));
     let pop = full.iter().zip(&one).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
     assert!(pop > 20.0 * largest, "{pop}");
     assert_eq!(before, one, "λ = 1 is rigid");
@@ -81,7 +81,7 @@ fn extents_hold_all_poses_and_fades() {
             let time = duration * (f32::from(at) * 0.618).fract();
             let palette = Palette::Linear(palette(&model.skins[0], &models(&model, name, time)));
             let places_at = |fade: f32| {
-                let fade = Reduction::fade(fade).expect("in range");
+                let fade = InstanceLod::fade(fade).expect("in range");
                 places(&skin(&unmorphed, &mesh.influences, &palette, fade))
             };
             let full = places_at(0.0);
@@ -108,26 +108,26 @@ fn ranges_keep_the_pixels() {
     let mesh = &model.meshes[0];
     let unmorphed = morph(mesh, &[]);
     let extent = Extent::new(&model, 0, &[0], 90).expect("valid");
-    let lens = Lens::new(1080, 1.047, 0.1);
+    let projection = Projection::new(1080, 1.047, 0.1);
     let mut largest = 0.0_f32;
     for (pixels, at) in
         [0.25, 0.5, 1.0, 2.0].into_iter().flat_map(|pixels| (0..12).map(move |at| (pixels, at)))
     {
-        let range = extent.fade_range(&lens, pixels);
+        let range = extent.fade_range(&projection, pixels);
         let depth = [4.0_f32, 9.0, 17.0, 40.0][at % 4];
         // In the middle, at an edge, in a corner.
         let across = [[0.0, 0.0], [960.0, 0.0], [960.0, 540.0]][at / 4];
-        let [x, y] = across.map(|edge| edge / lens.focal_pixels * depth);
+        let [x, y] = across.map(|edge| edge / projection.focal_pixels * depth);
         let middle = Vec3::new(x, y, depth);
         let time = model.clips[0].duration() * at as f32 / 12.0;
         let palette = Palette::Linear(palette(&model.skins[0], &models(&model, "walk", time)));
-        let screen = |reduction| {
-            let all = places(&skin(&unmorphed, &mesh.influences, &palette, reduction));
+        let screen = |instance_lod| {
+            let all = places(&skin(&unmorphed, &mesh.influences, &palette, instance_lod));
             let places = all.into_iter().map(|place| place - extent.center + middle);
-            places.map(|place| place.truncate() / place.z * lens.focal_pixels).collect::<Vec<_>>()
+            places.map(|place| place.truncate() / place.z * projection.focal_pixels).collect::<Vec<_>>()
         };
-        let fade = Reduction::at_distance(depth * depth / middle.length(), range).expect("in range");
-        let full = screen(Reduction::FULL);
+        let fade = InstanceLod::at_distance(depth * depth / middle.length(), range).expect("in range");
+        let full = screen(InstanceLod::FULL);
         for (full, faded) in full.into_iter().zip(screen(fade)) {
             let off = full.distance(faded) / pixels;
             // Places of thousands of pixels round.

@@ -5,15 +5,15 @@ use relievo::animation::frame::reference::Crowd;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
-use relievo::animation::{ClipSet, Frame, Gate, GateTable, Lens};
+use relievo::animation::{ClipSet, Frame, Gate, GateTable, Projection};
 use relievo::asset::keyframe::RotationPath;
-use relievo::asset::mesh::reaches;
+use relievo::asset::mesh::bone_radii;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Model};
 use relievo::skinning::clusters::Clusters;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::select::reference::{Now, Skinned, select};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::Blend;
@@ -30,7 +30,7 @@ struct Stage {
     set: ClipSet,
     order: Order,
     bounds: GateTable,
-    movers: GateTable,
+    animated_bones: GateTable,
 }
 
 impl Stage {
@@ -39,10 +39,10 @@ impl Stage {
         let clips: Vec<&Clip> = model.clips.iter().collect();
         let set = ClipSet::new(&clips).expect("one skeleton");
         let order = Order::new(&model.skeleton);
-        let reaches = reaches(model.skeleton.len(), &model.skins, &model.meshes);
-        let bounds = GateTable::of_bounds(&model.skeleton, &set, &clips, &reaches, RotationPath::Slerp);
-        let movers = GateTable::of_movers(&order, &set, &clips).expect("fits");
-        Self { bounds: bounds.expect("fits"), movers, set, order, model }
+        let bone_radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
+        let bounds = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp);
+        let animated_bones = GateTable::of_animated_bones(&order, &set, &clips).expect("fits");
+        Self { bounds: bounds.expect("fits"), animated_bones, set, order, model }
     }
 
     fn crowd<'a>(&'a self, table: &'a GateTable, instances: &[Instance]) -> Crowd<'a> {
@@ -52,15 +52,15 @@ impl Stage {
     fn vertices(&self, models: &[Affine]) -> Vec<Vertex> {
         let mesh = &self.model.meshes[0];
         let palette = palette_for(&self.model.skins[mesh.skin], models, Blend::Linear);
-        skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, Reduction::FULL)
+        skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, InstanceLod::FULL)
     }
 }
 
 /// The farthest that a vertex is from its place on screen, pixels.
-fn off_screen(lens: &Lens, place: [f32; 3], stale: &[Vertex], fresh: &[Vertex]) -> f64 {
+fn off_screen(projection: &Projection, place: [f32; 3], stale: &[Vertex], fresh: &[Vertex]) -> f64 {
     let screen = |vertex: &Vertex| {
         let [x, y, z] = std::array::from_fn(|i| f64::from(vertex.position[i]) + f64::from(place[i]));
-        [x / z, y / z].map(|at| at * f64::from(lens.focal_pixels))
+        [x / z, y / z].map(|at| at * f64::from(projection.focal_pixels))
     };
     let off = |(stale, fresh): (&Vertex, &Vertex)| {
         let ([ax, ay], [bx, by]) = (screen(stale), screen(fresh));
@@ -73,7 +73,7 @@ fn off_screen(lens: &Lens, place: [f32; 3], stale: &[Vertex], fresh: &[Vertex]) 
 #[test]
 fn no_vertex_is_further_off_than_the_pixels_allow() {
     let stage = Stage::new();
-    let lens = Lens::new(1080, 1.0, 0.1);
+    let projection = Projection::new(1080, 1.0, 0.1);
     let mut largest = 0.0_f64;
     for (case, pixels) in [0.25_f32, 0.5, 1.0, 2.0, 4.0, 8.0].into_iter().enumerate() {
         let play = |at: usize, clip: usize| {
@@ -82,9 +82,9 @@ fn no_vertex_is_further_off_than_the_pixels_allow() {
         };
         let instances: Vec<_> = (0..PLACES.len()).map(|at| play(at, at + case)).collect();
         let mut lazy = stage.crowd(&stage.bounds, &instances);
-        let mut full = stage.crowd(&stage.movers, &instances);
+        let mut full = stage.crowd(&stage.animated_bones, &instances);
         for (lod, place) in lazy.lods.iter_mut().zip(PLACES) {
-            lod.allowed = stage.bounds.units(lens.allowed(place, stage.bounds.radius(), pixels));
+            lod.allowed = stage.bounds.units(projection.allowed(place, stage.bounds.radius(), pixels));
             assert!(lod.allowed > 0, "{place:?} is too near");
         }
         let mut elapsed = 0.0;
@@ -101,7 +101,12 @@ fn no_vertex_is_further_off_than_the_pixels_allow() {
             let at = number as usize % PLACES.len();
             let own = at * stage.model.skeleton.len()..(at + 1) * stage.model.skeleton.len();
             let vertices = |models: &[Affine]| stage.vertices(&models[own.clone()]);
-            let off = off_screen(&lens, PLACES[at], &vertices(&lazy.models), &vertices(&full.models));
+            let off = off_screen(
+                &projection,
+                PLACES[at],
+                &vertices(&lazy.model_matrices),
+                &vertices(&full.model_matrices),
+            );
             assert!(off <= f64::from(pixels) + 0.01, "{pixels} allowed, {off} found, at {:?}", PLACES[at]);
             largest = largest.max(off / f64::from(pixels));
         }
@@ -123,9 +128,10 @@ fn clusters_without_a_dirty_bone_stay() {
     for number in 0..60_u32 {
         let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 };
         let work = crowd.advance(Choice::Gate(Gate::Bounded), &frame, number as f32 / 60.0);
-        let now = stage.vertices(&crowd.models);
-        let current = Now { moved: &work.dirty, reductions: &[Reduction::FULL], weights: &[] };
-        let last = Skinned { reduction: Reduction::FULL, ..Skinned::nothing(0) };
+        let now = stage.vertices(&crowd.model_matrices);
+        let current =
+            Now { updated_bones: &work.updated_bones, instance_lods: &[InstanceLod::FULL], weights: &[] };
+        let last = Skinned { instance_lod: InstanceLod::FULL, ..Skinned::nothing(0) };
         let chosen = select(&clusters, &current, &[last]);
         if let Some(before) = before.replace(now.clone()) {
             for (cluster, vertices) in clusters.order.chunks(64).enumerate() {

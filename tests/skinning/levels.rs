@@ -2,15 +2,15 @@
 //! in pixels.
 
 use glam::{Vec3, Vec4, camera};
-use relievo::animation::Lens;
+use relievo::animation::Projection;
 use relievo::asset::Model;
 use relievo::skinning::lod::reference::lod;
-use relievo::skinning::lod::{LevelRanges, LodView, standing};
+use relievo::skinning::lod::{LevelRanges, LodView, placed};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::palette;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Extent, MeshLevels, Reduction, add_levels, level_errors, own_levels, poses_of};
+use relievo::skinning::{Extent, InstanceLod, MeshLevels, add_levels, level_errors, own_levels, poses_of};
 
 use crate::shapes::{model, models};
 
@@ -53,10 +53,10 @@ fn each_mesh_changes_where_its_own_error_allows() {
     assert!(3 * left < model.meshes[0].indices.len(), "{left}");
 
     let extent = Extent::of_model(&model, &[0], poses_of(&model.clips[0]).expect("short")).expect("valid");
-    let lens = Lens::new(1080, 1.0, 0.1);
-    let begins = extent.level_ranges(&lens, PIXELS, errors.iter().copied());
-    let [near, far] = extent.fade_range(&lens, PIXELS);
-    let screen = |place: Vec3| place.truncate() / place.z * lens.focal_pixels;
+    let projection = Projection::new(1080, 1.0, 0.1);
+    let begins = extent.level_ranges(&projection, PIXELS, errors.iter().copied());
+    let [near, far] = extent.fade_range(&projection, PIXELS);
+    let screen = |place: Vec3| place.truncate() / place.z * projection.focal_pixels;
     let view = LodView {
         clip_from_world: camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 1e5),
         eye: Vec3::ZERO,
@@ -72,26 +72,26 @@ fn each_mesh_changes_where_its_own_error_allows() {
     for (at, begin) in begins.iter().enumerate() {
         // Straight ahead and to a side; just beyond where the level begins, which is where it shows most.
         let side = [Vec3::NEG_Z, Vec3::new(0.3, -0.35, -1.0).normalize()][at % 2];
-        let away = 1.0001 * begin / (side.z * side.z);
+        let projected_distance = 1.0001 * begin / (side.z * side.z);
         let turn = 2.4 * at as f32;
-        let turned = standing(Vec3::ZERO, turn, 1.0);
+        let turned = placed(Vec3::ZERO, turn, 1.0);
         let middle = Vec3::from(turned.map(|row| Vec3::from_slice(&row).dot(extent.center)));
-        let placement = standing(away * side - middle, turn, 1.0);
-        let reduction = lod(&view, &placement);
-        assert_eq!((reduction.most, reduction.level), (8, view.levels.at(1.0001 * begin)));
+        let placement = placed(projected_distance * side - middle, turn, 1.0);
+        let instance_lod = lod(&view, &placement);
+        assert_eq!((instance_lod.most, instance_lod.level), (8, view.levels.at(1.0001 * begin)));
         let time = model.clips[0].duration() * (0.618 * at as f32).fract();
         for (mesh, (own, found)) in model.meshes.iter().zip(own.iter().zip(&found)) {
             let bones = Palette::Linear(palette(&model.skins[0], &models(&model, "walk", time)));
-            let placed = |reduction: Reduction| -> Vec<Vec3> {
-                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &bones, reduction);
+            let placed = |instance_lod: InstanceLod| -> Vec<Vec3> {
+                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &bones, instance_lod);
                 let place = |position: [f32; 3]| {
                     let position = Vec3::from(position).extend(1.0);
                     Vec3::from(placement.map(|row| Vec4::from(row).dot(position)))
                 };
                 vertices.iter().map(|vertex| place(vertex.position)).collect()
             };
-            let (full, drawn) = (placed(Reduction::FULL), placed(reduction));
-            let Some(level) = (own[reduction.level as usize] as usize).checked_sub(1) else { continue };
+            let (full, drawn) = (placed(InstanceLod::FULL), placed(instance_lod));
+            let Some(level) = (own[instance_lod.level as usize] as usize).checked_sub(1) else { continue };
             for (vertex, wanted) in full.into_iter().enumerate() {
                 let nearest = found.nearest(level, vertex, wanted, |vertex| drawn[vertex as usize]);
                 let off = screen(nearest).distance(screen(wanted));

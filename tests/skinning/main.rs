@@ -1,4 +1,4 @@
-//! Skinning: the twin against geometry, and against code of its own in double precision.
+//! Skinning: the reference against geometry, and against code of its own in double precision.
 
 mod blending;
 mod fading;

@@ -5,7 +5,7 @@ use relievo::animation::{ClipSet, GateTable, Order};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, Part};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::{Bone, Skeleton};
-use relievo::asset::{MeshLevel, reaches};
+use relievo::asset::{MeshLevel, bone_radii};
 use relievo::asset::{Model, Transform};
 use relievo::skinning::add_levels;
 
@@ -134,13 +134,15 @@ fn models_of_any_size_have_the_same_levels() {
     let plain = plain();
     let wanted = levels(In::Units.scale(&plain, 1.0));
     assert!(wanted.len() > 6, "{} levels", wanted.len());
-    for (way, scale) in ALL.into_iter().flat_map(|way| [1.0 / 128.0, 64.0].map(|scale| (way, scale))) {
-        let found = levels(way.scale(&plain, scale));
+    for (fade_fraction, scale) in
+        ALL.into_iter().flat_map(|fade_fraction| [1.0 / 128.0, 64.0].map(|scale| (fade_fraction, scale)))
+    {
+        let found = levels(fade_fraction.scale(&plain, scale));
         let larger = |level: &MeshLevel| MeshLevel {
             indices: level.indices.clone(),
-            error: way.of_model(scale) * level.error,
+            error: fade_fraction.of_model(scale) * level.error,
         };
-        assert!(found.into_iter().eq(wanted.iter().map(larger)), "{scale} in {way:?}");
+        assert!(found.into_iter().eq(wanted.iter().map(larger)), "{scale} in {fade_fraction:?}");
     }
 }
 
@@ -149,13 +151,15 @@ fn models_of_any_size_have_the_same_levels() {
 fn scales_that_round_change_errors_alone() {
     let plain = plain();
     let wanted = levels(In::Units.scale(&plain, 1.0));
-    for (way, scale) in ALL.into_iter().flat_map(|way| [0.01, 100.0].map(|scale| (way, scale))) {
-        let found = levels(way.scale(&plain, scale));
-        assert_eq!(found.len(), wanted.len(), "{scale} in {way:?}");
+    for (fade_fraction, scale) in
+        ALL.into_iter().flat_map(|fade_fraction| [0.01, 100.0].map(|scale| (fade_fraction, scale)))
+    {
+        let found = levels(fade_fraction.scale(&plain, scale));
+        assert_eq!(found.len(), wanted.len(), "{scale} in {fade_fraction:?}");
         for (found, wanted) in found.iter().zip(&wanted) {
-            assert!(found.indices == wanted.indices, "{scale} in {way:?}");
-            let error = found.error / (way.of_model(scale) * wanted.error);
-            assert!((error - 1.0).abs() < 5e-5, "{error}: {scale} in {way:?}");
+            assert!(found.indices == wanted.indices, "{scale} in {fade_fraction:?}");
+            let error = found.error / (fade_fraction.of_model(scale) * wanted.error);
+            assert!((error - 1.0).abs() < 5e-5, "{error}: {scale} in {fade_fraction:?}");
         }
     }
 }
@@ -192,30 +196,33 @@ fn rest_poses_of_another_size_do_not_matter() {
 fn tables_of_models_of_any_size_are_the_same() {
     let plain = plain();
     // Below a node that does nothing, so that all have as many bones.
-    let tables = |way: In, scale: f32| {
-        let model = if way == In::Nodes {
-            way.scale(&plain, scale)
+    let tables = |fade_fraction: In, scale: f32| {
+        let model = if fade_fraction == In::Nodes {
+            fade_fraction.scale(&plain, scale)
         } else {
-            In::Nodes.scale(&way.scale(&plain, scale), 1.0)
+            In::Nodes.scale(&fade_fraction.scale(&plain, scale), 1.0)
         };
         let (skeleton, clips) = (&model.skeleton, [&model.clips[0]]);
         let (order, set) = (Order::new(skeleton), ClipSet::new(&clips).expect("valid"));
-        let reaches = reaches(skeleton.len(), &model.skins, &model.meshes);
+        let bone_radii = bone_radii(skeleton.len(), &model.skins, &model.meshes);
         let (weights, user) = (Weights::default(), vec![0.5; skeleton.len()]);
         let priorities = [Priorities::new(skeleton, clips[0], true, &weights, &user).expect("valid")];
         let path = RotationPath::Slerp;
         [
             GateTable::of_priorities(&order, &set, &clips, &priorities).expect("valid"),
-            GateTable::of_bounds(skeleton, &set, &clips, &reaches, path).expect("valid"),
-            GateTable::of_expectations(skeleton, &set, &clips, &reaches, path).expect("valid"),
+            GateTable::of_bounds(skeleton, &set, &clips, &bone_radii, path).expect("valid"),
+            GateTable::of_expectations(skeleton, &set, &clips, &bone_radii, path).expect("valid"),
         ]
     };
     let wanted = tables(In::Units, 1.0);
-    for (way, scale) in ALL.into_iter().flat_map(|way| [1.0 / 128.0, 64.0].map(|scale| (way, scale))) {
-        for (found, wanted) in tables(way, scale).iter().zip(&wanted) {
-            assert!(found.rows() == wanted.rows(), "{:?}: {scale} in {way:?}", wanted.kind());
+    for (fade_fraction, scale) in
+        ALL.into_iter().flat_map(|fade_fraction| [1.0 / 128.0, 64.0].map(|scale| (fade_fraction, scale)))
+    {
+        for (found, wanted) in tables(fade_fraction, scale).iter().zip(&wanted) {
+            assert!(found.rows() == wanted.rows(), "{:?}: {scale} in {fade_fraction:?}", wanted.kind());
         }
-        let radius = tables(way, scale)[1].radius() / (way.of_model(scale) * wanted[1].radius());
-        assert!((radius - 1.0).abs() < 1e-6, "{radius}: {scale} in {way:?}");
+        let radius =
+            tables(fade_fraction, scale)[1].radius() / (fade_fraction.of_model(scale) * wanted[1].radius());
+        assert!((radius - 1.0).abs() < 1e-6, "{radius}: {scale} in {fade_fraction:?}");
     }
 }

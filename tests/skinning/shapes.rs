@@ -1,6 +1,6 @@
 //! Meshes and poses that the tests share.
 
-use relievo::animation::concat::reference::concat;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::influences::{Influence, Influences};
@@ -15,7 +15,7 @@ pub fn model() -> Model {
 /// The creature's palette at a moment of a clip.
 pub fn models(model: &Model, clip: &str, time: f32) -> Vec<Affine> {
     let clip = model.clip(clip).expect("there");
-    concat(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
+    local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
 }
 
 pub fn rows(matrix: glam::Mat4) -> Affine {

@@ -67,8 +67,8 @@ fn in_f64(map: &HeightMap, method: Method, ray: &Ray, march: &March) -> Option<f
             let (mut start, mut end) = ((stop - 1.0) / steps, stop / steps);
             if method == Method::Occlusion {
                 let (over, below) = (above(start).max(0.0), (-above(end)).max(0.0));
-                let share = if over + below > 1e-12 { over / (over + below) } else { 1.0 };
-                return Some(start + share * (end - start));
+                let fraction = if over + below > 1e-12 { over / (over + below) } else { 1.0 };
+                return Some(start + fraction * (end - start));
             }
             for _ in 0..march.binary_steps {
                 let middle = 0.5 * (start + end);
@@ -149,7 +149,7 @@ fn most_bounds_are_narrow() {
         let mut bounds: Vec<f64> =
             scenes(method).iter().flat_map(|scene| scene.judged.iter().map(|judged| judged.texels)).collect();
         bounds.sort_unstable_by(f64::total_cmp);
-        let at = |share: f64| bounds[(share * bounds.len() as f64) as usize];
+        let at = |fraction: f64| bounds[(fraction * bounds.len() as f64) as usize];
         assert!(
             at(0.5) < 1e-3 && at(0.85) < 0.02,
             "{method:?}: half below {}, 85 of 100 below {}",

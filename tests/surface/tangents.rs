@@ -1,4 +1,4 @@
-//! Tangent frames of the twin against what calculus says, and what every mesh must get: orthonormal frames and
+//! Tangent frames of the reference against what calculus says, and what every mesh must get: orthonormal frames and
 //! never NaN.
 
 use std::f64::consts::TAU;

@@ -161,8 +161,8 @@ fn pad() {
     let gpu = gpu();
     let pass = PadPass::new(&gpu).expect("compiled");
     let own = |index| std::array::from_fn(|tile| (tile == 4).then_some(index));
-    let prepare = |reach, surrounds: &[[Option<usize>; 9]], parts: &[Fields], windows| {
-        pass.prepare(&gpu, reach, surrounds, parts, &buffer(&gpu, windows)).map(|_| ())
+    let prepare = |apron, surrounds: &[[Option<usize>; 9]], parts: &[Fields], windows| {
+        pass.prepare(&gpu, apron, surrounds, parts, &buffer(&gpu, windows)).map(|_| ())
     };
     let one = |width| fields(&gpu, width, 1);
     let (surrounds, two) = ([own(0), own(1)], [fields(&gpu, 5, 2)]);
@@ -173,9 +173,9 @@ fn pad() {
     refuses(prepare(1, &surrounds, &[one(5), one(9)], 98), &["parts[1].width = 9", "must be 5"]);
     refuses(prepare(1, &surrounds, &two, 97), &["windows = [97 elements]", "at least 98"]);
     refuses(prepare(1, &[[None; 9]], &two, 98), &["surrounds[0][4] = none"]);
-    refuses(prepare(5, &surrounds, &two, 450), &["reach = 5"]);
-    refuses(prepare(0, &surrounds, &[one(0)], 98), &["reach = 0"]);
-    refuses(prepare(0, &surrounds, &[], 98), &["reach = 0"]);
+    refuses(prepare(5, &surrounds, &two, 450), &["apron = 5"]);
+    refuses(prepare(0, &surrounds, &[one(0)], 98), &["apron = 0"]);
+    refuses(prepare(0, &surrounds, &[], 98), &["apron = 0"]);
 }
 
 #[test]
@@ -186,13 +186,13 @@ fn generation() {
     let height = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
     let scratch = HeightScratch::new(&gpu, &height, &config, 2, 1).expect("allocated");
     let points = HeightJob::output_points(&config, 2, 1);
-    let prepare = |reach, output| {
-        height.prepare(&gpu, &config, [2, reach], 0, &buffer(&gpu, output), &scratch).map(|_| ())
+    let prepare = |apron, output| {
+        height.prepare(&gpu, &config, [2, apron], 0, &buffer(&gpu, output), &scratch).map(|_| ())
     };
     assert!(prepare(1, points).is_ok());
     refuses(prepare(1, points - 1), &["output = [97 elements]", "at least 98"]);
     refuses(prepare(2, 2 * points), &["scratch = "]);
-    refuses(prepare(u32::MAX, points), &["reach = 4294967295: must be at most 4096"]);
+    refuses(prepare(u32::MAX, points), &["apron = 4294967295: must be at most 4096"]);
 
     let config = Config { border: Border::Wrap, ..config };
     let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");

@@ -19,7 +19,7 @@ struct Known {
     patch: [i32; 2],
     features: Vec<(i32, i32, Vec<f64>)>,
     feature_mode: String,
-    reach: u32,
+    apron: u32,
     post: Option<String>,
     order: Option<Vec<[i32; 2]>>,
     sha256: String,
@@ -43,10 +43,10 @@ fn heights(known: &Known) -> Vec<i32> {
     match post {
         "thermal" => {
             let (iterations, threshold) = argument.split_once(':').expect("iterations:threshold");
-            let reach: u32 = iterations.parse().expect("a number");
-            let mut window = generate(&config, &features, &patches, reach).swap_remove(at);
-            let mut width = Window { patch: known.patch, reach }.width(&config) as usize;
-            for _ in 0..reach {
+            let apron: u32 = iterations.parse().expect("a number");
+            let mut window = generate(&config, &features, &patches, apron).swap_remove(at);
+            let mut width = Window { patch: known.patch, apron }.width(&config) as usize;
+            for _ in 0..apron {
                 window = thermal(&window, width, threshold.parse().expect("a number"));
                 width -= 2;
             }
@@ -55,9 +55,9 @@ fn heights(known: &Known) -> Vec<i32> {
         "despike" => {
             let despike = Despike { threshold: argument.parse().expect("a number") };
             let recipe = Recipe { features, despike: Some(despike), ..Recipe::new(config) };
-            field(&recipe, &patches, known.reach).expect("valid").swap_remove(at)
+            field(&recipe, &patches, known.apron).expect("valid").swap_remove(at)
         }
-        _ => generate(&config, &features, &patches, known.reach).swap_remove(at),
+        _ => generate(&config, &features, &patches, known.apron).swap_remove(at),
     }
 }
 
@@ -67,7 +67,7 @@ fn sha256(heights: &[i32]) -> String {
 }
 
 #[test]
-fn twins_give_the_known_hashes() {
+fn references_give_the_known_hashes() {
     let all: Vec<Known> = serde_json::from_str(include_str!("known_heights.json")).expect("a list of cases");
     assert!(all.len() >= 90, "the list was cut: {}", all.len());
     let wrong: Vec<_> = (all.iter())

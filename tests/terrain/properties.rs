@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::terrain::blend::reference::zone_shares;
+use relievo::terrain::blend::reference::zone_fractions;
 use relievo::terrain::blend::{MapZone, WeightMode};
 use relievo::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset};
 use relievo::terrain::despike::Despike;
@@ -55,12 +55,12 @@ impl World {
         [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]]
     }
 
-    fn windows(&self, patches: &[[i32; 2]], reach: u32) -> Vec<Vec<i32>> {
-        generate(&self.config, &self.features(), patches, reach)
+    fn windows(&self, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<i32>> {
+        generate(&self.config, &self.features(), patches, apron)
     }
 
-    fn window(&self, reach: u32) -> Vec<i32> {
-        self.windows(&[self.patch], reach).remove(0)
+    fn window(&self, apron: u32) -> Vec<i32> {
+        self.windows(&[self.patch], apron).remove(0)
     }
 
     fn with_point(&self, place: [i32; 2], height: f64) -> Self {
@@ -174,17 +174,17 @@ proptest! {
     fn neighbours_agree_in_every_order(
         world in worlds(),
         order in Just([0, 1, 2, 3]).prop_shuffle(),
-        reach in 0..5_u32,
+        apron in 0..5_u32,
     ) {
         let block = world.block();
-        let shuffled = world.windows(&order.map(|index| block[index]), reach);
+        let shuffled = world.windows(&order.map(|index| block[index]), apron);
         let mut fields = vec![Vec::new(); 4];
         for (index, field) in order.into_iter().zip(shuffled) {
-            prop_assert!(world.windows(&[block[index]], reach)[0] == field, "alone, {index} is another");
+            prop_assert!(world.windows(&[block[index]], apron)[0] == field, "alone, {index} is another");
             fields[index] = field;
         }
         let edge = edge(&world.config);
-        prop_assert_eq!(shared_samples(&block, &fields, edge, reach), overlap(edge, reach));
+        prop_assert_eq!(shared_samples(&block, &fields, edge, apron), overlap(edge, apron));
     }
 
     #[test]
@@ -205,23 +205,23 @@ proptest! {
     }
 
     #[test]
-    fn a_patch_is_every_second_sample_of_the_next_larger_one(world in worlds(), reach in 0..5_u32) {
+    fn a_patch_is_every_second_sample_of_the_next_larger_one(world in worlds(), apron in 0..5_u32) {
         let fine = World {
             config: Config { patch_size: 2 * world.config.patch_size - 1, ..world.config.clone() },
             points: world.points.iter().map(|(place, height)| (place.map(|at| 2 * at), *height)).collect(),
             ..world.clone()
         };
-        let width = (edge(&fine.config) as u32 + 1 + 4 * reach) as usize;
-        let rows = fine.window(2 * reach);
+        let width = (edge(&fine.config) as u32 + 1 + 4 * apron) as usize;
+        let rows = fine.window(2 * apron);
         let every_second = rows.chunks(width).step_by(2).flat_map(|row| row.iter().copied().step_by(2));
-        prop_assert!(every_second.eq(world.window(reach)));
+        prop_assert!(every_second.eq(world.window(apron)));
     }
 
     #[test]
-    fn a_larger_window_holds_the_smaller(world in worlds(), reach in 0..9_u32, more in 1..150_u32) {
-        let width = world.config.patch_size + 2 * (reach + more);
-        let inner = cropped(&world.window(reach + more), width as usize, more as usize);
-        prop_assert!(inner == world.window(reach));
+    fn a_larger_window_holds_the_smaller(world in worlds(), apron in 0..9_u32, more in 1..150_u32) {
+        let width = world.config.patch_size + 2 * (apron + more);
+        let inner = cropped(&world.window(apron + more), width as usize, more as usize);
+        prop_assert!(inner == world.window(apron));
     }
 
     #[test]
@@ -260,17 +260,17 @@ proptest! {
     #[test]
     fn features_beyond_the_rings_change_nothing(
         world in worlds(),
-        reach in 0..70_u32,
+        apron in 0..70_u32,
         beyond in 1..130_i32,
         along in -200..264_i32,
         [flip, far] in any::<[bool; 2]>(),
     ) {
         let world = World { config: Config { coarse_levels: 0, ..world.config.clone() }, ..world };
         let edge = edge(&world.config);
-        let rings = (reach as i32 + edge + edge - 1) / edge;
+        let rings = (apron as i32 + edge + edge - 1) / edge;
         let outside = if far { (1 + rings) * edge + beyond } else { -rings * edge - beyond };
         let place = if flip { [outside, along] } else { [along, outside] };
-        prop_assert!(world.with_point(place, 100.0).window(reach) == world.window(reach));
+        prop_assert!(world.with_point(place, 100.0).window(apron) == world.window(apron));
     }
 }
 
@@ -567,23 +567,23 @@ proptest! {
 
     #[test]
     fn additive_shares_are_equation_3_6(zones in zones(), height in -300.0..300.0_f32) {
-        let shares = zone_shares(&zones, height, WeightMode::Additive);
-        prop_assert_eq!(shares.len(), zones.len());
-        for (share, zone) in shares.into_iter().zip(&zones) {
+        let fractions = zone_fractions(&zones, height, WeightMode::Additive);
+        prop_assert_eq!(fractions.len(), zones.len());
+        for (fraction, zone) in fractions.into_iter().zip(&zones) {
             let [min, max, height] = [zone.min, zone.max, height].map(f64::from);
             let weight = (((max - min) - (height - max).abs()) / (max - min)).max(0.0);
-            prop_assert!((f64::from(share) - weight).abs() < 1e-6, "{} is not {}", share, weight);
+            prop_assert!((f64::from(fraction) - weight).abs() < 1e-6, "{} is not {}", fraction, weight);
         }
     }
 
     #[test]
     fn normalized_shares_sum_to_one_everywhere(zones in zones(), height in -300.0..300.0_f32) {
-        let shares = zone_shares(&zones, height, WeightMode::Normalized);
-        let weights = zone_shares(&zones, height, WeightMode::Additive);
-        prop_assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
-        prop_assert!((shares.iter().copied().map(f64::from).sum::<f64>() - 1.0).abs() < 1e-6);
+        let fractions = zone_fractions(&zones, height, WeightMode::Normalized);
+        let weights = zone_fractions(&zones, height, WeightMode::Additive);
+        prop_assert!(fractions.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
+        prop_assert!((fractions.iter().copied().map(f64::from).sum::<f64>() - 1.0).abs() < 1e-6);
         if weights.iter().any(|weight| *weight > 0.0) {
-            prop_assert!(shares.iter().zip(weights).all(|(share, weight)| (*share > 0.0) == (weight > 0.0)));
+            prop_assert!(fractions.iter().zip(weights).all(|(fraction, weight)| (*fraction > 0.0) == (weight > 0.0)));
         }
     }
 
@@ -596,10 +596,10 @@ proptest! {
         let ends = |zone: &MapZone| if above { 2.0 * zone.max - zone.min } else { -zone.min };
         let outermost = zones.iter().map(ends).fold(f32::MIN, f32::max);
         let height = if above { outermost + beyond } else { -outermost - beyond };
-        let shares = zone_shares(&zones, height, WeightMode::Normalized);
-        let nearest = shares.iter().position(|share| *share == 1.0);
-        prop_assert_eq!(shares.iter().filter(|share| **share != 0.0).count(), 1);
-        prop_assert!(nearest.is_some_and(|index| outermost - ends(&zones[index]) < 1e-3), "{:?}", shares);
+        let fractions = zone_fractions(&zones, height, WeightMode::Normalized);
+        let nearest = fractions.iter().position(|fraction| *fraction == 1.0);
+        prop_assert_eq!(fractions.iter().filter(|fraction| **fraction != 0.0).count(), 1);
+        prop_assert!(nearest.is_some_and(|index| outermost - ends(&zones[index]) < 1e-3), "{:?}", fractions);
     }
 }
 

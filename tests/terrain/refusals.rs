@@ -498,16 +498,16 @@ fn windows_reach_no_further_than_the_patches_there_are() {
     for border in ["\"wrap\"", "{\"blend\": 5}"] {
         let recipe = Recipe::new(accepted(&[("border", border)]));
         assert_eq!(recipe.validate(&[[0, 0]], 32), Ok(()));
-        refuses(recipe.validate(&[[0, 0]], 33), &["reach = 33: ", "below patchSize = 33", "wrap"]);
+        refuses(recipe.validate(&[[0, 0]], 33), &["apron = 33: ", "below patchSize = 33", "wrap"]);
         let erosion = |iterations| Some(Thermal { iterations, ..Thermal::default() });
         let despike = Some(Despike { threshold: 1.0 });
         let recipe = |iterations| Recipe { despike, thermal: erosion(iterations), ..recipe.clone() };
         assert_eq!(recipe(30).validate(&[[0, 0]], 1), Ok(()));
-        refuses(recipe(31).validate(&[[0, 0]], 1), &["reach = 33: ", "below patchSize = 33"]);
+        refuses(recipe(31).validate(&[[0, 0]], 1), &["apron = 33: ", "below patchSize = 33"]);
     }
     let seamless = Recipe::new(accepted(&[]));
     assert_eq!(seamless.validate(&[[0, 0]], 4096), Ok(()));
-    refuses(seamless.validate(&[[0, 0]], 4097), &["reach = 4097: ", "at most 4096"]);
+    refuses(seamless.validate(&[[0, 0]], 4097), &["apron = 4097: ", "at most 4096"]);
 }
 
 #[test]

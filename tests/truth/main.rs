@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use relievo::animation::concat::reference::concat;
 use relievo::animation::instance::Wrap;
+use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
@@ -17,7 +17,7 @@ use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, Reduction, Vertex, add_levels};
+use relievo::skinning::{Blend, InstanceLod, Vertex, add_levels};
 
 /// How far a vertex or a joint may lie from where three.js has it, as a share of the size of what it belongs to: positions,
 /// keys and matrices are `f32` in files, and both multiply some ten of them, here in `f32`.
@@ -135,11 +135,11 @@ fn posed(model: &Model, moment: &Moment) -> (Vec<Affine>, Vec<Vec<Vertex>>) {
     });
     let pose =
         at.map_or_else(|| model.skeleton.rest(), |(_, clip, time)| sample(clip, time, RotationPath::Slerp));
-    let bones = concat(&model.skeleton, &pose);
+    let bones = local_to_model(&model.skeleton, &pose);
     let vertices = |mesh: &Mesh| {
         let weights = at.map_or_else(|| mesh.weights.clone(), |(clip, _, time)| mesh.weights_at(clip, time));
         let palette = palette_for(&model.skins[mesh.skin], &bones, Blend::Linear);
-        skin(&morph(mesh, &weights), &mesh.influences, &palette, Reduction::FULL)
+        skin(&morph(mesh, &weights), &mesh.influences, &palette, InstanceLod::FULL)
     };
     let meshes = model.meshes.iter().map(vertices).collect();
     (bones, meshes)

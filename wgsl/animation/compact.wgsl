@@ -1,6 +1,6 @@
 // From bits to lists: the steps of kernels/animation/compact.wgsl.
 import package::wgsl::animation::gated::bits::bits;
-import package::wgsl::animation::gating::PAIR_AHEAD;
+import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::dispatch::rows_of_workgroups;
 
 const WIDTH = 64u;
@@ -10,7 +10,7 @@ struct CompactParams {
     bones: u32,
     // Words of bits an instance.
     words: u32,
-    // Dispatches beyond the first that serve dirty instances.
+    // Dispatches beyond the first that serve updated instances.
     served: u32,
     // Most workgroups along x.
     most_groups: u32,
@@ -20,15 +20,15 @@ struct CompactParams {
 // Binding 14: the bits.
 // Bone, parent, slots of the subtree.
 @group(0) @binding(16) var<storage, read> slots: array<vec4<u32>>;
-@group(0) @binding(17) var<storage, read_write> dirty: array<u32>;
+@group(0) @binding(17) var<storage, read_write> updated_bones: array<u32>;
 // Active pairs of each instance, then of all before it.
 @group(0) @binding(18) var<storage, read_write> counts: array<u32>;
 // instance * bones + bone, with PAIR_AHEAD where it is sampled ahead.
 @group(0) @binding(19) var<storage, read_write> pairs: array<u32>;
 // Workgroups along x, y, z for a thread a pair; how many.
 @group(0) @binding(20) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
-@group(0) @binding(21) var<storage, read_write> dirty_instances: array<u32>;
-// Likewise for a thread a dirty instance; then, where w says how many, for as many threads a dirty instance.
+@group(0) @binding(21) var<storage, read_write> updated_instances: array<u32>;
+// Likewise for a thread a updated instance; then, where w says how many, for as many threads a updated instance.
 @group(0) @binding(22) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
 var<workgroup> sums: array<vec2<u32>, WIDTH>;
@@ -43,7 +43,7 @@ fn run(start: u32, end: u32) -> u32 {
 struct Spread {
     // Chosen slots.
     count: u32,
-    // The slot after the last dirty one.
+    // The slot after the last updated one.
     end: u32,
 }
 
@@ -62,7 +62,7 @@ fn spread_word(instance: u32, word: u32, chosen: u32, so_far: Spread) -> Spread 
         below |= run(bit, min(end - first, 32u));
         rest &= ~below;
     }
-    dirty[instance * compact_params.words + word] = below;
+    updated_bones[instance * compact_params.words + word] = below;
     return Spread(so_far.count + countOneBits(chosen), end);
 }
 
@@ -80,9 +80,9 @@ fn dispatch_of(threads: u32) -> vec3<u32> {
 
 // The instances of a lane of the only workgroup, of `width` lanes: from x to below y.
 fn instances_of(lane: u32, width: u32) -> vec2<u32> {
-    let share = (compact_params.instances + width - 1u) / width;
-    let first = min(lane * share, compact_params.instances);
-    return vec2<u32>(first, min(first + share, compact_params.instances));
+    let chunk = (compact_params.instances + width - 1u) / width;
+    let first = min(lane * chunk, compact_params.instances);
+    return vec2<u32>(first, min(first + chunk, compact_params.instances));
 }
 
 // Of one workgroup of at most WIDTH lanes.
@@ -103,7 +103,7 @@ fn scan(lane: u32, width: u32) {
         let count = counts[instance];
         counts[instance] = before.x;
         if count > 0u {
-            dirty_instances[before.y] = instance;
+            updated_instances[before.y] = instance;
         }
         before += vec2<u32>(count, u32(count > 0u));
     }

@@ -1,7 +1,7 @@
 // Which bones of an instance are sampled this frame, a bit each, from whole numbers alone: every device decides alike.
 import package::wgsl::animation::gated::bits::bits;
-import package::wgsl::animation::gating::{Lod, OMEGA_ONE, PHASE_BLENDED, PHASE_FORCED, PHASE_HIDDEN, Phase, fraction_of, is_ahead, verdict_of};
-import package::wgsl::animation::motion::{motion_at, motion_between, share_of};
+import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
+import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
 
 // One of the constants below.
 override MODE: u32 = 0;
@@ -32,14 +32,14 @@ struct GateParams {
 
 @group(0) @binding(9) var<uniform> gate_params: GateParams;
 // Of each clip: its row of periods, then a bit for each bone that moves in it.
-@group(0) @binding(10) var<storage, read> movers: array<u32>;
+@group(0) @binding(10) var<storage, read> animated_bones: array<u32>;
 // Priorities, four a vector; or for each bone the sum of motion and its rise, in a clip's last row that of the whole clip
 // and what the bone is granted.
 @group(0) @binding(11) var<storage, read> table: array<vec2<u32>>;
 // For each bone, the sum of motion when it was sampled last.
 @group(0) @binding(12) var<storage, read_write> sampled: array<u32>;
 // For each bone that others than the next hang below, what it leaves of the allowed way.
-@group(0) @binding(13) var<storage, read_write> kept: array<u32>;
+@group(0) @binding(13) var<storage, read_write> remaining: array<u32>;
 
 // A round of a multiplicative hash (Wellons' "lowbias32").
 fn scramble(word: u32) -> u32 {
@@ -54,7 +54,7 @@ fn is_skipped(period: u32, ticks: u32) -> bool {
     return period <= gate_params.frame_ticks || ticks % period < gate_params.frame_ticks;
 }
 
-fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, phase: Phase) -> u32 {
+fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_clock: ClipClock) -> u32 {
     if omega >= OMEGA_ONE {
         return candidates;
     }
@@ -66,7 +66,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, phase: Ph
         let bit = firstTrailingBit(rest);
         rest &= rest - 1u;
         let slot = first + bit;
-        let four = table[phase.row * gate_params.stride + slot / 4u];
+        let four = table[clip_clock.row * gate_params.stride + slot / 4u];
         let two = select(four.x, four.y, (slot & 2u) != 0u);
         let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
         // Of 65536; and the period that it stands for.
@@ -111,9 +111,9 @@ const NO_PARENT = 0xffffffffu;
 const EVERYTHING = 1u << 30u;
 // Of what a bone is granted: above 8 bits its share of what is left, and in the lowest five what rounding may hide.
 const STARTS = 32u;
-const KEPT = 64u;
+const REMAINING = 64u;
 
-fn hidden_of(granted: u32) -> u32 {
+fn quantization_slack_of(granted: u32) -> u32 {
     return (1u << (granted & 31u)) >> 1u;
 }
 
@@ -124,9 +124,9 @@ struct Chosen {
 }
 
 // Of one instance.
-struct Way {
+struct AccumulatedMotion {
     allowed: u32,
-    phase: Phase,
+    clip_clock: ClipClock,
     // The clip's last row.
     last_row: u32,
 }
@@ -135,12 +135,12 @@ struct Way {
 // One that missed more is sampled, and leaves them everything; or, where it moves no more than its share until then, it is
 // sampled ahead: it is off by as much now, and stays for twice as long. `asked`: those that are sampled whatever they
 // missed; so are all where nothing may be missed. `left`: what the bone before left.
-fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, left: ptr<function, u32>) -> Chosen {
-    let forced = asked | select(0u, candidates, way.allowed == 0u);
-    let row = way.phase.row * gate_params.stride + first;
-    let ahead_row = way.phase.ahead_row * gate_params.stride + first;
-    let may_lead = is_ahead(way.phase);
-    let last = way.last_row * gate_params.stride + first;
+fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
+    let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
+    let row = accumulated.clip_clock.row * gate_params.stride + first;
+    let ahead_row = accumulated.clip_clock.ahead_row * gate_params.stride + first;
+    let may_lead = is_ahead(accumulated.clip_clock);
+    let last = accumulated.last_row * gate_params.stride + first;
     let own = instance * gate_params.bones;
     var chosen = Chosen(forced, 0u);
     var rest = candidates | forced;
@@ -149,26 +149,26 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, l
         rest &= rest - 1u;
         let whole = table[last + bit];
         if (whole.y & STARTS) != 0u {
-            let above = table[(gate_params.first_above + way.phase.clip) * gate_params.stride + first + bit].x;
+            let above = table[(gate_params.first_above + accumulated.clip_clock.clip) * gate_params.stride + first + bit].x;
             if above == NO_PARENT {
-                *left = way.allowed;
+                *left = accumulated.allowed;
             } else {
-                *left = kept[own + above];
+                *left = remaining[own + above];
             }
         }
         let at = own + first + bit;
-        let hidden = hidden_of(whole.y);
-        let share = share_of(*left, whole.y >> 8u);
-        let now = motion_at(table[row + bit], fraction_of(way.phase));
-        let missed = motion_between(now, sampled[at], whole.x) + hidden;
+        let quantization_slack = quantization_slack_of(whole.y);
+        let own_budget = scale_by_fraction(*left, whole.y >> 8u);
+        let now = motion_at(table[row + bit], fraction_of(accumulated.clip_clock));
+        let missed = motion_between(now, sampled[at], whole.x) + quantization_slack;
         let is_forced = (forced & (1u << bit)) != 0u;
-        if is_forced || missed > share {
+        if is_forced || missed > own_budget {
             chosen.bits |= 1u << bit;
             var stored = now;
             if may_lead && !is_forced {
-                let later = motion_at(table[ahead_row + bit], way.phase.ahead_fraction);
-                let early = motion_between(later, now, whole.x) + hidden;
-                if early <= share {
+                let later = motion_at(table[ahead_row + bit], accumulated.clip_clock.ahead_fraction);
+                let early = motion_between(later, now, whole.x) + quantization_slack;
+                if early <= own_budget {
                     chosen.ahead |= 1u << bit;
                     stored = later;
                     *left -= early;
@@ -178,34 +178,34 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, way: Way, l
         } else {
             *left -= missed;
         }
-        if (whole.y & KEPT) != 0u {
-            kept[at] = *left;
+        if (whole.y & REMAINING) != 0u {
+            remaining[at] = *left;
         }
     }
     return chosen;
 }
 
 // Up to 32 bones of one instance. BOUNDED takes words in their order: `left` is what the one before left.
-fn gate_word(instance: u32, word: u32, lod: Lod, phase: Phase, left: ptr<function, u32>) -> Chosen {
+fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: ptr<function, u32>) -> Chosen {
     let first = 32u * word;
-    let verdict = verdict_of(phase);
-    if verdict == PHASE_HIDDEN {
+    let reason = update_reason_of(clip_clock);
+    if reason == UPDATE_REASON_HIDDEN {
         return Chosen(0u, 0u);
     }
-    let record = phase.clip * (gate_params.words + 1u);
+    let record = clip_clock.clip * (gate_params.words + 1u);
     let all = 0xffffffffu >> (32u - min(gate_params.bones - first, 32u));
-    let candidates = select(movers[record + 1u + word], all, verdict == PHASE_BLENDED);
+    let candidates = select(animated_bones[record + 1u + word], all, reason == UPDATE_REASON_BLENDED);
     // Sums of motion know of one clip alone.
-    let forced = select(0u, all, verdict >= PHASE_FORCED);
+    let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
     var chosen = candidates;
     if MODE == BOUNDED {
-        let way = Way(min(lod.allowed, EVERYTHING - 1u), phase, movers[record]);
-        return by_motion(instance, first, candidates, forced, way, left);
+        let accumulated = AccumulatedMotion(min(lod.allowed, EVERYTHING - 1u), clip_clock, animated_bones[record]);
+        return by_motion(instance, first, candidates, forced, accumulated, left);
     }
-    if verdict == PHASE_FORCED {
+    if reason == UPDATE_REASON_FORCED {
         chosen = all;
     } else if MODE == SKIP_PERIOD {
-        chosen = by_priority(instance, first, candidates, lod.omega, phase);
+        chosen = by_priority(instance, first, candidates, lod.omega, clip_clock);
     } else if MODE == UNIFORM {
         chosen = all_or_none(instance, candidates, lod.omega);
     } else if MODE == RANDOM {

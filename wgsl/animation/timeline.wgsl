@@ -4,7 +4,7 @@
 
 // Key and, as bits, fraction: of the timeline whose first time and number of keys are given. The last of equal times
 // counts.
-fn place(first: u32, keys: u32, time: f32) -> vec2<u32> {
+fn keyframe_cursor(first: u32, keys: u32, time: f32) -> vec2<u32> {
     let last = keys - 1u;
     let start = times[first];
     if time < start {

@@ -1,7 +1,7 @@
 // Draws height fields straight from their heights (B section 3.3.1, tables 4.7 and 4.8): a triangle strip for
 // each row of cells, zone textures blended by height, a directional light. `WIREFRAME` draws edges instead.
 import package::wgsl::terrain::slope::slope_normal;
-import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_share};
+import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 import package::wgsl::terrain::light::{Light, lit};
 
 override WIREFRAME: bool = false;
@@ -94,8 +94,8 @@ fn fragment(in: Vertex) -> @location(0) vec4<f32> {
     }
     var albedo = vec3<f32>(0.0);
     for (var z = 0u; z < view.zone_count; z++) {
-        let share = zone_share(fold, z, zones[z], in.height, view.additive != 0u);
-        albedo += share * textureSampleGrad(textures, texture_sampler, in.uv, z, uv_dx, uv_dy).rgb;
+        let fraction = zone_fraction(fold, z, zones[z], in.height, view.additive != 0u);
+        albedo += fraction * textureSampleGrad(textures, texture_sampler, in.uv, z, uv_dx, uv_dy).rgb;
     }
     return vec4<f32>(lit(view.light, normalize(in.normal), albedo), 1.0);
 }

@@ -4,8 +4,8 @@ import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, Surf
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
 // Bounds of what a march may ask for.
-const SURFACE_MOST_STEPS: u32 = 1024u;
-const SURFACE_MOST_BINARY: u32 = 24u;
+const SURFACE_MAX_STEPS: u32 = 1024u;
+const SURFACE_MAX_BINARY: u32 = 24u;
 
 // Where a linear search stopped: the last point above the surface, the first at or under it, and the heights of
 // the surface at both.
@@ -21,7 +21,7 @@ struct SurfaceBracket {
 fn surface_steps(march: SurfaceMarch, cosine: f32) -> u32 {
     let low = f32(march.min_steps);
     let steps = ceil(low + (f32(march.max_steps) - low) * (1.0 - min(cosine, 1.0)));
-    return clamp(u32(steps), 1u, SURFACE_MOST_STEPS);
+    return clamp(u32(steps), 1u, SURFACE_MAX_STEPS);
 }
 
 // Steps of equal length from the top until a point is at or under the surface.
@@ -29,7 +29,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     let steps = surface_steps(march, ray.cosine);
     let width = 1.0 / f32(steps);
     var bracket = SurfaceBracket(0.0, 1.0, 0.0, 0.0, 0u);
-    for (var step = 1u; step <= SURFACE_MOST_STEPS; step++) {
+    for (var step = 1u; step <= SURFACE_MAX_STEPS; step++) {
         // The bottom is at or under every surface, so the last step always stops.
         let parameter = select(f32(step) * width, 1.0, step >= steps);
         let height = surface_height(heights, surface_at(ray, parameter), march.mip, march.address);
@@ -61,7 +61,7 @@ fn surface_narrowed(
     var low = above;
     var high = under;
     var loads = samples;
-    for (var step = 0u; step < min(march.binary_steps, SURFACE_MOST_BINARY); step++) {
+    for (var step = 0u; step < min(march.binary_steps, SURFACE_MAX_BINARY); step++) {
         let middle = 0.5 * (low + high);
         let height = surface_height(heights, surface_at(ray, middle), march.mip, march.address);
         loads += SURFACE_BILINEAR;
@@ -87,7 +87,7 @@ fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMa
     let over = max(1.0 - bracket.above - bracket.height_above, 0.0);
     let below = max(bracket.height_under - (1.0 - bracket.under), 0.0);
     // The share of the segment that lies above; with nothing on either side, its end.
-    let share = select(1.0, over / max(over + below, 1e-12), over + below > 1e-12);
-    let parameter = bracket.above + share * (bracket.under - bracket.above);
+    let fraction = select(1.0, over / max(over + below, 1e-12), over + below > 1e-12);
+    let parameter = bracket.above + fraction * (bracket.under - bracket.above);
     return surface_point(ray, parameter, bracket.samples, SURFACE_HIT);
 }

@@ -3,7 +3,7 @@
 // the surface rises above the way to the light, the nearer the wider the penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;
-import package::wgsl::surface::linear::SURFACE_MOST_STEPS;
+import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
 
 // What heights may differ by before a point shades itself, of the relief's depth.
 const SURFACE_SHADOW_BIAS: f32 = 0.005;
@@ -35,12 +35,12 @@ fn surface_soft_shadow(
     start.height = max(hit.height, own);
     let ray = surface_light_ray(start, light, scale);
     let rise = 1.0 - start.height;
-    let count = clamp(steps, 1u, SURFACE_MOST_STEPS);
+    let count = clamp(steps, 1u, SURFACE_MAX_STEPS);
     var shade = 0.0;
     for (var step = 1u; step <= count; step++) {
         // Denser near the point, where what rises casts the sharpest shadow.
-        let share = f32(step) / f32(count + 1u);
-        let travelled = share * share;
+        let fraction = f32(step) / f32(count + 1u);
+        let travelled = fraction * fraction;
         let parameter = rise * (1.0 - travelled);
         let height = surface_height(heights, ray.origin + parameter * ray.slope, march.mip, march.address);
         let excess = height - (1.0 - parameter) - SURFACE_SHADOW_BIAS;

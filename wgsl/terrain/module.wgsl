@@ -1,7 +1,7 @@
-// Terrain: zone weights for materials (`zone_fold`, `zone_folded`, `zone_share`), normals, light, and the exact integers
+// Terrain: zone weights for materials (`zone_fold`, `zone_folded`, `zone_fraction`), normals, light, and the exact integers
 // that heights are made of. `build.rs` joins this file and what it imports, for shaders that are not composed with
 // WESL: put it before your own code.
-import package::wgsl::terrain::zones::{Zone, ZoneFold, zone_fold, zone_folded, zone_share, zone_weight};
+import package::wgsl::terrain::zones::{Zone, ZoneFold, zone_fold, zone_folded, zone_fraction, zone_weight};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::light::{Light, lit};
 import package::wgsl::terrain::offset::{OFFSET_GAUSSIAN, OFFSET_POSITIVE, OFFSET_SIGNED, height_offset};

@@ -43,7 +43,7 @@ fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold 
 
 // The zone's part of the colour, 0 to 1. Normalized shares sum to 1, and where all weights are 0 the nearest zone
 // has 1; additive ones are the weights as they are.
-fn zone_share(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
+fn zone_fraction(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
     let weight = zone_weight(zone, height);
     if additive {
         return weight;

@@ -51,7 +51,7 @@ pub struct Active {
     /// of them that are sampled ahead. Written by a gate, or by the caller.
     pub bits: Buffer<u32>,
     /// Likewise: those that are concatenated.
-    pub dirty: Buffer<u32>,
+    pub updated_bones: Buffer<u32>,
     /// The pairs that are sampled.
     pub pairs: ActivePairs,
     /// Instances with an active bone.
@@ -78,14 +78,14 @@ impl Active {
         let instances = crowd.len();
         let words = order.words();
         let chains = order.levels.windows(2).map(|level| [0, 1, 1, level[1] - level[0]]);
-        let places = [0, 1, 1, (crowd.places.len() / crowd.len()) as u32];
+        let cursors = [0, 1, 1, (crowd.cursors.len() / crowd.len()) as u32];
         let dispatches: Vec<[u32; 4]> =
-            std::iter::once([0, 1, 1, 0]).chain(chains).chain(std::iter::once(places)).collect();
+            std::iter::once([0, 1, 1, 0]).chain(chains).chain(std::iter::once(cursors)).collect();
         Ok(Self {
             bits: Buffer::new(gpu, "active bits", 2 * instances * words)?,
-            dirty: Buffer::new(gpu, "dirty bits", instances * words)?,
+            updated_bones: Buffer::new(gpu, "updated bones", instances * words)?,
             pairs: ActivePairs::new(gpu, crowd)?,
-            instances: Buffer::new(gpu, "dirty instances", instances)?,
+            instances: Buffer::new(gpu, "updated instances", instances)?,
             dispatches: Buffer::from_slice(gpu, "dispatches", &dispatches)?,
             slots: Buffer::from_slice(gpu, "slots", &order.slots)?,
             counts: Buffer::new(gpu, "counts", instances)?,

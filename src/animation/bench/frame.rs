@@ -5,13 +5,13 @@ use std::hint::black_box;
 use super::plain_soa::PlainSoa;
 use super::{ELAPSED, Scene};
 use crate::Error;
-use crate::animation::concat::reference::concat_into;
-use crate::animation::concat::{ConcatJob, ConcatPass, Walk};
-use crate::animation::place::reference::places_into;
-use crate::animation::place::{PlaceJob, PlacePass};
+use crate::animation::keyframe_cursor::reference::cursors_into;
+use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use crate::animation::local_to_model::reference::local_to_model_into;
+use crate::animation::local_to_model::{LocalToModelJob, LocalToModelPass, Walk};
 use crate::animation::sample::SamplePass;
 use crate::animation::sample::reference::sample_set_into;
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 use crate::baseline::gather::Reads;
@@ -19,32 +19,36 @@ use crate::gpu::{Gpu, Job};
 
 /// A frame of the kernels.
 pub struct DeviceFrame {
-    place: PlaceJob,
+    cursor: KeyframeCursorJob,
     sample: Job,
-    concat: ConcatJob,
+    local_to_model: LocalToModelJob,
     copies: [Job; 2],
 }
 
 impl DeviceFrame {
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
-        let place = PlacePass::new(gpu)?.prepare(gpu, &scene.clips, &scene.crowd)?;
-        place.set(gpu, ELAPSED)?;
+        let cursor = KeyframeCursorPass::new(gpu)?.prepare(gpu, &scene.clips, &scene.crowd)?;
+        cursor.set(gpu, ELAPSED)?;
         Ok(Self {
-            place,
+            cursor,
             sample: SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &scene.crowd)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &scene.skeleton, &scene.crowd)?,
+            local_to_model: LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(
+                gpu,
+                &scene.skeleton,
+                &scene.crowd,
+            )?,
             copies: [scene.gathered(gpu, Reads::Everything)?, scene.copied(gpu)?],
         })
     }
 
     pub fn set(&self, gpu: &Gpu) -> Result<(), Error> {
-        self.place.set(gpu, ELAPSED)
+        self.cursor.set(gpu, ELAPSED)
     }
 
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.place.record(encoder);
+        self.cursor.record(encoder);
         self.sample.record(encoder);
-        self.concat.record(encoder);
+        self.local_to_model.record(encoder);
     }
 
     pub fn record_copies(&self, encoder: &mut wgpu::CommandEncoder) {
@@ -52,31 +56,32 @@ impl DeviceFrame {
     }
 }
 
-/// A frame of the twins.
-pub struct TwinFrame {
-    places: Vec<Place>,
+/// A frame of the references.
+pub struct ReferenceFrame {
+    cursors: Vec<KeyframeCursor>,
     locals: Vec<Transform>,
-    models: Vec<Affine>,
+    model_matrices: Vec<Affine>,
 }
 
-impl TwinFrame {
+impl ReferenceFrame {
     pub fn new(scene: &Scene) -> Self {
         Self {
-            places: scene.places.clone(),
+            cursors: scene.cursors.clone(),
             locals: vec![Transform::IDENTITY; scene.skeleton.len()],
-            models: vec![AFFINE_IDENTITY; scene.pairs()],
+            model_matrices: vec![AFFINE_IDENTITY; scene.pairs()],
         }
     }
 
     pub fn compute(&mut self, scene: &Scene) {
-        let Self { places, locals, models } = self;
-        places_into(&scene.set, &scene.instances, ELAPSED, places);
+        let Self { cursors, locals, model_matrices } = self;
+        cursors_into(&scene.set, &scene.instances, ELAPSED, cursors);
         let room = scene.set.timelines_a_clip();
-        let instances = scene.instances.chunks(1).zip(places.chunks(room));
-        for ((instance, places), models) in instances.zip(black_box(models).chunks_mut(scene.skeleton.len()))
+        let instances = scene.instances.chunks(1).zip(cursors.chunks(room));
+        for ((instance, cursors), model_matrices) in
+            instances.zip(black_box(model_matrices).chunks_mut(scene.skeleton.len()))
         {
-            sample_set_into(&scene.set, instance, places, RotationPath::Slerp, locals);
-            concat_into(&scene.skeleton, locals, models);
+            sample_set_into(&scene.set, instance, cursors, RotationPath::Slerp, locals);
+            local_to_model_into(&scene.skeleton, locals, model_matrices);
         }
     }
 }
@@ -84,24 +89,26 @@ impl TwinFrame {
 /// A frame of the opponent.
 pub struct PlainFrame {
     plain: PlainSoa,
-    places: Vec<Place>,
+    cursors: Vec<KeyframeCursor>,
     locals: Vec<[f32; 8]>,
-    models: Vec<Affine>,
+    model_matrices: Vec<Affine>,
 }
 
 impl PlainFrame {
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let plain = PlainSoa::new(&scene.skeleton, &scene.set)?;
-        let (places, locals) = (scene.places.clone(), plain.locals());
-        Ok(Self { plain, places, locals, models: vec![AFFINE_IDENTITY; scene.pairs()] })
+        let (cursors, locals) = (scene.cursors.clone(), plain.locals());
+        Ok(Self { plain, cursors, locals, model_matrices: vec![AFFINE_IDENTITY; scene.pairs()] })
     }
 
     pub fn compute(&mut self, scene: &Scene) {
-        let Self { plain, places, locals, models } = self;
-        places_into(&scene.set, &scene.instances, ELAPSED, places);
-        for (place, models) in places.iter().zip(black_box(models).chunks_mut(scene.skeleton.len())) {
-            plain.sample(*place, locals);
-            plain.concat(locals, models);
+        let Self { plain, cursors, locals, model_matrices } = self;
+        cursors_into(&scene.set, &scene.instances, ELAPSED, cursors);
+        for (cursor, model_matrices) in
+            cursors.iter().zip(black_box(model_matrices).chunks_mut(scene.skeleton.len()))
+        {
+            plain.sample(*cursor, locals);
+            plain.local_to_model(locals, model_matrices);
         }
     }
 }

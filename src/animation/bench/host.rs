@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use super::Scene;
-use super::frame::{DeviceFrame, PlainFrame, TwinFrame};
+use super::frame::{DeviceFrame, PlainFrame, ReferenceFrame};
 use crate::Error;
 use crate::asset::transform::AFFINE_IDENTITY;
 use crate::harness::{Backend, Bench, Contender};
@@ -30,7 +30,7 @@ fn upload(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
             Ok(gpu.run("upload", |_| ())?)
         }),
         Contender::both(Backend::Copy, || Ok(gpu.run("copy", |encoder| copied.record(encoder))?)),
-        Contender::host(Backend::Twin, || black_box(&mut there).copy_from_slice(&scene.instances)),
+        Contender::host(Backend::Reference, || black_box(&mut there).copy_from_slice(&scene.instances)),
     ];
     let case = format!("{count} × 153, upload of instances");
     bench.case(case, (count, "instance"), 32 * count as u64, contenders)
@@ -40,14 +40,14 @@ fn dispatch(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pairs = scene.pairs();
     let frame = DeviceFrame::new(gpu, scene)?;
-    let (mut twin, mut plain) = (TwinFrame::new(scene), PlainFrame::new(scene)?);
+    let (mut reference, mut plain) = (ReferenceFrame::new(scene), PlainFrame::new(scene)?);
     let contenders = vec![
         Contender::both(Backend::Gpu, || {
             frame.set(gpu)?;
             Ok(gpu.run("frame", |encoder| frame.record(encoder))?)
         }),
         Contender::both(Backend::Copy, || Ok(gpu.run("copies", |encoder| frame.record_copies(encoder))?)),
-        Contender::host(Backend::Twin, || twin.compute(scene)),
+        Contender::host(Backend::Reference, || reference.compute(scene)),
         Contender::host(Backend::PlainSoa, || plain.compute(scene)),
     ];
     let case = format!("{} × 153, dispatch of a frame", scene.instances.len());
@@ -65,7 +65,7 @@ fn readback(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
             Ok(())
         }),
         Contender::both(Backend::Copy, || Ok(gpu.run("copy", |encoder| copied.record(encoder))?)),
-        Contender::host(Backend::Twin, || black_box(&mut there).copy_from_slice(black_box(&here))),
+        Contender::host(Backend::Reference, || black_box(&mut there).copy_from_slice(black_box(&here))),
     ];
     let case = format!("{} × 153, readback of palettes", scene.instances.len());
     bench.case(case, (pairs, "bone"), 96 * pairs as u64, contenders)

@@ -10,12 +10,12 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
+use crate::animation::keyframe_cursor::reference::cursors;
 use crate::animation::order::Order;
-use crate::animation::place::reference::places;
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::sample::reference::sample;
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::baseline::gather::{GatherPass, Reads};
@@ -38,7 +38,7 @@ pub(crate) struct Scene {
     pub clip: Clip,
     pub set: ClipSet,
     pub instances: Vec<Instance>,
-    pub places: Vec<Place>,
+    pub cursors: Vec<KeyframeCursor>,
     pub clips: ClipBuffers,
     pub crowd: Crowd,
 }
@@ -47,10 +47,10 @@ impl Scene {
     pub fn new(gpu: &Gpu, count: usize) -> Result<Self, Error> {
         let (skeleton, clip, set) = dense_creature()?;
         let instances = crowd(count);
-        let places = places(&set, &instances, ELAPSED);
+        let cursors = cursors(&set, &instances, ELAPSED);
         let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &instances)?);
-        crowd.places.write(gpu, &places)?;
-        Ok(Self { skeleton, clip, set, instances, places, clips, crowd })
+        crowd.cursors.write(gpu, &cursors)?;
+        Ok(Self { skeleton, clip, set, instances, cursors, clips, crowd })
     }
 
     pub fn pairs(&self) -> usize {

@@ -1,13 +1,13 @@
-//! The opponent of the twins: sampling and concatenation for processors as one writes them first when speed counts.
+//! The opponent of the references: sampling and concatenation for processors as one writes them first when speed counts.
 //! Structure of arrays over the bones, in blocks that fill vectors; one timeline for all tracks, linear keys alone; no
 //! gating, no threads.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::concat::reference::{affine, product};
+use crate::animation::local_to_model::reference::{affine, product};
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::clip::Interpolation;
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};
 
@@ -67,12 +67,12 @@ impl PlainSoa {
     }
 
     /// An instance's local transforms.
-    pub fn sample(&self, place: Place, locals: &mut [Lanes]) {
+    pub fn sample(&self, cursor: KeyframeCursor, locals: &mut [Lanes]) {
         let blocks = self.blocks();
         let of_key = |key: usize| &self.keys[key * NUMBERS * blocks..][..NUMBERS * blocks];
-        let from = of_key(place.key as usize);
-        let to = if place.fraction > 0.0 { of_key(place.key as usize + 1) } else { from };
-        let t = place.fraction;
+        let from = of_key(cursor.key as usize);
+        let to = if cursor.fraction > 0.0 { of_key(cursor.key as usize + 1) } else { from };
+        let t = cursor.fraction;
         for number in [0, 1, 2, 7, 8, 9] {
             let row = number * blocks..(number + 1) * blocks;
             for ((from, to), local) in from[row.clone()].iter().zip(&to[row.clone()]).zip(&mut locals[row]) {
@@ -89,7 +89,7 @@ impl PlainSoa {
     }
 
     /// An instance's palette. Bones wait for their parents, so one after another.
-    pub fn concat(&self, locals: &[Lanes], models: &mut [Affine]) {
+    pub fn local_to_model(&self, locals: &[Lanes], model_matrices: &mut [Affine]) {
         let blocks = self.blocks();
         for (bone, parent) in self.parents.iter().enumerate() {
             let of = |number: usize| locals[number * blocks + bone / LANES][bone % LANES];
@@ -98,7 +98,8 @@ impl PlainSoa {
                 rotation: [of(3), of(4), of(5), of(6)],
                 scale: [of(7), of(8), of(9)],
             });
-            models[bone] = parent.map_or(local, |parent| product(&models[parent as usize], &local));
+            model_matrices[bone] =
+                parent.map_or(local, |parent| product(&model_matrices[parent as usize], &local));
         }
     }
 }
@@ -107,7 +108,7 @@ fn each(value: impl Fn(usize) -> f32) -> Lanes {
     std::array::from_fn(value)
 }
 
-/// As the twin's, with one fraction for all.
+/// As the reference's, with one fraction for all.
 fn slerps(a: &[Lanes; 4], b: &[Lanes; 4], t: f32) -> [Lanes; 4] {
     let cosine = each(|l| a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l] + a[3][l] * b[3][l]);
     let inverse = each(|l| 1.0 / (2.0 + 2.0 * cosine[l]).sqrt());
@@ -133,39 +134,39 @@ fn weights(t: f32, less_one: &Lanes) -> Lanes {
 mod tests {
     use super::*;
     use crate::animation::bench::{crowd, dense_creature};
-    use crate::animation::concat::CONCAT_BOUND;
-    use crate::animation::concat::reference::concat;
-    use crate::animation::place::reference::places;
+    use crate::animation::keyframe_cursor::reference::cursors;
+    use crate::animation::local_to_model::LOCAL_TO_MODEL_BOUND;
+    use crate::animation::local_to_model::reference::local_to_model;
     use crate::animation::sample::SAMPLE_BOUND;
     use crate::animation::sample::reference::sample_set;
     use crate::asset::keyframe::RotationPath;
     use crate::asset::transform::AFFINE_IDENTITY;
 
     #[test]
-    fn it_computes_what_the_twins_compute() {
+    fn it_computes_what_the_references_compute() {
         let (skeleton, _, set) = dense_creature().expect("valid");
         let plain = PlainSoa::new(&skeleton, &set).expect("dense");
         let instances = crowd(50);
-        let places = places(&set, &instances, 0.4);
-        let twin = sample_set(&set, &instances, &places, RotationPath::Slerp);
+        let cursors = cursors(&set, &instances, 0.4);
+        let reference = sample_set(&set, &instances, &cursors, RotationPath::Slerp);
         let deepest = 1 + skeleton.depths().iter().max().expect("bones");
-        let (mut locals, mut models) = (plain.locals(), vec![AFFINE_IDENTITY; skeleton.len()]);
-        for (place, twin) in places.iter().zip(twin.chunks(skeleton.len())) {
-            plain.sample(*place, &mut locals);
-            for (bone, twin) in twin.iter().enumerate() {
-                let numbers = twin.translation.iter().chain(&twin.rotation).chain(&twin.scale);
+        let (mut locals, mut model_matrices) = (plain.locals(), vec![AFFINE_IDENTITY; skeleton.len()]);
+        for (cursor, reference) in cursors.iter().zip(reference.chunks(skeleton.len())) {
+            plain.sample(*cursor, &mut locals);
+            for (bone, reference) in reference.iter().enumerate() {
+                let numbers = reference.translation.iter().chain(&reference.rotation).chain(&reference.scale);
                 for (number, expected) in numbers.enumerate() {
                     let found = locals[number * plain.blocks() + bone / LANES][bone % LANES];
                     assert!((found - expected).abs() <= SAMPLE_BOUND, "{bone} {number}: {found} {expected}");
                 }
             }
-            plain.concat(&locals, &mut models);
-            let expected = concat(&skeleton, twin);
+            plain.local_to_model(&locals, &mut model_matrices);
+            let expected = local_to_model(&skeleton, reference);
             let (found, expected) =
-                (models.as_flattened().as_flattened(), expected.as_flattened().as_flattened());
+                (model_matrices.as_flattened().as_flattened(), expected.as_flattened().as_flattened());
             let largest = expected.iter().fold(1.0, |a: f32, b| a.max(b.abs()));
             // The bound of locals, and of products.
-            let bound = (SAMPLE_BOUND + CONCAT_BOUND) * deepest as f32 * largest;
+            let bound = (SAMPLE_BOUND + LOCAL_TO_MODEL_BOUND) * deepest as f32 * largest;
             for (found, expected) in found.iter().zip(expected) {
                 assert!((found - expected).abs() <= bound, "{found} {expected}");
             }

@@ -3,9 +3,9 @@
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
 use crate::animation::bounds::reference::bounds;
-use crate::animation::bounds::{BoundsPass, Share, bone_reaches};
-use crate::animation::concat::reference::concat;
-use crate::animation::place::reference::places;
+use crate::animation::bounds::{BoundsPass, Share, bone_radii};
+use crate::animation::keyframe_cursor::reference::cursors;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample_set;
 use crate::asset::keyframe::RotationPath;
 use crate::gpu::Buffer;
@@ -21,22 +21,22 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = BoundsPass::new(gpu, Share::of(gpu))?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
-        let found = places(&scene.set, &scene.instances, 0.4);
+        let found = cursors(&scene.set, &scene.instances, 0.4);
         let locals = sample_set(&scene.set, &scene.instances, &found, RotationPath::Slerp);
         let bones = scene.skeleton.len();
-        let models: Vec<_> =
-            locals.chunks(bones).flat_map(|locals| concat(&scene.skeleton, locals)).collect();
-        scene.crowd.model_matrices.buffer().write(gpu, &models)?;
-        let reaches = bone_reaches(&scene.skeleton);
-        let job = pass.prepare(gpu, &scene.crowd, &reaches, &Buffer::new(gpu, "bounds", count)?)?;
+        let model_matrices: Vec<_> =
+            locals.chunks(bones).flat_map(|locals| local_to_model(&scene.skeleton, locals)).collect();
+        scene.crowd.model_matrices.buffer().write(gpu, &model_matrices)?;
+        let bone_radii = bone_radii(&scene.skeleton);
+        let job = pass.prepare(gpu, &scene.crowd, &bone_radii, &Buffer::new(gpu, "bounds", count)?)?;
         // A palette in, 8 words out.
         let words = 12 * scene.pairs() + 8 * count;
         let copied = copy_of(gpu, words / 2)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
-                drop(std::hint::black_box(bounds(&models, &reaches)));
+            Contender::host(Backend::Reference, || {
+                drop(std::hint::black_box(bounds(&model_matrices, &bone_radii)));
             }),
         ];
         bench.case(format!("{count} × 153"), (count, "instance"), 4 * words as u64, contenders)?;

@@ -7,7 +7,7 @@
 //! bones share by weights from 0 to 1 lie between where each bone alone would put them, so inside too.
 //!
 //! Reaches are the caller's: the farthest vertex that a bone moves, `|inverse_bind · v|`; or, where nothing is known of
-//! a mesh, the bones' own lengths ([`bone_reaches`]).
+//! a mesh, the bones' own lengths ([`bone_radii`]).
 //!
 //! # Outward
 //!
@@ -41,7 +41,7 @@ pub const BOUNDS_OF_CENTRE: f32 = 1.0 / 2_097_152.0;
 /// What a row is longer than its squares say: 2⁻⁶².
 pub const BOUNDS_LEAST: f32 = 2.168_404_3e-19;
 
-/// How far a side may lie from the twin's, on any device, times the largest side: 14ε and 6ε of the extent, 4ε of the
+/// How far a side may lie from the reference's, on any device, times the largest side: 14ε and 6ε of the extent, 4ε of the
 /// centre and 2ε of the side from either: 52ε < 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;
 
@@ -57,7 +57,7 @@ pub struct Bounds {
 }
 
 /// The reach of each bone where nothing is known of a mesh: its length ([`Skeleton::lengths`]).
-pub fn bone_reaches(skeleton: &Skeleton) -> Vec<f32> {
+pub fn bone_radii(skeleton: &Skeleton) -> Vec<f32> {
     // To the neighbour above, where it was rounded down.
     let up = |length: f64| {
         if f64::from(length as f32) < length { (length as f32).next_up() } else { length as f32 }
@@ -69,13 +69,19 @@ pub fn bone_reaches(skeleton: &Skeleton) -> Vec<f32> {
 ///
 /// # Errors
 /// [`InputError`] for other than one a bone, and reaches that are negative or not finite.
-pub fn check_reaches(reaches: &[f32], bones: usize) -> Result<(), InputError> {
-    if reaches.len() != bones {
-        return Err(InputError::new("reaches.len", reaches.len(), format!("must be {bones}, one a bone")));
+pub fn check_bone_radii(bone_radii: &[f32], bones: usize) -> Result<(), InputError> {
+    if bone_radii.len() != bones {
+        return Err(InputError::new(
+            "bone_radii.len",
+            bone_radii.len(),
+            format!("must be {bones}, one a bone"),
+        ));
     }
-    match reaches.iter().position(|reach| !(0.0..f32::INFINITY).contains(reach)) {
+    match bone_radii.iter().position(|bone_radius| !(0.0..f32::INFINITY).contains(bone_radius)) {
         None => Ok(()),
-        Some(at) => Err(InputError::new(format!("reaches[{at}]"), reaches[at], "must be at least 0 metres")),
+        Some(at) => {
+            Err(InputError::new(format!("bone_radii[{at}]"), bone_radii[at], "must be at least 0 metres"))
+        }
     }
 }
 
@@ -85,22 +91,22 @@ mod tests {
 
     #[test]
     fn reaches_are_checked_one_by_one() {
-        assert_eq!(check_reaches(&[0.0, 2.0], 2), Ok(()));
-        assert_eq!(check_reaches(&[0.0], 2).expect_err("refused").field, "reaches.len");
+        assert_eq!(check_bone_radii(&[0.0, 2.0], 2), Ok(()));
+        assert_eq!(check_bone_radii(&[0.0], 2).expect_err("refused").field, "bone_radii.len");
         for wrong in [-0.5, f32::NAN, f32::INFINITY] {
-            assert_eq!(check_reaches(&[0.0, wrong], 2).expect_err("refused").field, "reaches[1]");
+            assert_eq!(check_bone_radii(&[0.0, wrong], 2).expect_err("refused").field, "bone_radii[1]");
         }
     }
 
     #[test]
     fn bones_reach_their_farthest_child() {
         let skeleton = crate::samples::creature().expect("valid").skeleton;
-        let reaches = bone_reaches(&skeleton);
-        assert!(check_reaches(&reaches, skeleton.len()).is_ok());
+        let bone_radii = bone_radii(&skeleton);
+        assert!(check_bone_radii(&bone_radii, skeleton.len()).is_ok());
         for bone in skeleton.bones() {
             let Some(parent) = bone.parent else { continue };
             let length = glam::DVec3::from(bone.rest.translation.map(f64::from)).length();
-            assert!(f64::from(reaches[parent as usize]) >= length, "{}", bone.name);
+            assert!(f64::from(bone_radii[parent as usize]) >= length, "{}", bone.name);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `kernels/animation/bounds.wgsl`.
 
-use super::{Bounds, check_reaches};
+use super::{Bounds, check_bone_radii};
 use crate::animation::crowd::Crowd;
 use crate::gpu::bindings::animation::bounds as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
@@ -49,21 +49,21 @@ impl BoundsPass {
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
-        reaches: &[f32],
+        bone_radii: &[f32],
         bounds: &Buffer<Bounds>,
     ) -> Result<Job, Error> {
-        check_reaches(reaches, crowd.bones)?;
+        check_bone_radii(bone_radii, crowd.bones)?;
         bounds.check_holds("bounds", crowd.len())?;
         if crowd.len() >= 1 << 26 {
             return Err(InputError::new("crowd.len", crowd.len(), "must be below 2^26").into());
         }
         let params = BoundsParams { instances: crowd.len() as u32, bones: crowd.bones as u32 };
         let uniform = Uniform::new(gpu, "bounds", &params)?;
-        let reaches = Buffer::from_slice(gpu, "reaches", reaches)?;
+        let bone_radii = Buffer::from_slice(gpu, "bone_radii", bone_radii)?;
         let group = bindings::Group {
             params: &uniform,
-            models: crowd.model_matrices.buffer().slice().cast(),
-            reaches: reaches.slice(),
+            model_matrices: crowd.model_matrices.buffer().slice().cast(),
+            bone_radii: bone_radii.slice(),
             bounds: bounds.slice().cast(),
         };
         let threads = match self.share {

@@ -1,4 +1,4 @@
-//! Bounds of instances: twin of `kernels/animation/bounds.wgsl`.
+//! Bounds of instances: reference of `kernels/animation/bounds.wgsl`.
 
 use crate::animation::bounds::{BOUNDS_GROWTH, BOUNDS_LEAST, BOUNDS_OF_CENTRE, Bounds};
 use crate::asset::transform::Affine;
@@ -7,17 +7,21 @@ use crate::asset::transform::Affine;
 ///
 /// # Panics
 /// Without reaches.
-pub fn bounds(models: &[Affine], reaches: &[f32]) -> Vec<Bounds> {
-    models.chunks_exact(reaches.len()).map(|models| around(models, reaches)).collect()
+pub fn bounds(model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<Bounds> {
+    model_matrices
+        .chunks_exact(bone_radii.len())
+        .map(|model_matrices| around(model_matrices, bone_radii))
+        .collect()
 }
 
-fn around(models: &[Affine], reaches: &[f32]) -> Bounds {
+fn around(model_matrices: &[Affine], bone_radii: &[f32]) -> Bounds {
     let mut bounds = Bounds { low: [f32::MAX; 4], high: [f32::MIN; 4] };
     (bounds.low[3], bounds.high[3]) = (0.0, 0.0);
-    for (model, reach) in models.iter().zip(reaches) {
+    for (model, bone_radius) in model_matrices.iter().zip(bone_radii) {
         for (axis, [x, y, z, centre]) in model.iter().enumerate() {
             let length = (x * x + y * y + z * z).sqrt();
-            let half = reach * (length + BOUNDS_LEAST) * BOUNDS_GROWTH + centre.abs() * BOUNDS_OF_CENTRE;
+            let half =
+                bone_radius * (length + BOUNDS_LEAST) * BOUNDS_GROWTH + centre.abs() * BOUNDS_OF_CENTRE;
             bounds.low[axis] = bounds.low[axis].min(centre - half);
             bounds.high[axis] = bounds.high[axis].max(centre + half);
         }

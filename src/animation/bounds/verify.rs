@@ -9,7 +9,7 @@ use crate::asset::transform::Affine;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 
-/// Palettes of every size, sheared and flat and mirrored, around the model's origin and far from it, against the twin,
+/// Palettes of every size, sheared and flat and mirrored, around the model's origin and far from it, against the reference,
 /// sides as shares of the instance's largest; and the exact box in double precision lies inside.
 ///
 /// # Errors
@@ -18,21 +18,25 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
-        let (models, reaches) = random_palettes(case as u32, bones, count);
+        let (model_matrices, bone_radii) = random_palettes(case as u32, bones, count);
         let crowd = Crowd::new(gpu, &set, &instances)?;
-        crowd.model_matrices.buffer().write(gpu, &models)?;
-        let expected = bounds(&models, &reaches);
-        for share in [Share::Workgroup, Share::Whole] {
+        crowd.model_matrices.buffer().write(gpu, &model_matrices)?;
+        let expected = bounds(&model_matrices, &bone_radii);
+        for fraction in [Share::Workgroup, Share::Whole] {
             let output = Poisoned::<Bounds>::new(gpu, count)?;
-            let job = BoundsPass::new(gpu, share)?.prepare(gpu, &crowd, &reaches, &output.buffer)?;
+            let job = BoundsPass::new(gpu, fraction)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let name = format!("{bones} bones × {count}, {share:?}");
+            let name = format!("{bones} bones × {count}, {fraction:?}");
             let comparison = output.check(gpu, |actual| {
-                compare::absolute(&shares(actual, &expected), &shares(&expected, &expected), BOUNDS_BOUND)
+                compare::absolute(
+                    &relative_sizes(actual, &expected),
+                    &relative_sizes(&expected, &expected),
+                    BOUNDS_BOUND,
+                )
             })?;
             cases.add(name.clone(), comparison);
             let contained = output.check(gpu, |actual| {
-                let inside = contain(actual, &models, &reaches);
+                let inside = contain(actual, &model_matrices, &bone_radii);
                 compare::exact(&inside, &vec![true; inside.len()])
             })?;
             cases.add(format!("{name}, the exact box inside"), contained);
@@ -44,7 +48,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// Matrices with rows of very different lengths, some of them 0.
 fn random_palettes(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f32>) {
     let mut draw = Draw::new(case ^ 0xb0c5);
-    let reaches = (0..bones).map(|bone| if bone % 5 == 3 { 0.0 } else { draw.signed().abs() }).collect();
+    let bone_radii = (0..bones).map(|bone| if bone % 5 == 3 { 0.0 } else { draw.signed().abs() }).collect();
     let mut palettes = Vec::with_capacity(bones * count);
     for _ in 0..count {
         let size = [1.0, 1e-6, 3e4][draw.word() as usize % 3];
@@ -57,11 +61,11 @@ fn random_palettes(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f
             })
         }));
     }
-    (palettes, reaches)
+    (palettes, bone_radii)
 }
 
 /// Sides as shares of the expected box's largest.
-fn shares(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
+fn relative_sizes(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
     let each = |(found, expected): (&Bounds, &Bounds)| {
         let sides = |bounds: &Bounds| [bounds.low, bounds.high].concat();
         let largest = sides(expected).into_iter().fold(f32::MIN_POSITIVE, |a, b| a.max(b.abs()));
@@ -71,14 +75,14 @@ fn shares(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
 }
 
 /// For each side of each instance, whether every bone's ellipsoid lies inside.
-fn contain(boxes: &[Bounds], models: &[Affine], reaches: &[f32]) -> Vec<bool> {
+fn contain(boxes: &[Bounds], model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<bool> {
     let mut inside = Vec::with_capacity(6 * boxes.len());
-    for (bounds, models) in boxes.iter().zip(models.chunks(reaches.len())) {
+    for (bounds, model_matrices) in boxes.iter().zip(model_matrices.chunks(bone_radii.len())) {
         for axis in 0..3 {
             let (low, high) = (f64::from(bounds.low[axis]), f64::from(bounds.high[axis]));
-            let ends = models.iter().zip(reaches).map(|(model, reach)| {
+            let ends = model_matrices.iter().zip(bone_radii).map(|(model, bone_radius)| {
                 let [x, y, z, centre] = model[axis].map(f64::from);
-                let half = f64::from(*reach) * (x * x + y * y + z * z).sqrt();
+                let half = f64::from(*bone_radius) * (x * x + y * y + z * z).sqrt();
                 [centre - half, centre + half]
             });
             inside.push(ends.clone().all(|[least, _]| low <= least));

@@ -3,8 +3,8 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::Kind;
-use crate::animation::gating::Gating;
 use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM};
@@ -38,29 +38,29 @@ impl BudgetPass {
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
-        gating: &Gating,
+        gate_state: &GateState,
         active: &Active,
     ) -> Result<BudgetJob, Error> {
-        gating.check(Some(Kind::Expectations), crowd)?;
+        gate_state.check(Some(Kind::Expectations), crowd)?;
         active.pairs.check_crowd(crowd)?;
         let params = BudgetParams {
-            instances: gating.lods.len() as u32,
+            instances: gate_state.lods.len() as u32,
             bones: crowd.bones as u32,
-            words: gating.words,
-            stride: gating.stride,
+            words: gate_state.words,
+            stride: gate_state.stride,
             budget: u32::MAX,
         };
         let words = params.instances * params.words;
         let uniform = Uniform::new(gpu, "budget", &params)?;
         let ranks: Buffer<u32> = Buffer::new(gpu, "ranks", 17 * words as usize)?;
-        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TALLY + gating.lods.len())?;
+        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TALLY + gate_state.lods.len())?;
         let group = bindings::Group {
             params: &uniform,
-            lods: gating.lods.slice(),
-            phases: gating.phases.slice(),
-            movers: gating.movers.slice(),
-            table: gating.table.slice(),
-            sampled: gating.sampled.slice(),
+            lods: gate_state.lods.slice(),
+            clip_clocks: gate_state.clip_clocks.slice(),
+            animated_bones: gate_state.animated_bones.slice(),
+            table: gate_state.table.slice(),
+            sampled: gate_state.sampled.slice(),
             bits: active.bits.slice(),
             ranks: ranks.slice(),
             tally: tally.slice(),

@@ -6,8 +6,8 @@ use crate::animation::budget::BudgetPass;
 use crate::animation::budget::reference::budget;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::verify::random_state;
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
 use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::asset::keyframe::RotationPath;
@@ -28,31 +28,31 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let clips = random_clips(case, &skeleton, 3)?;
         let clips: Vec<_> = clips.iter().collect();
         let crowd = Crowd::new(gpu, &set, &instances)?;
-        let reaches = vec![0.5; bones];
-        let table = GateTable::of_expectations(&skeleton, &set, &clips, &reaches, RotationPath::Slerp)?;
-        let mut gating = Gating::new(gpu, &table, &crowd)?;
+        let bone_radii = vec![0.5; bones];
+        let table = GateTable::of_expectations(&skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
+        let mut gate_state = GateState::new(gpu, &table, &crowd)?;
         let mut active = Active::new(gpu, &Order::new(&skeleton), &crowd)?;
         let output = Poisoned::<u32>::new(gpu, 2 * count * table.words())?;
         active.bits = output.buffer.clone();
         let sums = Poisoned::<u32>::new(gpu, bones * count)?;
-        gating.sampled = sums.buffer.clone();
+        gate_state.sampled = sums.buffer.clone();
         let mut sampled = vec![0; bones * count];
         sums.buffer.write(gpu, &sampled)?;
-        let job = pass.prepare(gpu, &crowd, &gating, &active)?;
+        let job = pass.prepare(gpu, &crowd, &gate_state, &active)?;
         let mut draw = Draw::new(case ^ 0xb0d6);
         let pairs = (bones * count) as u32;
         for (frame, most) in [pairs, pairs / 2, 0, pairs / 3 + 1, pairs - 1, u32::MAX].into_iter().enumerate()
         {
-            let (mut lods, phases) = random_state(&mut draw, &set, count, frame == 0);
+            let (mut lods, clip_clocks) = random_state(&mut draw, &set, count, frame == 0);
             let weight = |draw: &mut Draw| draw.word() >> (16 + draw.word() % 17).min(31);
             lods.iter_mut()
                 .for_each(|lod| lod.weight = if frame % 2 == 0 { 65535 } else { weight(&mut draw) });
-            gating.lods.write(gpu, &lods)?;
-            gating.phases.write(gpu, &phases)?;
+            gate_state.lods.write(gpu, &lods)?;
+            gate_state.clip_clocks.write(gpu, &clip_clocks)?;
             job.set(gpu, most)?;
             output.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let mut expected = budget(&table, most, &lods, &phases, &mut sampled);
+            let mut expected = budget(&table, most, &lods, &clip_clocks, &mut sampled);
             // None is sampled ahead.
             expected.resize(2 * count * table.words(), 0);
             let name = format!("{most} of {bones} bones × {count}, frame {frame}");

@@ -16,7 +16,7 @@ use crate::terrain::bench::copy_of;
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = CompactPass::new(gpu)?;
-    for (share, pattern) in [("all", u32::MAX), ("a quarter", 0x1111_1111)] {
+    for (fraction, pattern) in [("all", u32::MAX), ("a quarter", 0x1111_1111)] {
         for count in CROWDS {
             let scene = Scene::new(gpu, count)?;
             let order = scene.order();
@@ -37,9 +37,9 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             let contenders = vec![
                 Contender::job(Backend::Gpu, &job),
                 Contender::job(Backend::Copy, &copied),
-                Contender::host(Backend::Twin, || drop(std::hint::black_box(compact(&order, &bits)))),
+                Contender::host(Backend::Reference, || drop(std::hint::black_box(compact(&order, &bits)))),
             ];
-            let name = format!("{count} × 153, {share}");
+            let name = format!("{count} × 153, {fraction}");
             bench.case(name, (scene.pairs(), "bone"), 8 * words as u64, contenders)?;
         }
     }

@@ -23,7 +23,11 @@ impl Stages {
 
     /// The faster way for a crowd on this kind of adapter.
     pub fn of(gpu: &Gpu, active: &Active) -> Self {
-        if gpu.adapter().kind == "cpu" && active.dirty.len() <= Self::FEW { Self::One } else { Self::Three }
+        if gpu.adapter().kind == "cpu" && active.updated_bones.len() <= Self::FEW {
+            Self::One
+        } else {
+            Self::Three
+        }
     }
 }
 
@@ -64,11 +68,11 @@ impl CompactPass {
             bits: active.bits.slice(),
             compact_params: &uniform,
             slots: active.slots.slice().cast(),
-            dirty: active.dirty.slice(),
+            updated_bones: active.updated_bones.slice(),
             counts: active.counts.slice(),
             pairs: active.pairs.pairs.slice(),
             pair_dispatch: active.pairs.dispatched.slice().cast(),
-            dirty_instances: active.instances.slice(),
+            updated_instances: active.instances.slice(),
             instance_dispatches: active.dispatches.slice(),
         };
         let step = |kernel: &Kernel, threads: u32| {

@@ -1,4 +1,4 @@
-//! From bits to lists: twin of `kernels/animation/compact.wgsl`.
+//! From bits to lists: reference of `kernels/animation/compact.wgsl`.
 
 use crate::animation::active::PAIR_AHEAD;
 use crate::animation::gate::reference::{Chosen, bits_of};
@@ -11,7 +11,7 @@ pub struct Work {
     /// it is sampled ahead.
     pub pairs: Vec<u32>,
     /// A bit for each slot of each instance: those below an active one too.
-    pub dirty: Vec<u32>,
+    pub updated_bones: Vec<u32>,
     /// Instances with an active bone.
     pub instances: Vec<u32>,
 }
@@ -20,7 +20,7 @@ pub struct Work {
 pub fn compact(order: &Order, chosen: &Chosen) -> Work {
     let Chosen { bits, ahead } = chosen;
     let bones = order.slots.len() as u32;
-    let mut work = Work { dirty: Vec::with_capacity(bits.len()), ..Work::default() };
+    let mut work = Work { updated_bones: Vec::with_capacity(bits.len()), ..Work::default() };
     let each = bits.chunks_exact(order.words()).zip(ahead.chunks_exact(order.words()));
     for (instance, (words, ahead)) in (0..).zip(each) {
         let first_pair = work.pairs.len();
@@ -34,7 +34,7 @@ pub fn compact(order: &Order, chosen: &Chosen) -> Work {
                 }
                 below |= u32::from(slot < end) << bit;
             }
-            work.dirty.push(below);
+            work.updated_bones.push(below);
             work.pairs.extend(bits_of(*active).map(|bit| {
                 let pair = instance * bones + order.slots[32 * word + bit].bone;
                 if ahead[word] >> bit & 1 != 0 { pair | PAIR_AHEAD } else { pair }

@@ -67,10 +67,10 @@ fn add(
     let gpu = cases.gpu;
     let mut active = Active::new(gpu, order, crowd)?;
     active.bits.write(gpu, &chosen.words())?;
-    let dirty = Poisoned::<u32>::new(gpu, chosen.bits.len())?;
+    let updated_bones = Poisoned::<u32>::new(gpu, chosen.bits.len())?;
     let pairs = Poisoned::<u32>::new(gpu, crowd.pairs())?;
     let instances = Poisoned::<u32>::new(gpu, crowd.len())?;
-    active.dirty = dirty.buffer.clone();
+    active.updated_bones = updated_bones.buffer.clone();
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
     let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active, stages)?;
@@ -81,7 +81,10 @@ fn add(
     let shown = padded(expected_instances, crowd.len());
     cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
     cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
-    cases.add(format!("{name}: dirty"), dirty.check(gpu, |actual| exact(actual, &expected.dirty))?);
+    cases.add(
+        format!("{name}: updated bones"),
+        updated_bones.check(gpu, |actual| exact(actual, &expected.updated_bones))?,
+    );
     cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected)?);
     Ok(())
 }
@@ -112,8 +115,8 @@ pub(crate) fn dispatches(
         let chains = (level[1] - level[0]) as usize;
         groups(chains * expected.instances.len(), chains)
     }));
-    let places = crowd.places.len() / crowd.len();
-    all.push(groups(places * expected.instances.len(), places));
+    let cursors = crowd.cursors.len() / crowd.len();
+    all.push(groups(cursors * expected.instances.len(), cursors));
     let of_pairs = active.pairs.dispatched.read_blocking(gpu)?;
     let mut actual = vec![[of_pairs[0], of_pairs[1], of_pairs[2], of_pairs[3]]];
     actual.extend(active.dispatches.read_blocking(gpu)?);

@@ -7,7 +7,7 @@ use crate::animation::compact::reference::compact;
 use crate::animation::decide::reference::Decider;
 use crate::animation::decide::{Choice, DecidePass, Dispatches};
 use crate::animation::gate::{Frame, Gate};
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
@@ -30,30 +30,30 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     let scene = Scene::new(gpu, count)?;
     let (order, choice) = (scene.order(), Choice::Gate(Gate::Uniform));
     let table = scene.table(Gate::Uniform)?;
-    let gating = Gating::new(gpu, &table, &scene.crowd)?;
+    let gate_state = GateState::new(gpu, &table, &scene.crowd)?;
     let active = Active::new(gpu, &order, &scene.crowd)?;
     let lods = vec![Lod { omega, ..Lod::FULL }; count];
-    gating.lods.write(gpu, &lods)?;
+    gate_state.lods.write(gpu, &lods)?;
     let pass = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
-    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating, &active)?;
+    let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gate_state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame, ELAPSED)?;
     let mut decider = Decider::new(&scene.set, &table, count);
     // In the first frame no pose is stored, and nothing can be skipped.
     gpu.run("first", |encoder| job.record(encoder))?;
     let mut decide = || {
-        let phases = decider.phases(&scene.instances, &[], &lods, ELAPSED, 0.0);
-        compact(&order, &decider.bits(choice, &frame, &lods, &phases))
+        let clip_clocks = decider.clip_clocks(&scene.instances, &[], &lods, ELAPSED, 0.0);
+        compact(&order, &decider.bits(choice, &frame, &lods, &clip_clocks))
     };
     decide();
     let chosen = decide().pairs.len();
     // 12 words in and 6 out of an instance; bits twice out and once in; a pair and its slot.
-    let words = (18 * count + 3 * active.dirty.len() + 2 * chosen) / 2;
+    let words = (18 * count + 3 * active.updated_bones.len() + 2 * chosen) / 2;
     let copied = copy_of(gpu, words)?;
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || drop(std::hint::black_box(decide()))),
+        Contender::host(Backend::Reference, || drop(std::hint::black_box(decide()))),
     ];
     bench.case(name.to_owned(), (scene.pairs(), "bone"), 8 * words as u64, contenders)
 }

@@ -1,4 +1,4 @@
-//! The first half of a frame: from the time to lists of what is sampled and concatenated. It is `phase`, `gate` (or
+//! The first half of a frame: from the time to lists of what is sampled and concatenated. It is `clip_clock`, `gate` (or
 //! `budget`) and `compact`, one after another; for a gate and a small crowd all in one dispatch, where a dispatch costs
 //! more than other processors gain and the device lets a shader bind that many buffers. Both ways leave the same in every
 //! buffer.

@@ -3,13 +3,13 @@
 use super::Choice;
 use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
+use crate::animation::clip_clock::pass::ClipClockTime;
+use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
-use crate::animation::gating::Gating;
-use crate::animation::phase::pass::PhaseTime;
-use crate::animation::phase::{PhaseJob, PhasePass};
+use crate::animation::gate_state::GateState;
 use crate::gpu::bindings::animation::decide as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
@@ -60,7 +60,7 @@ enum Kernels {
 
 #[derive(Debug, Clone)]
 struct Steps {
-    phase: PhasePass,
+    clip_clock: ClipClockPass,
     decider: Decider,
     compact: CompactPass,
 }
@@ -79,8 +79,8 @@ impl DecidePass {
     /// driver's compiler reports.
     pub fn new(gpu: &Gpu, choice: Choice, dispatches: Dispatches) -> Result<Self, GpuError> {
         let steps = |decider| {
-            let (phase, compact) = (PhasePass::new(gpu)?, CompactPass::new(gpu)?);
-            Ok::<_, GpuError>(Kernels::Each(Box::new(Steps { phase, decider, compact })))
+            let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
+            Ok::<_, GpuError>(Kernels::Each(Box::new(Steps { clip_clock, decider, compact })))
         };
         let kernels = match (choice, dispatches) {
             (Choice::Gate(gate), Dispatches::One) => Kernels::One(whole(gpu, gate)?, gate),
@@ -100,14 +100,14 @@ impl DecidePass {
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gating: &Gating,
+        gate_state: &GateState,
         active: &Active,
     ) -> Result<DecideJob, Error> {
         let work = match &self.kernels {
-            Kernels::One(kernel, gate) => one(kernel, *gate, gpu, clips, crowd, gating, active)?,
+            Kernels::One(kernel, gate) => one(kernel, *gate, gpu, clips, crowd, gate_state, active)?,
             Kernels::Each(steps) => Work::Each {
-                phase: steps.phase.prepare(gpu, clips, crowd, gating)?,
-                decision: steps.decider.prepare(gpu, crowd, gating, active)?,
+                clip_clock: steps.clip_clock.prepare(gpu, clips, crowd, gate_state)?,
+                decision: steps.decider.prepare(gpu, crowd, gate_state, active)?,
                 lists: steps.compact.prepare(gpu, crowd, active, Stages::of(gpu, active))?,
             },
         };
@@ -136,47 +136,53 @@ fn one(
     gpu: &Gpu,
     clips: &ClipBuffers,
     crowd: &Crowd,
-    gating: &Gating,
+    gate_state: &GateState,
     active: &Active,
 ) -> Result<Work, Error> {
-    let phase = PhaseTime::new(gpu, clips, crowd, gating)?;
-    let gate = GateTime::new(gpu, gate, crowd, gating, active)?;
+    let clip_clock = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
+    let gate = GateTime::new(gpu, gate, crowd, gate_state, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
     let group = bindings::Group {
-        phase_params: &phase.uniform,
+        clip_clock_params: &clip_clock.uniform,
         instances: crowd.instances.slice(),
         clips: clips.clips.slice(),
         timelines: clips.timelines.slice().cast(),
         times: clips.times.slice(),
-        lods: gating.lods.slice(),
-        shares: crowd.shares.slice(),
-        history: gating.history.slice(),
-        phases: gating.phases.slice(),
+        lods: gate_state.lods.slice(),
+        layer_weights: crowd.layer_weights.slice(),
+        history: gate_state.history.slice(),
+        clip_clocks: gate_state.clip_clocks.slice(),
         gate_params: &gate.uniform,
-        movers: gating.movers.slice(),
-        table: gating.table.slice(),
-        sampled: gating.sampled.slice(),
-        kept: gating.kept.slice(),
+        animated_bones: gate_state.animated_bones.slice(),
+        table: gate_state.table.slice(),
+        sampled: gate_state.sampled.slice(),
+        remaining: gate_state.remaining.slice(),
         bits: active.bits.slice(),
         compact_params: &compact,
         slots: active.slots.slice().cast(),
-        dirty: active.dirty.slice(),
+        updated_bones: active.updated_bones.slice(),
         counts: active.counts.slice(),
         pairs: active.pairs.pairs.slice(),
         pair_dispatch: active.pairs.dispatched.slice().cast(),
-        dirty_instances: active.instances.slice(),
+        updated_instances: active.instances.slice(),
         instance_dispatches: active.dispatches.slice(),
     };
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
-    Ok(Work::One { phase, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+    Ok(Work::One { clip_clock, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
 }
 
 impl Decider {
-    fn prepare(&self, gpu: &Gpu, crowd: &Crowd, gating: &Gating, active: &Active) -> Result<Decision, Error> {
+    fn prepare(
+        &self,
+        gpu: &Gpu,
+        crowd: &Crowd,
+        gate_state: &GateState,
+        active: &Active,
+    ) -> Result<Decision, Error> {
         match self {
-            Self::Gate(pass) => Ok(Decision::Gate(pass.prepare(gpu, crowd, gating, active)?)),
+            Self::Gate(pass) => Ok(Decision::Gate(pass.prepare(gpu, crowd, gate_state, active)?)),
             Self::Budget(pass, most) => {
-                let job = pass.prepare(gpu, crowd, gating, active)?;
+                let job = pass.prepare(gpu, crowd, gate_state, active)?;
                 job.set(gpu, *most)?;
                 Ok(Decision::Budget(job))
             }
@@ -193,8 +199,8 @@ pub struct DecideJob {
 
 #[derive(Debug, Clone)]
 enum Work {
-    One { phase: PhaseTime, gate: GateTime, job: Job },
-    Each { phase: PhaseJob, decision: Decision, lists: CompactJob },
+    One { clip_clock: ClipClockTime, gate: GateTime, job: Job },
+    Each { clip_clock: ClipClockJob, decision: Decision, lists: CompactJob },
 }
 
 #[derive(Debug, Clone)]
@@ -204,19 +210,19 @@ enum Decision {
 }
 
 impl DecideJob {
-    /// Chooses frame and time of the next submission, the latter as for [`super::super::place::PlaceJob::set`].
+    /// Chooses frame and time of the next submission, the latter as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`].
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         let ahead = self.choice.ahead(frame);
         match &self.work {
-            Work::One { phase, gate, .. } => {
-                phase.set(gpu, elapsed, ahead)?;
+            Work::One { clip_clock, gate, .. } => {
+                clip_clock.set(gpu, elapsed, ahead)?;
                 gate.set(gpu, frame)?;
             }
-            Work::Each { phase, decision, .. } => {
-                phase.set(gpu, elapsed, ahead)?;
+            Work::Each { clip_clock, decision, .. } => {
+                clip_clock.set(gpu, elapsed, ahead)?;
                 if let Decision::Gate(job) = decision {
                     job.set(gpu, frame)?;
                 }
@@ -248,8 +254,8 @@ impl DecideJob {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         match &self.work {
             Work::One { job, .. } => job.dispatch(pass),
-            Work::Each { phase, decision, lists } => {
-                phase.dispatch(pass);
+            Work::Each { clip_clock, decision, lists } => {
+                clip_clock.dispatch(pass);
                 match decision {
                     Decision::Gate(job) => job.dispatch(pass),
                     Decision::Budget(job) => job.dispatch(pass),

@@ -1,6 +1,8 @@
-//! From the time to what is done: twin of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
+//! From the time to what is done: reference of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
 
 use crate::animation::budget::reference::budget;
+use crate::animation::clip_clock::ClipClock;
+use crate::animation::clip_clock::reference::clip_clocks;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::decide::Choice;
 use crate::animation::gate::Frame;
@@ -9,8 +11,6 @@ use crate::animation::gate_table::GateTable;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
-use crate::animation::phase::Phase;
-use crate::animation::phase::reference::phases;
 
 /// What a crowd is decided by, and what that keeps from frame to frame.
 #[derive(Debug, Clone)]
@@ -19,7 +19,7 @@ pub struct Decider<'a> {
     pub set: &'a ClipSet,
     /// What the gate decides by.
     pub table: &'a GateTable,
-    /// Of each instance, what it played when it was looked at last; see [`phases`].
+    /// Of each instance, what it played when it was looked at last; see [`clip_clocks`].
     pub history: Vec<[u32; 4]>,
     /// Of each slot of each instance, the sum of motion when it was sampled last; see [`gate`].
     pub sampled: Vec<u32>,
@@ -31,31 +31,31 @@ impl<'a> Decider<'a> {
         Self { set, table, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
     }
 
-    /// Where instances stand, as [`phases`] finds it.
+    /// Where instances stand, as [`clip_clocks`] finds it.
     ///
     /// # Panics
     /// With fewer levels than instances.
-    pub fn phases(
+    pub fn clip_clocks(
         &mut self,
         instances: &[Instance],
         layers: &[Layer],
         lods: &[Lod],
         elapsed: f32,
         ahead: f32,
-    ) -> Vec<Phase> {
-        phases(self.set, instances, layers, lods, elapsed, ahead, &mut self.history)
+    ) -> Vec<ClipClock> {
+        clip_clocks(self.set, instances, layers, lods, elapsed, ahead, &mut self.history)
     }
 
     /// What is sampled: [`compact`](crate::animation::compact::reference::compact) makes lists of them.
     ///
     /// # Panics
     /// With fewer levels than phases, and with a table of another kind than the choice needs.
-    pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], phases: &[Phase]) -> Chosen {
+    pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], clip_clocks: &[ClipClock]) -> Chosen {
         let Self { table, sampled, .. } = self;
         match choice {
-            Choice::Gate(mode) => gate(table, mode, frame, lods, phases, sampled),
+            Choice::Gate(mode) => gate(table, mode, frame, lods, clip_clocks, sampled),
             Choice::Budget(most) => {
-                let bits = budget(table, most, lods, phases, sampled);
+                let bits = budget(table, most, lods, clip_clocks, sampled);
                 Chosen { ahead: vec![0; bits.len()], bits }
             }
         }

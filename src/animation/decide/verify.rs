@@ -2,6 +2,8 @@
 
 use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::clip_clock::ClipClock;
+use crate::animation::clip_clock::verify as clip_clock;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::compact as lists;
 use crate::animation::compact::verify as compact;
@@ -10,14 +12,12 @@ use crate::animation::decide::reference::Decider;
 use crate::animation::decide::{Choice, DecidePass, Dispatches};
 use crate::animation::gate::verify::table;
 use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::Order;
-use crate::animation::phase::Phase;
-use crate::animation::phase::verify as phase;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::gpu::GpuError;
 use crate::harness::Cases;
@@ -26,7 +26,7 @@ use crate::harness::poison::Poisoned;
 
 /// Every gate, frame after frame, in one dispatch where the device allows it and in several: levels of detail of every
 /// size, some instances hidden, some refreshed, layers above every third crowd. Times are whole 64ths of a second, so
-/// that devices agree on every key; a fraction may be off by 1, and what follows is compared with what the twins make of
+/// that devices agree on every key; a fraction may be off by 1, and what follows is compared with what the references make of
 /// the device's own: to the bit.
 ///
 /// # Errors
@@ -70,9 +70,9 @@ struct Play<'a> {
 
 /// Buffers that the kernels write.
 struct Outputs {
-    phases: Poisoned<Phase>,
+    clip_clocks: Poisoned<ClipClock>,
     bits: Poisoned<u32>,
-    dirty: Poisoned<u32>,
+    updated_bones: Poisoned<u32>,
     pairs: Poisoned<u32>,
     instances: Poisoned<u32>,
 }
@@ -89,14 +89,14 @@ impl Play<'_> {
         };
         let crowd = Crowd::layered(gpu, self.set, &instances, &layers)?;
         let clips = ClipBuffers::new(gpu, self.set)?;
-        let mut gating = Gating::new(gpu, self.table, &crowd)?;
+        let mut gate_state = GateState::new(gpu, self.table, &crowd)?;
         let mut active = Active::new(gpu, self.order, &crowd)?;
-        let outputs = self.poison(cases, &crowd, &mut gating, &mut active)?;
+        let outputs = self.poison(cases, &crowd, &mut gate_state, &mut active)?;
         let mut decider = Decider::new(self.set, self.table, count);
-        let job = pass.prepare(gpu, &clips, &crowd, &gating, &active)?;
+        let job = pass.prepare(gpu, &clips, &crowd, &gate_state, &active)?;
         for (number, elapsed) in [0.0, 0.25, 0.5, 300.0].into_iter().enumerate() {
             let lods = random_lods(&mut draw, count, number == 0);
-            gating.lods.write(gpu, &lods)?;
+            gate_state.lods.write(gpu, &lods)?;
             for instance in &mut instances {
                 instance.start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
                 instance.rate = [1.0, -1.0, 0.5][draw.word() as usize % 3];
@@ -108,11 +108,11 @@ impl Play<'_> {
             job.set(gpu, &frame, elapsed)?;
             outputs.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = decider.phases(&instances, &layers, &lods, elapsed, choice.ahead(&frame));
+            let expected = decider.clip_clocks(&instances, &layers, &lods, elapsed, choice.ahead(&frame));
             let name = |what| format!("{}, frame {number}: {what}", self.name);
-            let same = |actual: &[Phase]| exact(&phase::settled(actual, &expected), &expected);
-            cases.add(name("phases"), outputs.phases.check(gpu, same)?);
-            let actual = gating.phases.read_blocking(gpu)?;
+            let same = |actual: &[ClipClock]| exact(&clip_clock::settled(actual, &expected), &expected);
+            cases.add(name("clip_clocks"), outputs.clip_clocks.check(gpu, same)?);
+            let actual = gate_state.clip_clocks.read_blocking(gpu)?;
             let chosen = decider.bits(choice, &frame, &lods, &actual[..count]);
             let bits = chosen.words();
             cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
@@ -121,12 +121,15 @@ impl Play<'_> {
             let listed = compact::padded(&work.instances, count);
             cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs))?);
             cases.add(name("instances"), outputs.instances.check(gpu, |actual| exact(actual, &listed))?);
-            cases.add(name("dirty"), outputs.dirty.check(gpu, |actual| exact(actual, &work.dirty))?);
+            cases.add(
+                name("updated_bones"),
+                outputs.updated_bones.check(gpu, |actual| exact(actual, &work.updated_bones))?,
+            );
             cases.add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work)?);
         }
-        let kept = exact(&gating.history.read_blocking(gpu)?, &decider.history);
+        let kept = exact(&gate_state.history.read_blocking(gpu)?, &decider.history);
         cases.add(format!("{}: history", self.name), kept);
-        let kept = exact(&gating.sampled.read_blocking(gpu)?, &decider.sampled);
+        let kept = exact(&gate_state.sampled.read_blocking(gpu)?, &decider.sampled);
         cases.add(format!("{}: sums of motion", self.name), kept);
         Ok(())
     }
@@ -135,20 +138,20 @@ impl Play<'_> {
         &self,
         cases: &Cases<'_>,
         crowd: &Crowd,
-        gating: &mut Gating,
+        gate_state: &mut GateState,
         active: &mut Active,
     ) -> Result<Outputs, Error> {
-        let (gpu, words) = (cases.gpu, active.dirty.len());
+        let (gpu, words) = (cases.gpu, active.updated_bones.len());
         let outputs = Outputs {
-            phases: Poisoned::new(gpu, crowd.len())?,
+            clip_clocks: Poisoned::new(gpu, crowd.len())?,
             bits: Poisoned::new(gpu, 2 * words)?,
-            dirty: Poisoned::new(gpu, words)?,
+            updated_bones: Poisoned::new(gpu, words)?,
             pairs: Poisoned::new(gpu, crowd.pairs())?,
             instances: Poisoned::new(gpu, crowd.len())?,
         };
-        gating.phases = outputs.phases.buffer.clone();
+        gate_state.clip_clocks = outputs.clip_clocks.buffer.clone();
         active.bits = outputs.bits.buffer.clone();
-        active.dirty = outputs.dirty.buffer.clone();
+        active.updated_bones = outputs.updated_bones.buffer.clone();
         active.pairs.pairs = outputs.pairs.buffer.clone();
         active.instances = outputs.instances.buffer.clone();
         Ok(outputs)
@@ -157,8 +160,8 @@ impl Play<'_> {
 
 impl Outputs {
     fn poison(&self, gpu: &crate::gpu::Gpu) -> Result<(), GpuError> {
-        self.phases.poison(gpu)?;
-        [&self.bits, &self.dirty, &self.pairs, &self.instances]
+        self.clip_clocks.poison(gpu)?;
+        [&self.bits, &self.updated_bones, &self.pairs, &self.instances]
             .iter()
             .try_for_each(|output| output.poison(gpu))
     }

@@ -1,18 +1,18 @@
-//! A frame of a crowd under a gate in one piece, from the time to palettes: `decide`, `place`, `sample`, `concat`, the
+//! A frame of a crowd under a gate in one piece, from the time to palettes: `decide`, `cursor`, `sample`, `local_to_model`, the
 //! latter three for what is active alone, in one compute pass. Only in this order `bounded` keeps its promise: places are
 //! looked up at the times that the gate saw.
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::concat::{ConcatActiveJob, ConcatPass, Walk};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::decide::{Choice, DecideJob, DecidePass, Dispatches};
 use crate::animation::gate::Frame;
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use crate::animation::local_to_model::{LocalToModelActiveJob, LocalToModelPass, Walk};
 use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
-use crate::animation::place::{PlaceJob, PlacePass};
 use crate::animation::sample::{SampleActiveJob, SamplePass};
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Gpu, compute_pass};
@@ -21,14 +21,14 @@ use crate::gpu::{Gpu, compute_pass};
 #[derive(Debug, Clone)]
 pub struct GatedFrame {
     /// What the gate knows; levels of detail may be written between frames.
-    pub gating: Gating,
+    pub gate_state: GateState,
     /// What the frame that was recorded last did.
     pub active: Active,
     model_matrices: ModelMatrices,
     decide: DecideJob,
-    place: PlaceJob,
+    cursor: KeyframeCursorJob,
     sample: SampleActiveJob,
-    concat: ConcatActiveJob,
+    local_to_model: LocalToModelActiveJob,
 }
 
 impl GatedFrame {
@@ -48,7 +48,7 @@ impl GatedFrame {
         table: &GateTable,
         choice: Choice,
     ) -> Result<Self, Error> {
-        let gating = Gating::new(gpu, table, crowd)?;
+        let gate_state = GateState::new(gpu, table, crowd)?;
         let active = Active::new(gpu, &Order::new(skeleton), crowd)?;
         let decide = DecidePass::new(gpu, choice, Dispatches::of(gpu, choice, &active))?;
         let sample = match crowd.layers {
@@ -56,12 +56,13 @@ impl GatedFrame {
             _ => SamplePass::layered(gpu, crowd.path())?,
         };
         Ok(Self {
-            decide: decide.prepare(gpu, clips, crowd, &gating, &active)?,
-            place: PlacePass::new(gpu)?.prepare_active(gpu, clips, crowd, &gating, &active)?,
+            decide: decide.prepare(gpu, clips, crowd, &gate_state, &active)?,
+            cursor: KeyframeCursorPass::new(gpu)?.prepare_active(gpu, clips, crowd, &gate_state, &active)?,
             sample: sample.prepare_active(gpu, clips, crowd, &active.pairs)?,
-            concat: ConcatPass::new(gpu, Walk::of(gpu))?.prepare_active(gpu, skeleton, crowd, &active)?,
-            model_matrices: crowd.model_matrices.with_updated_bones(&active.dirty),
-            gating,
+            local_to_model: LocalToModelPass::new(gpu, Walk::of(gpu))?
+                .prepare_active(gpu, skeleton, crowd, &active)?,
+            model_matrices: crowd.model_matrices.with_updated_bones(&active.updated_bones),
+            gate_state,
             active,
         })
     }
@@ -78,7 +79,7 @@ impl GatedFrame {
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`](crate::gpu::GpuError).
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         self.decide.set(gpu, frame, elapsed)?;
-        self.place.set(gpu, elapsed)
+        self.cursor.set(gpu, elapsed)
     }
 
     /// As [`DecideJob::set_budget`].
@@ -98,7 +99,7 @@ impl GatedFrame {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_gate(pass);
         self.dispatch_sample(pass);
-        self.dispatch_concat(pass);
+        self.dispatch_local_to_model(pass);
     }
 
     /// The frame's first part: which bones are active.
@@ -108,12 +109,12 @@ impl GatedFrame {
 
     /// The second part: places and samples of these.
     pub fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.place.dispatch(pass);
+        self.cursor.dispatch(pass);
         self.sample.dispatch(pass);
     }
 
     /// The third part: palettes of what lies below them.
-    pub fn dispatch_concat(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.concat.dispatch(pass);
+    pub fn dispatch_local_to_model(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.local_to_model.dispatch(pass);
     }
 }

@@ -1,18 +1,18 @@
-//! Crowds of one layer without a device: the twins of a frame, one after another.
+//! Crowds of one layer without a device: the references of a frame, one after another.
 
 use crate::InputError;
 use crate::animation::active::PAIR_AHEAD;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::{Work, compact};
-use crate::animation::concat::reference::concat_dirty;
 use crate::animation::decide::Choice;
 use crate::animation::decide::reference::Decider;
 use crate::animation::gate::Frame;
 use crate::animation::gate_table::{GateTable, check_path};
 use crate::animation::instance::Instance;
+use crate::animation::keyframe_cursor::reference::cursors;
+use crate::animation::local_to_model::reference::local_to_model_updated;
 use crate::animation::lod::Lod;
 use crate::animation::order::Order;
-use crate::animation::place::reference::places;
 use crate::animation::sample::reference::sample_pair;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
@@ -30,7 +30,7 @@ pub struct Crowd<'a> {
     /// `instance · bones + bone`, in the parents' spaces.
     pub locals: Vec<Transform>,
     /// Likewise, in the model's space.
-    pub models: Vec<Affine>,
+    pub model_matrices: Vec<Affine>,
     decider: Decider<'a>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> Crowd<'a> {
             instances,
             lods: vec![Lod::FULL; count],
             locals: vec![Transform::IDENTITY; pairs],
-            models: vec![AFFINE_IDENTITY; pairs],
+            model_matrices: vec![AFFINE_IDENTITY; pairs],
             decider: Decider::new(set, table, count),
         })
     }
@@ -63,24 +63,29 @@ impl<'a> Crowd<'a> {
     pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let set = self.decider.set;
         let lead = choice.ahead(frame);
-        let now = places(set, &self.instances, elapsed);
+        let now = cursors(set, &self.instances, elapsed);
         // Nothing is sampled there without a lead.
-        let ahead = if lead == 0.0 { Vec::new() } else { places(set, &self.instances, elapsed + lead) };
-        let phases = self.decider.phases(&self.instances, &[], &self.lods, elapsed, lead);
-        let bits = self.decider.bits(choice, frame, &self.lods, &phases);
+        let ahead = if lead == 0.0 { Vec::new() } else { cursors(set, &self.instances, elapsed + lead) };
+        let clip_clocks = self.decider.clip_clocks(&self.instances, &[], &self.lods, elapsed, lead);
+        let bits = self.decider.bits(choice, frame, &self.lods, &clip_clocks);
         let work = compact(self.order, &bits);
         let (bones, timelines) = (set.bones(), set.timelines_a_clip());
         for listed in &work.pairs {
             let pair = (listed & !PAIR_AHEAD) as usize;
             let (instance, bone) = (pair / bones, pair % bones);
-            let places = if listed & PAIR_AHEAD == 0 { &now } else { &ahead };
-            let places = &places[instance * timelines..];
-            self.locals[pair] = sample_pair(set, &self.instances[instance], places, bone, self.path);
+            let cursors = if listed & PAIR_AHEAD == 0 { &now } else { &ahead };
+            let cursors = &cursors[instance * timelines..];
+            self.locals[pair] = sample_pair(set, &self.instances[instance], cursors, bone, self.path);
         }
         for instance in work.instances.iter().map(|instance| *instance as usize) {
-            let dirty = &work.dirty[instance * self.order.words()..];
+            let updated_bones = &work.updated_bones[instance * self.order.words()..];
             let own = instance * bones..(instance + 1) * bones;
-            concat_dirty(self.order, dirty, &self.locals[own.clone()], &mut self.models[own]);
+            local_to_model_updated(
+                self.order,
+                updated_bones,
+                &self.locals[own.clone()],
+                &mut self.model_matrices[own],
+            );
         }
         work
     }

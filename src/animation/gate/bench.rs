@@ -3,12 +3,12 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::bench::{CROWDS, Scene};
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::reference::gate;
 use crate::animation::gate::{Frame, Gate, GatePass};
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
 use crate::animation::lod::{Lod, OMEGA_ONE};
-use crate::animation::phase::{Phase, Verdict};
 use crate::asset::keyframe::RotationPath;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
@@ -31,15 +31,15 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, count)?;
     let table = scene.table(mode)?;
-    let gating = Gating::new(gpu, &table, &scene.crowd)?;
+    let gate_state = GateState::new(gpu, &table, &scene.crowd)?;
     let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
     let lods = vec![Lod { omega: OMEGA_ONE / 2, allowed: 1 << 16, ..Lod::FULL }; count];
     let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
-    let phase = |instance: u32| Phase::new(instance % rows, instance % 65536, Verdict::Free, 0);
-    let phases: Vec<Phase> = (0..count as u32).map(phase).collect();
-    gating.lods.write(gpu, &lods)?;
-    gating.phases.write(gpu, &phases)?;
-    let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &gating, &active)?;
+    let clip_clock = |instance: u32| ClipClock::new(instance % rows, instance % 65536, UpdateReason::Free, 0);
+    let clip_clocks: Vec<ClipClock> = (0..count as u32).map(clip_clock).collect();
+    gate_state.lods.write(gpu, &lods)?;
+    gate_state.clip_clocks.write(gpu, &clip_clocks)?;
+    let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &gate_state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame)?;
     // Bits out; of each bone half a word of priorities, or four of motion in and one out.
@@ -55,14 +55,14 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| {
             if mode == Gate::Bounded {
-                encoder.copy_buffer_to_buffer(before.raw(), 0, gating.sampled.raw(), 0, before.bytes());
+                encoder.copy_buffer_to_buffer(before.raw(), 0, gate_state.sampled.raw(), 0, before.bytes());
             }
             job.record(encoder);
         }),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             sampled.fill(0);
-            drop(std::hint::black_box(gate(&table, mode, &frame, &lods, &phases, &mut sampled)));
+            drop(std::hint::black_box(gate(&table, mode, &frame, &lods, &clip_clocks, &mut sampled)));
         }),
     ];
     bench.case(format!("{count} × 153, {}", mode.name()), (pairs, "bone"), 8 * words as u64, contenders)
@@ -77,10 +77,10 @@ impl Scene {
                 GateTable::of_priorities(&order, &self.set, &clips, &[self.priorities()?])?
             }
             Gate::Bounded => {
-                let reaches = vec![0.1; self.skeleton.len()];
-                GateTable::of_bounds(&self.skeleton, &self.set, &clips, &reaches, RotationPath::Slerp)?
+                let bone_radii = vec![0.1; self.skeleton.len()];
+                GateTable::of_bounds(&self.skeleton, &self.set, &clips, &bone_radii, RotationPath::Slerp)?
             }
-            _ => GateTable::of_movers(&order, &self.set, &clips)?,
+            _ => GateTable::of_animated_bones(&order, &self.set, &clips)?,
         })
     }
 }

@@ -4,8 +4,8 @@ use super::{Frame, Gate};
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::Kind;
-use crate::animation::gating::Gating;
 use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::animation::gate as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
@@ -38,18 +38,18 @@ impl GatePass {
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
-        gating: &Gating,
+        gate_state: &GateState,
         active: &Active,
     ) -> Result<GateJob, Error> {
-        let time = GateTime::new(gpu, self.gate, crowd, gating, active)?;
+        let time = GateTime::new(gpu, self.gate, crowd, gate_state, active)?;
         let group = bindings::Group {
-            lods: gating.lods.slice(),
-            phases: gating.phases.slice(),
+            lods: gate_state.lods.slice(),
+            clip_clocks: gate_state.clip_clocks.slice(),
             gate_params: &time.uniform,
-            movers: gating.movers.slice(),
-            table: gating.table.slice(),
-            sampled: gating.sampled.slice(),
-            kept: gating.kept.slice(),
+            animated_bones: gate_state.animated_bones.slice(),
+            table: gate_state.table.slice(),
+            sampled: gate_state.sampled.slice(),
+            remaining: gate_state.remaining.slice(),
             bits: active.bits.slice(),
         };
         let step = Step {
@@ -84,7 +84,7 @@ impl GateTime {
         gpu: &Gpu,
         gate: Gate,
         crowd: &Crowd,
-        gating: &Gating,
+        gate_state: &GateState,
         active: &Active,
     ) -> Result<Self, Error> {
         let needed = match gate {
@@ -92,17 +92,17 @@ impl GateTime {
             Gate::Bounded => Some(Kind::Bounds),
             Gate::Off | Gate::Uniform | Gate::Random => None,
         };
-        gating.check(needed, crowd)?;
+        gate_state.check(needed, crowd)?;
         active.pairs.check_crowd(crowd)?;
         if gate == Gate::Bounded {
             crowd.model_matrices.consumer().claim(Consumer::BoundedGate)?;
         }
         let params = GateParams {
-            instances: gating.lods.len() as u32,
+            instances: gate_state.lods.len() as u32,
             bones: crowd.bones as u32,
-            words: gating.words,
-            stride: gating.stride,
-            first_above: gating.first_above,
+            words: gate_state.words,
+            stride: gate_state.stride,
+            first_above: gate_state.first_above,
             ticks: 0,
             frame_ticks: 0,
             period: if let Gate::SkipPeriod { period } = gate { period } else { 0 },

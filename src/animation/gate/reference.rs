@@ -1,10 +1,10 @@
-//! Which bones are sampled: twin of `kernels/animation/gate.wgsl`.
+//! Which bones are sampled: reference of `kernels/animation/gate.wgsl`.
 
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::{Frame, Gate};
-use crate::animation::gate_table::{Allotment, EVERYTHING, GateTable};
+use crate::animation::gate_table::{EVERYTHING, ErrorBudget, GateTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::NO_PARENT;
-use crate::animation::phase::{Phase, Verdict};
 
 /// What is sampled.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -31,35 +31,35 @@ pub fn gate(
     gate: Gate,
     frame: &Frame,
     lods: &[Lod],
-    phases: &[Phase],
+    clip_clocks: &[ClipClock],
     sampled: &mut [u32],
 ) -> Chosen {
     let mut chosen = Chosen::default();
-    let mut kept = vec![0; table.bones()];
-    for (instance, (phase, lod)) in phases.iter().zip(lods).enumerate() {
-        let movers = table.record(phase.clip).1;
-        let mut way = Way { left: 0, kept: &mut kept };
-        for (word, movers) in movers.iter().enumerate() {
+    let mut remaining = vec![0; table.bones()];
+    for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
+        let animated_bones = table.record(clip_clock.clip).1;
+        let mut accumulated = AccumulatedMotion { left: 0, remaining: &mut remaining };
+        for (word, animated_bones) in animated_bones.iter().enumerate() {
             let at = At { instance: instance as u32, first: 32 * word, bones: table.bones() };
             let all = u32::MAX >> (32 - (table.bones() - at.first).min(32));
-            let candidates = if phase.verdict() == Verdict::Blended { all } else { *movers };
+            let candidates = if clip_clock.reason() == UpdateReason::Blended { all } else { *animated_bones };
             let mut ahead = 0;
-            chosen.bits.push(match (phase.verdict(), gate) {
-                (Verdict::Hidden, _) => 0,
-                (verdict, Gate::Bounded) => {
+            chosen.bits.push(match (clip_clock.reason(), gate) {
+                (UpdateReason::Hidden, _) => 0,
+                (reason, Gate::Bounded) => {
                     // Sums of motion know of one clip alone.
-                    let forced = if verdict.forces_motion() { all } else { 0 };
+                    let forced = if reason.forces_motion() { all } else { 0 };
                     let sampled = &mut sampled[instance * table.bones()..];
                     let [active, early] =
-                        by_motion(table, &at, lod, candidates, forced, phase, sampled, &mut way);
+                        by_motion(table, &at, lod, candidates, forced, clip_clock, sampled, &mut accumulated);
                     ahead = early;
                     active
                 }
-                (Verdict::Forced, _) => all,
+                (UpdateReason::Forced, _) => all,
                 (_, Gate::Off) => candidates,
                 _ if lod.omega >= OMEGA_ONE => candidates,
                 (_, Gate::SkipPeriod { period }) => {
-                    by_priority(table, &at, lod, candidates, phase, frame, period)
+                    by_priority(table, &at, lod, candidates, clip_clock, frame, period)
                 }
                 (_, Gate::Uniform) => all_or_none(&at, lod, candidates, frame),
                 (_, Gate::Random) => at_random(&at, lod, candidates, frame),
@@ -102,13 +102,13 @@ fn by_priority(
     at: &At,
     lod: &Lod,
     candidates: u32,
-    phase: &Phase,
+    clip_clock: &ClipClock,
     frame: &Frame,
     longest: u32,
 ) -> u32 {
     let ticks = frame.ticks.wrapping_add(scramble(at.instance) & 0xffff);
     let is_active = |bit: &usize| {
-        let level = (table.priority(phase.row, at.first + bit) * lod.omega) >> 16;
+        let level = (table.priority(clip_clock.row, at.first + bit) * lod.omega) >> 16;
         let period = (longest >> 16) * level + (((longest & 0xffff) * level) >> 16);
         !is_skipped(period, ticks, frame.frame_ticks)
     };
@@ -130,11 +130,11 @@ fn at_random(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
 }
 
 /// What is left of the allowed way of an instance.
-struct Way<'a> {
+struct AccumulatedMotion<'a> {
     /// By the bone before.
     left: u32,
     /// By bones that others hang below.
-    kept: &'a mut [u32],
+    remaining: &'a mut [u32],
 }
 
 /// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
@@ -147,54 +147,54 @@ fn by_motion(
     lod: &Lod,
     candidates: u32,
     asked: u32,
-    phase: &Phase,
+    clip_clock: &ClipClock,
     sampled: &mut [u32],
-    way: &mut Way<'_>,
+    accumulated: &mut AccumulatedMotion<'_>,
 ) -> [u32; 2] {
     // So are all where nothing may be missed.
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
-    let last_row = table.record(phase.clip).0;
+    let last_row = table.record(clip_clock.clip).0;
     let [mut active, mut ahead] = [forced, 0];
     for bit in bits_of(candidates | forced) {
         let slot = at.first + bit;
         let [period, granted] = table.motion(last_row, slot);
-        let granted = Allotment(granted);
+        let granted = ErrorBudget(granted);
         if granted.starts() {
-            way.left = match table.motion(table.above(phase.clip), slot)[0] {
+            accumulated.left = match table.motion(table.above(clip_clock.clip), slot)[0] {
                 NO_PARENT => lod.allowed.min(EVERYTHING - 1),
-                above => way.kept[above as usize],
+                above => accumulated.remaining[above as usize],
             };
         }
-        let share = share_of(way.left, granted.share());
-        let now = motion_at(table.motion(phase.row, slot), phase.fraction());
-        let missed = motion_between(now, sampled[slot], period) + granted.hidden();
+        let own_budget = scale_by_fraction(accumulated.left, granted.fraction());
+        let now = motion_at(table.motion(clip_clock.row, slot), clip_clock.fraction());
+        let missed = motion_between(now, sampled[slot], period) + granted.quantization_slack();
         let is_forced = forced >> bit & 1 != 0;
-        if is_forced || missed > share {
+        if is_forced || missed > own_budget {
             active |= 1 << bit;
             sampled[slot] = now;
-            let later = motion_at(table.motion(phase.ahead_row, slot), phase.ahead_fraction);
-            let early = motion_between(later, now, period) + granted.hidden();
-            if phase.is_ahead() && !is_forced && early <= share {
+            let later = motion_at(table.motion(clip_clock.ahead_row, slot), clip_clock.ahead_fraction);
+            let early = motion_between(later, now, period) + granted.quantization_slack();
+            if clip_clock.is_ahead() && !is_forced && early <= own_budget {
                 ahead |= 1 << bit;
                 sampled[slot] = later;
-                way.left -= early;
+                accumulated.left -= early;
             }
         } else {
-            way.left -= missed;
+            accumulated.left -= missed;
         }
-        way.kept[slot] = way.left;
+        accumulated.remaining[slot] = accumulated.left;
     }
     [active, ahead]
 }
 
 /// `value · fraction / 65536`, the fraction at most 65536.
-pub fn share_of(value: u32, fraction: u32) -> u32 {
+pub fn scale_by_fraction(value: u32, fraction: u32) -> u32 {
     ((u64::from(value) * u64::from(fraction)) >> 16) as u32
 }
 
 /// How far a bone has moved along its clip: the sum at a row's start, its rise to the next, and the way there.
 pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
-    start.wrapping_add(share_of(rise, fraction))
+    start.wrapping_add(scale_by_fraction(rise, fraction))
 }
 
 /// The shorter way between two sums: directly, or over the clip's end. `period`: that of the whole clip.

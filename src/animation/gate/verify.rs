@@ -2,15 +2,15 @@
 
 use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::gate;
 use crate::animation::gate::{Frame, Gate, GatePass};
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::Order;
-use crate::animation::phase::{Phase, Verdict};
 use crate::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::asset::clip::Clip;
@@ -56,7 +56,7 @@ pub(crate) fn table(
         Gate::Bounded => {
             GateTable::of_bounds(skeleton, set, clips, &vec![0.5; skeleton.len()], RotationPath::Slerp)?
         }
-        _ => GateTable::of_movers(&order, set, clips)?,
+        _ => GateTable::of_animated_bones(&order, set, clips)?,
     })
 }
 
@@ -71,21 +71,21 @@ fn add(
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let count = crowd.len();
-    let mut gating = Gating::new(gpu, table, crowd)?;
+    let mut gate_state = GateState::new(gpu, table, crowd)?;
     let mut active = Active::new(gpu, order, crowd)?;
     let output = Poisoned::<u32>::new(gpu, 2 * count * table.words())?;
     active.bits = output.buffer.clone();
     let sums = Poisoned::<u32>::new(gpu, crowd.pairs())?;
-    gating.sampled = sums.buffer.clone();
+    gate_state.sampled = sums.buffer.clone();
     let pass = GatePass::new(gpu, mode)?;
-    let job = pass.prepare(gpu, crowd, &gating, &active)?;
+    let job = pass.prepare(gpu, crowd, &gate_state, &active)?;
     let mut draw = Draw::new(case ^ 0x9a7e);
     let mut sampled = vec![0; crowd.pairs()];
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
-        let (lods, phases) = random_state(&mut draw, set, count, number == 0);
-        gating.lods.write(gpu, &lods)?;
-        gating.phases.write(gpu, &phases)?;
+        let (lods, clip_clocks) = random_state(&mut draw, set, count, number == 0);
+        gate_state.lods.write(gpu, &lods)?;
+        gate_state.clip_clocks.write(gpu, &clip_clocks)?;
         let frame = Frame {
             ticks,
             frame_ticks: 1092,
@@ -95,7 +95,7 @@ fn add(
         job.set(gpu, &frame)?;
         output.poison(gpu)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
-        let expected = gate(table, mode, &frame, &lods, &phases, &mut sampled).words();
+        let expected = gate(table, mode, &frame, &lods, &clip_clocks, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
         cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
     }
@@ -110,32 +110,32 @@ pub(crate) fn random_state(
     set: &ClipSet,
     count: usize,
     is_first: bool,
-) -> (Vec<Lod>, Vec<Phase>) {
+) -> (Vec<Lod>, Vec<ClipClock>) {
     let lod = |draw: &mut Draw| Lod {
         omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
         allowed: draw.word() >> (draw.word() % 32),
         ..Lod::FULL
     };
-    let phase = |draw: &mut Draw| {
+    let clip_clock = |draw: &mut Draw| {
         let clip = draw.word() % set.clips().len() as u32;
         let entry = &set.clips()[clip as usize];
         let row = entry.first_row + draw.word() % (set.rows(entry) - 1);
         let fraction = [0, draw.word() % 65536, 65535, 65536][draw.word() as usize % 4];
-        let verdict = match draw.word() % 8 {
-            _ if is_first => Verdict::Forced,
-            0 => Verdict::Hidden,
-            1 => Verdict::Forced,
-            2 => Verdict::Blended,
-            _ => Verdict::Free,
+        let reason = match draw.word() % 8 {
+            _ if is_first => UpdateReason::Forced,
+            0 => UpdateReason::Hidden,
+            1 => UpdateReason::Forced,
+            2 => UpdateReason::Blended,
+            _ => UpdateReason::Free,
         };
-        let phase = Phase::new(row, fraction, verdict, clip);
+        let clip_clock = ClipClock::new(row, fraction, reason, clip);
         let ahead_row = entry.first_row + draw.word() % (set.rows(entry) - 1);
         match draw.word() % 3 {
-            0 => phase,
+            0 => clip_clock,
             // A little ahead, and anywhere.
-            1 => Phase { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..phase },
-            _ => Phase { ahead_row, ahead_fraction: draw.word() % 65537, ..phase },
+            1 => ClipClock { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..clip_clock },
+            _ => ClipClock { ahead_row, ahead_fraction: draw.word() % 65537, ..clip_clock },
         }
     };
-    (0..count).map(|_| (lod(draw), phase(draw))).unzip()
+    (0..count).map(|_| (lod(draw), clip_clock(draw))).unzip()
 }

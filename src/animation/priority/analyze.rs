@@ -3,7 +3,7 @@
 
 use super::{Differences, Weights};
 use crate::InputError;
-use crate::animation::concat::reference::{affine, concat, product};
+use crate::animation::local_to_model::reference::{affine, local_to_model, product};
 use crate::animation::sample::reference::{sample, sample_bone};
 use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
@@ -39,8 +39,8 @@ impl Weights {
             return Ok(Self::default());
         }
         let of_user = Self::default().0[5];
-        let share = |weight: f64| weight / sum * (1.0 - of_user);
-        let [translation, rotation, scale, children, depth] = fitted.map(share);
+        let fraction = |weight: f64| weight / sum * (1.0 - of_user);
+        let [translation, rotation, scale, children, depth] = fitted.map(fraction);
         Ok(Self([translation, rotation, scale, children, depth, of_user]))
     }
 }
@@ -58,8 +58,13 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
     let mut probes = Vec::new();
     for (index, key) in differences.keys.iter().enumerate().filter(|(_, key)| key.until > key.time) {
         let frozen = sample_bone(clip, key.bone as usize, key.time, RotationPath::Slerp);
-        let at = |share: f32| key.time + (key.until - key.time) * share;
-        probes.extend(MOMENTS.map(|share| Probe { time: at(share), key: index, bone: key.bone, frozen }));
+        let at = |fraction: f32| key.time + (key.until - key.time) * fraction;
+        probes.extend(MOMENTS.map(|fraction| Probe {
+            time: at(fraction),
+            key: index,
+            bone: key.bone,
+            frozen,
+        }));
     }
     // All probes of a moment share its pose.
     probes.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.key.cmp(&b.key)));
@@ -67,9 +72,9 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
     let mut squares = vec![0.0; differences.keys.len()];
     for moment in probes.chunk_by(|a, b| a.time == b.time) {
         let locals = sample(clip, moment[0].time, RotationPath::Slerp);
-        let models = concat(skeleton, &locals);
+        let model_matrices = local_to_model(skeleton, &locals);
         for probe in moment {
-            squares[probe.key] += square_error(skeleton, &locals, &models, &lengths, probe);
+            squares[probe.key] += square_error(skeleton, &locals, &model_matrices, &lengths, probe);
         }
     }
     let values = (MOMENTS.len() * skeleton.len()) as f64;
@@ -80,7 +85,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
 fn square_error(
     skeleton: &Skeleton,
     locals: &[Transform],
-    models: &[Affine],
+    model_matrices: &[Affine],
     lengths: &[f64],
     probe: &Probe,
 ) -> f64 {
@@ -90,13 +95,13 @@ fn square_error(
     for (bone, node) in skeleton.bones().iter().enumerate().skip(first) {
         let stale = if bone == first {
             let local = affine(&probe.frozen);
-            Some(node.parent.map_or(local, |parent| product(&models[parent as usize], &local)))
+            Some(node.parent.map_or(local, |parent| product(&model_matrices[parent as usize], &local)))
         } else {
             let above = node.parent.and_then(|parent| (parent as usize).checked_sub(first));
             above.and_then(|at| moved[at]).map(|parent| product(&parent, &affine(&locals[bone])))
         };
         if let Some(stale) = &stale {
-            sum += farthest(stale, &models[bone], lengths[bone]).powi(2);
+            sum += farthest(stale, &model_matrices[bone], lengths[bone]).powi(2);
         }
         moved[bone - first] = stale;
     }

@@ -6,7 +6,7 @@ use super::{PIECE, RootMotion, SPLINE_PIECES, Taken, rigid::Rigid};
 use crate::InputError;
 use crate::animation::sample::reference::{rotation_at, sample_bone};
 use crate::asset::clip::{Clip, Interpolation, Keys, Part, Track};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
@@ -159,8 +159,8 @@ fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
     let is_spline = keys.interpolation == Interpolation::CubicSpline;
     let mut samples: Vec<(f32, [f32; 4])> = Vec::new();
     let mut add = |time, key: usize, fraction| {
-        let place = Place { key: key as u32, fraction };
-        let value = rotation_at(&keys.values, keys.interpolation, place, RotationPath::Slerp);
+        let cursor = KeyframeCursor { key: key as u32, fraction };
+        let value = rotation_at(&keys.values, keys.interpolation, cursor, RotationPath::Slerp);
         if samples.last() != Some(&(time, value)) {
             samples.push((time, value));
         }

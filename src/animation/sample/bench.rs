@@ -8,11 +8,11 @@ use crate::animation::bench::plain_soa::PlainSoa;
 use crate::animation::bench::{CROWDS, KEYS, Scene};
 use crate::animation::crowd::Crowd;
 use crate::animation::instance::Instance;
+use crate::animation::keyframe_cursor::reference::cursors;
 use crate::animation::layers::{Layer, all_instances};
-use crate::animation::place::reference::places;
 use crate::animation::sample::SamplePass;
 use crate::animation::sample::reference::{sample_layers, sample_set_into};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Transform;
 use crate::baseline::gather::Reads;
@@ -40,10 +40,10 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
             Contender::job(Backend::Limit, &keys),
-            Contender::host(Backend::Twin, || twin(&scene, &scene.places, black_box(&mut locals))),
+            Contender::host(Backend::Reference, || reference(&scene, &scene.cursors, black_box(&mut locals))),
             Contender::host(Backend::PlainSoa, || {
-                for (place, soa) in scene.places.iter().zip(black_box(&mut soa)) {
-                    plain.sample(*place, soa);
+                for (cursor, soa) in scene.cursors.iter().zip(black_box(&mut soa)) {
+                    plain.sample(*cursor, soa);
                 }
             }),
         ];
@@ -53,8 +53,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     blended(bench)
 }
 
-fn twin(scene: &Scene, places: &[Place], locals: &mut [Transform]) {
-    sample_set_into(&scene.set, &scene.instances[..places.len()], places, RotationPath::Slerp, locals);
+fn reference(scene: &Scene, cursors: &[KeyframeCursor], locals: &mut [Transform]) {
+    sample_set_into(&scene.set, &scene.instances[..cursors.len()], cursors, RotationPath::Slerp, locals);
 }
 
 fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
@@ -65,12 +65,12 @@ fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     active.write(gpu, &chosen)?;
     let job = pass.prepare_active(gpu, &scene.clips, &scene.crowd, &active)?;
     let copied = copy_of(gpu, 16 * chosen.len())?;
-    let places = &scene.places[..scene.places.len() / 4];
-    let mut locals = vec![Transform::IDENTITY; places.len() * scene.set.bones()];
+    let cursors = &scene.cursors[..scene.cursors.len() / 4];
+    let mut locals = vec![Transform::IDENTITY; cursors.len() * scene.set.bones()];
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || twin(&scene, places, black_box(&mut locals))),
+        Contender::host(Backend::Reference, || reference(&scene, cursors, black_box(&mut locals))),
     ];
     let bytes = 128 * chosen.len() as u64;
     bench.case("a quarter of 1000 × 153", (chosen.len(), "bone"), bytes, contenders)
@@ -82,21 +82,21 @@ fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     let scene = Scene::new(gpu, count)?;
     let later = |instance: &Instance| Instance { start: instance.start + 0.3, ..*instance };
     let layers = [Layer::new(scene.instances.iter().map(later).collect(), vec![0.5; count])];
-    let found = places(&scene.set, &all_instances(&scene.instances, &layers), 0.4);
+    let found = cursors(&scene.set, &all_instances(&scene.instances, &layers), 0.4);
     let crowd = Crowd::layered(gpu, &scene.set, &scene.instances, &layers)?;
-    crowd.places.write(gpu, &found)?;
+    crowd.cursors.write(gpu, &found)?;
     let pairs = crowd.pairs();
     let job = SamplePass::layered(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &crowd)?;
     // Four keys of 10 words in, 10 words out.
     let copied = copy_of(gpu, 25 * pairs)?;
-    let twin = || {
+    let reference = || {
         let (set, base) = (&scene.set, &scene.instances);
         drop(std::hint::black_box(sample_layers(set, base, &layers, &found, RotationPath::Slerp)));
     };
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, twin),
+        Contender::host(Backend::Reference, reference),
     ];
     bench.case("two clips blended, 1000 × 153", (pairs, "bone"), 200 * pairs as u64, contenders)
 }

@@ -19,7 +19,7 @@ pub use pass::{SampleActiveJob, SamplePass};
 /// within 4e-8; the rest is `f32`'s rounding of keys, products and sums.
 pub const SLERP_BOUND: f32 = 1e-6;
 
-/// How far a component may lie from the twin's at the same place, on any device, times the largest value (at least 1).
+/// How far a component may lie from the reference's at the same place, on any device, times the largest value (at least 1).
 ///
 /// With ε = 2⁻²⁴ (`+ − ×` to either neighbour 2ε, `inverseSqrt` 4ε): a spline adds four products of weights of at most
 /// 1.15, each with 8ε: 40ε. A slerp's cosine carries 8ε, its inverse 8ε, the cosine of half the angle 14ε; each of

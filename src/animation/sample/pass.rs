@@ -116,11 +116,11 @@ fn bind(
         instances: crowd.instances.slice(),
         tracks: clips.tracks.slice().cast(),
         values: clips.values.slice(),
-        places: crowd.places.slice().cast(),
+        cursors: crowd.cursors.slice().cast(),
         pairs: pairs.slice(),
         dispatched: dispatched.slice().cast(),
         locals: crowd.locals.slice().cast(),
-        shares: crowd.shares.slice(),
+        layer_weights: crowd.layer_weights.slice(),
     };
     group.bind(gpu, kernel)
 }

@@ -5,13 +5,13 @@ use crate::animation::active::{ActivePairs, PAIR_AHEAD};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd, Local, packed};
 use crate::animation::instance::Instance;
-use crate::animation::layers::{Layer, MOST_LAYERS, all_instances};
-use crate::animation::place::reference::places;
+use crate::animation::keyframe_cursor::reference::cursors;
+use crate::animation::layers::{Layer, MAX_LAYERS, all_instances};
 use crate::animation::sample::reference::{blend, sample_layers, sample_set};
 use crate::animation::sample::{LAYER_GROWTH, SAMPLE_BOUND, SamplePass};
 use crate::animation::verify::edges::{ELAPSED, edges};
 use crate::animation::verify::{Draw, SIZES, random_crowd, random_instances};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::baseline::gather::verify::evenly_keyed;
 use crate::gpu::Gpu;
@@ -19,7 +19,7 @@ use crate::harness::compare::LeftOut;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 
-/// Every interpolation, at the twin's places: every pair, and lists of some pairs, of none and of all. Pairs that are
+/// Every interpolation, at the reference's places: every pair, and lists of some pairs, of none and of all. Pairs that are
 /// not listed stay untouched. Crowds of one layer and of several.
 ///
 /// # Errors
@@ -33,7 +33,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     }
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
-        let above = [1, 2, MOST_LAYERS - 1][case % 3];
+        let above = [1, 2, MAX_LAYERS - 1][case % 3];
         let layers = random_layers(case as u32, &set, count, above);
         let path = [RotationPath::Slerp, RotationPath::Nlerp][case % 2];
         let name = format!("{bones} bones × {count}, {} layers", 1 + above);
@@ -48,7 +48,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     at_edges(cases)
 }
 
-/// Poses that are known without a twin; and the same under a layer of their like, with the keys of rotations negated.
+/// Poses that are known without a reference; and the same under a layer of their like, with the keys of rotations negated.
 fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
     let edges = edges()?;
     let poses: Vec<Local> = edges.poses().iter().map(packed).collect();
@@ -84,15 +84,15 @@ fn add(
 /// Layers whose weights and masks are nothing, everything, and all between; every second on all bones.
 fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<Layer> {
     let mut draw = Draw::new(case ^ 0x1a7e);
-    let mut share = || match draw.word() % 4 {
+    let mut weight = || match draw.word() % 4 {
         0 => 0.0,
         1 => 1.0,
         _ => draw.signed().abs(),
     };
     let layer = |at: usize| {
         let instances = random_instances(case ^ (at as u32 + 1) << 8, set, count);
-        let layer = Layer::new(instances, (0..count).map(|_| share()).collect());
-        if at.is_multiple_of(2) { layer } else { layer.masked((0..set.bones()).map(|_| share()).collect()) }
+        let layer = Layer::new(instances, (0..count).map(|_| weight()).collect());
+        if at.is_multiple_of(2) { layer } else { layer.masked((0..set.bones()).map(|_| weight()).collect()) }
     };
     (0..above).map(layer).collect()
 }
@@ -102,21 +102,21 @@ fn torn(
     set: &ClipSet,
     base: &[Instance],
     layers: &[Layer],
-    places: &[Place],
+    cursors: &[KeyframeCursor],
     path: RotationPath,
     margin: f32,
 ) -> Vec<bool> {
-    let all = sample_set(set, &all_instances(base, layers), places, path);
+    let all = sample_set(set, &all_instances(base, layers), cursors, path);
     let mut torn = vec![false; base.len() * set.bones()];
     let (below, above) = all.split_at(torn.len());
     for (pair, torn) in torn.iter_mut().enumerate() {
         let mut pose = below[pair];
         for (layer, over) in layers.iter().zip(above.chunks(below.len())) {
-            let share = layer.share(pair / set.bones(), pair % set.bones());
-            if share > 0.0 {
+            let weight = layer.weight(pair / set.bones(), pair % set.bones());
+            if weight > 0.0 {
                 let cosine: f32 = pose.rotation.iter().zip(over[pair].rotation).map(|(a, b)| a * b).sum();
                 *torn |= cosine.abs() < margin;
-                pose = blend(&pose, &over[pair], share);
+                pose = blend(&pose, &over[pair], weight);
             }
         }
     }
@@ -155,25 +155,25 @@ impl<'a> Bench<'a> {
         layers: &[Layer],
         path: RotationPath,
     ) -> Result<Self, Error> {
-        let places: Vec<Place> = places(set, &all_instances(base, layers), ELAPSED);
+        let cursors: Vec<KeyframeCursor> = cursors(set, &all_instances(base, layers), ELAPSED);
         let mut crowd = Crowd::layered(gpu, set, base, layers)?.with_path(path);
         // Layers are sampled where they are.
-        let later = self::places(set, base, ELAPSED + 0.3);
-        let mut places_ahead = places.clone();
-        places_ahead[..later.len()].copy_from_slice(&later);
-        crowd.places.write(gpu, &[places.as_slice(), &later].concat())?;
+        let later = self::cursors(set, base, ELAPSED + 0.3);
+        let mut cursors_ahead = cursors.clone();
+        cursors_ahead[..later.len()].copy_from_slice(&later);
+        crowd.cursors.write(gpu, &[cursors.as_slice(), &later].concat())?;
         let output = Poisoned::new(gpu, crowd.pairs())?;
         crowd.locals = output.buffer.clone();
         let is_layered = !layers.is_empty();
         let pass = if is_layered { SamplePass::layered(gpu, path)? } else { SamplePass::new(gpu, path)? };
         let bound = SAMPLE_BOUND * LAYER_GROWTH.powi(layers.len() as i32);
-        let poses = |places: &[Place]| {
-            sample_layers(set, base, layers, places, path).iter().map(packed).collect::<Vec<_>>()
+        let poses = |cursors: &[KeyframeCursor]| {
+            sample_layers(set, base, layers, cursors, path).iter().map(packed).collect::<Vec<_>>()
         };
-        let (clips, expected, ahead) = (ClipBuffers::new(gpu, set)?, poses(&places), poses(&places_ahead));
+        let (clips, expected, ahead) = (ClipBuffers::new(gpu, set)?, poses(&cursors), poses(&cursors_ahead));
         // Both quaternions are off by the bound at most.
         let [now, later] =
-            [&places, &places_ahead].map(|places| torn(set, base, layers, places, path, 4.0 * bound));
+            [&cursors, &cursors_ahead].map(|cursors| torn(set, base, layers, cursors, path, 4.0 * bound));
         let torn = now.iter().zip(later).map(|(now, later)| *now || later).collect();
         Ok(Self { gpu, pass, clips, crowd, output, expected, ahead, torn, bound })
     }

@@ -1,4 +1,4 @@
-//! A crowd at the edges of what clips may be, with poses that are known without a twin: a bone without tracks, tracks of
+//! A crowd at the edges of what clips may be, with poses that are known without a reference: a bone without tracks, tracks of
 //! one key, times that repeat, q and −q, keys that begin late and end early, and a clip that lasts no time.
 
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
@@ -8,7 +8,7 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::skeleton::{Bone, Skeleton};
 use crate::asset::transform::Transform;
 
@@ -117,18 +117,18 @@ pub fn edges() -> Result<Edges, InputError> {
 
 impl Edges {
     /// Each instance's places, as far as its clip has timelines.
-    pub fn places(&self) -> Vec<Vec<Place>> {
-        let place = |key, fraction| Place { key, fraction };
+    pub fn cursors(&self) -> Vec<Vec<KeyframeCursor>> {
+        let cursor = |key, fraction| KeyframeCursor { key, fraction };
         let of = |time: &Option<f32>| match *time {
             // The quarters that all tracks' times are together; repeated, whole, and late times.
             Some(t) => vec![
-                place((4.0 * t) as u32, (4.0 * t).fract()),
-                if t >= 1.0 { place(3, 0.0) } else { place(2 * u32::from(t >= 0.5), 2.0 * (t % 0.5)) },
-                if t >= 1.0 { place(1, 0.0) } else { place(0, t) },
-                if t >= 0.75 { place(1, 0.0) } else { place(0, 2.0 * (t - 0.25).max(0.0)) },
+                cursor((4.0 * t) as u32, (4.0 * t).fract()),
+                if t >= 1.0 { cursor(3, 0.0) } else { cursor(2 * u32::from(t >= 0.5), 2.0 * (t % 0.5)) },
+                if t >= 1.0 { cursor(1, 0.0) } else { cursor(0, t) },
+                if t >= 0.75 { cursor(1, 0.0) } else { cursor(0, 2.0 * (t - 0.25).max(0.0)) },
             ],
             // The one time; the last of four, of two.
-            None => vec![place(0, 0.0), place(3, 0.0), place(1, 0.0)],
+            None => vec![cursor(0, 0.0), cursor(3, 0.0), cursor(1, 0.0)],
         };
         self.times.iter().map(of).collect()
     }

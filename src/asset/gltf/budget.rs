@@ -10,11 +10,11 @@ use crate::InputError;
 /// them.
 const ELEMENTS: u64 = 1 << 16;
 
-/// Elements a byte, for documents that repeat what they have, up to [`MOST_REPEATED`].
+/// Elements a byte, for documents that repeat what they have, up to [`MAX_REPEATED`].
 const REPEATED: u64 = 128;
 
 /// The most elements of a document that repeats what it has, about 300 MiB.
-const MOST_REPEATED: u64 = 1 << 24;
+const MAX_REPEATED: u64 = 1 << 24;
 
 /// Elements a byte, at least: more than any document has that repeats nothing.
 const ELEMENTS_A_BYTE: u64 = 4;
@@ -48,7 +48,7 @@ impl Budget {
     /// [`InputError`] where they are too many.
     pub fn spend(&self, path: &str, count: usize) -> Result<(), InputError> {
         let bytes = self.bytes.get();
-        let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MOST_REPEATED);
+        let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MAX_REPEATED);
         let most = bytes.saturating_mul(ELEMENTS_A_BYTE).max(repeated);
         let all = self.elements.get().saturating_add(count as u64);
         if all > most {

@@ -13,7 +13,7 @@ use image::{ImageFormat, ImageReader, RgbaImage};
 use super::budget::Budget;
 use super::document::Document;
 use crate::InputError;
-use crate::asset::material::{Alpha, Filter, MOST_TEXELS, Material, Sampling, Texture, Wrapping};
+use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Texture, Wrapping};
 
 /// What has been read of them so far: each once, in the order of their use.
 #[derive(Default)]
@@ -107,8 +107,8 @@ fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputE
     let reader = || ImageReader::with_format(Cursor::new(bytes), format);
     let unreadable = |error| refused(format!("must be a whole {format:?}: {error}"));
     let (width, height) = reader().into_dimensions().map_err(unreadable)?;
-    if width.max(height) > MOST_TEXELS {
-        let bound = format!("must be at most {MOST_TEXELS} texels wide and high");
+    if width.max(height) > MAX_TEXELS {
+        let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
     }
     budget.spend_texels(path, [width, height], bytes.len())?;
@@ -119,7 +119,7 @@ fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
     let cutoff = material.alpha_cutoff.unwrap_or_default().0;
     match material.alpha_mode {
         Checked::Valid(AlphaMode::Opaque) => Ok(Alpha::Opaque),
-        Checked::Valid(AlphaMode::Blend) => Ok(Alpha::Screen),
+        Checked::Valid(AlphaMode::Blend) => Ok(Alpha::Dithered),
         Checked::Valid(AlphaMode::Mask) if cutoff >= 0.0 && cutoff.is_finite() => Ok(Alpha::Mask(cutoff)),
         Checked::Valid(AlphaMode::Mask) => {
             let bound = "must be finite, and not negative";

@@ -15,7 +15,7 @@ use super::winding::{mirrored, mirrors, turn_mirrored};
 use crate::InputError;
 use crate::asset::clip::Interpolation;
 use crate::asset::influences::{Influence, Influences};
-use crate::asset::mesh::{MOST_VERTICES, Mesh, in_range, smooth_normals};
+use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals};
 use crate::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use crate::asset::skeleton::Skin;
 
@@ -137,8 +137,8 @@ impl Reader<'_, '_> {
             return Err(InputError::new(self.named("POSITION"), "missing", "must be given"));
         };
         let positions = self.document.attributes::<3>(positions)?;
-        if positions.len() > MOST_VERTICES {
-            let bound = format!("must be at most {MOST_VERTICES}");
+        if positions.len() > MAX_VERTICES {
+            let bound = format!("must be at most {MAX_VERTICES}");
             return Err(InputError::new(format!("{}.count", self.named("POSITION")), positions.len(), bound));
         }
         in_range(&self.named("POSITION"), &positions)?;
@@ -206,8 +206,8 @@ impl Reader<'_, '_> {
 
     fn check_copies(&self, vertices: usize, copies: usize) -> Result<(), InputError> {
         let path = self.named("POSITION");
-        if vertices + copies > MOST_VERTICES {
-            let bound = format!("with {copies} copies for tangents must be at most {MOST_VERTICES}");
+        if vertices + copies > MAX_VERTICES {
+            let bound = format!("with {copies} copies for tangents must be at most {MAX_VERTICES}");
             return Err(InputError::new(format!("{path}.count"), vertices, bound));
         }
         self.document.budget.spend(&path, LACKING * copies)

@@ -27,7 +27,7 @@
 //!   by a scale of another sign than at rest, is seen from inside.
 //! - Of materials: base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or in files beside the
 //!   document; any set of texture coordinates, `KHR_texture_transform` applied to these), samplers, alpha, and
-//!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Screen). Colours of
+//!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Dithered). Colours of
 //!   vertices, everything else of materials, and materials of no mesh are left out.
 //!
 //! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and

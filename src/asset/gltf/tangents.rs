@@ -10,7 +10,7 @@ use crate::asset::mesh::{Mesh, solved_tangents};
 
 /// The most triangles around a vertex: what MikkTSpace takes grows with their square, and it goes around in recursion.
 /// Surfaces with more get the tangents that [`crate::surface::tangent`] solves.
-const MOST_AROUND: u32 = 1024;
+const MAX_AROUND: u32 = 1024;
 
 /// What tangents are made of: one of each a vertex, and three indices a triangle.
 pub struct Surface<'a> {
@@ -125,7 +125,7 @@ impl<'a> Faces<'a> {
             let place = (bits(positions[vertex]), bits(normals[vertex]), bits(uv[vertex]));
             let count = around.entry(place).or_default();
             *count += 1;
-            *count > MOST_AROUND
+            *count > MAX_AROUND
         })
     }
 }

@@ -24,7 +24,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             Contender::recorded(Backend::Limit, |encoder| {
                 encoder.copy_buffer_to_buffer(source.raw(), 0, destination.raw(), 0, 4 * words as u64);
             }),
-            Contender::host(Backend::Twin, || {
+            Contender::host(Backend::Reference, || {
                 copy(std::hint::black_box(&from), std::hint::black_box(&mut to))
             }),
         ];

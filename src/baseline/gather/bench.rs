@@ -24,16 +24,16 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
-            gather(&scene.set, &scene.instances, &scene.places, black_box(&mut gathered));
+        Contender::host(Backend::Reference, || {
+            gather(&scene.set, &scene.instances, &scene.cursors, black_box(&mut gathered));
         }),
     ];
     bench.case("1000 × 153, 60 keys", (pairs, "bone"), 128 * pairs as u64, contenders)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &keys),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
-            gather_keys(&scene.set, KEYS as u32, &scene.places, black_box(&mut gathered));
+        Contender::host(Backend::Reference, || {
+            gather_keys(&scene.set, KEYS as u32, &scene.cursors, black_box(&mut gathered));
         }),
     ];
     bench.case("1000 × 153, keys alone", (pairs, "bone"), 128 * pairs as u64, contenders)

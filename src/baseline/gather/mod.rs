@@ -58,7 +58,7 @@ impl GatherPass {
             params: &uniform,
             instances: crowd.instances.slice(),
             tracks: clips.tracks.slice().cast(),
-            places: crowd.places.slice().cast(),
+            cursors: crowd.cursors.slice().cast(),
             values: clips.values.slice().cast(),
             gathered: crowd.locals.slice().cast(),
         };

@@ -1,23 +1,28 @@
-//! Moves the bytes of sampling: twin of `kernels/baseline/gather.wgsl`.
+//! Moves the bytes of sampling: reference of `kernels/baseline/gather.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 
 /// For each instance and bone of its clip, the exclusive or of the two keys around the instance's place of three
 /// tracks, as bits of a local transform; then that of the track table's other words and the place's.
 ///
 /// # Panics
 /// With fewer values than tracks have, and at a place of the last key.
-pub fn gather(set: &ClipSet, instances: &[Instance], places: &[Place], gathered: &mut [[[u32; 4]; 3]]) {
+pub fn gather(
+    set: &ClipSet,
+    instances: &[Instance],
+    cursors: &[KeyframeCursor],
+    gathered: &mut [[[u32; 4]; 3]],
+) {
     let bones = set.bones();
-    for ((instance, place), gathered) in instances.iter().zip(places).zip(gathered.chunks_mut(bones)) {
+    for ((instance, cursor), gathered) in instances.iter().zip(cursors).zip(gathered.chunks_mut(bones)) {
         let tracks = &set.tracks()[3 * bones * instance.clip as usize..];
         for (tracks, gathered) in tracks.chunks_exact(3).zip(gathered) {
             let [moved, turned, scaled] =
-                [0, 1, 2].map(|part| both_keys(set, tracks[part].first_value, *place));
+                [0, 1, 2].map(|part| both_keys(set, tracks[part].first_value, *cursor));
             let unused =
-                tracks.iter().fold(place.fraction.to_bits(), |bits, track| bits ^ track.timeline_and_code);
+                tracks.iter().fold(cursor.fraction.to_bits(), |bits, track| bits ^ track.timeline_and_code);
             *gathered =
                 [[moved[0], moved[1], moved[2], scaled[0]], turned, [scaled[1], scaled[2], unused, 0]];
         }
@@ -28,18 +33,18 @@ pub fn gather(set: &ClipSet, instances: &[Instance], places: &[Place], gathered:
 ///
 /// # Panics
 /// As [`gather`].
-pub fn gather_keys(set: &ClipSet, keys: u32, places: &[Place], gathered: &mut [[[u32; 4]; 3]]) {
-    for (place, gathered) in places.iter().zip(gathered.chunks_mut(set.bones())) {
+pub fn gather_keys(set: &ClipSet, keys: u32, cursors: &[KeyframeCursor], gathered: &mut [[[u32; 4]; 3]]) {
+    for (cursor, gathered) in cursors.iter().zip(gathered.chunks_mut(set.bones())) {
         for (bone, gathered) in (0..).zip(gathered) {
             let [moved, turned, scaled] =
-                [0, 1, 2].map(|part| both_keys(set, (3 * bone + part) * keys, *place));
+                [0, 1, 2].map(|part| both_keys(set, (3 * bone + part) * keys, *cursor));
             *gathered = [[moved[0], moved[1], moved[2], scaled[0]], turned, [scaled[1], scaled[2], 0, 0]];
         }
     }
 }
 
-fn both_keys(set: &ClipSet, first: u32, place: Place) -> [u32; 4] {
-    let at = (first + place.key) as usize;
+fn both_keys(set: &ClipSet, first: u32, cursor: KeyframeCursor) -> [u32; 4] {
+    let at = (first + cursor.key) as usize;
     let [before, after] = [set.values()[at], set.values()[at + 1]].map(|key| key.map(f32::to_bits));
     std::array::from_fn(|i| before[i] ^ after[i])
 }

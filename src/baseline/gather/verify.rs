@@ -7,7 +7,7 @@ use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::animation::verify::{Draw, SIZES, random_skeleton};
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::baseline::gather::reference::{gather, gather_keys};
 use crate::baseline::gather::{GatherPass, Reads};
 use crate::harness::Cases;
@@ -23,22 +23,22 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, ([bones, count], keys)) in SIZES.into_iter().zip([2, 3, 60].into_iter().cycle()).enumerate() {
         let mut draw = Draw::new(case as u32);
         let set = evenly_keyed(&mut draw, bones, keys)?;
-        let mut place = || Place { key: draw.word() % (keys - 1), fraction: draw.signed().abs() };
-        let places: Vec<Place> = (0..count).map(|_| place()).collect();
+        let mut cursor = || KeyframeCursor { key: draw.word() % (keys - 1), fraction: draw.signed().abs() };
+        let cursors: Vec<KeyframeCursor> = (0..count).map(|_| cursor()).collect();
         let instances: Vec<_> =
             (0..count as u32).map(|i| Instance::new(i % 2, Wrap::Loop, 0.0, 1.0)).collect();
         let clips = ClipBuffers::new(gpu, &set)?;
         for reads in [Reads::Everything, Reads::Keys(keys)] {
             let mut crowd = Crowd::new(gpu, &set, &instances)?;
-            crowd.places.write(gpu, &places)?;
+            crowd.cursors.write(gpu, &cursors)?;
             let output = Poisoned::<Local>::new(gpu, bones * count)?;
             crowd.locals = output.buffer.clone();
             let job = GatherPass::new(gpu, reads)?.prepare(gpu, &clips, &crowd)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
             let mut expected = vec![[[0; 4]; 3]; bones * count];
             match reads {
-                Reads::Everything => gather(&set, &instances, &places, &mut expected),
-                Reads::Keys(keys) => gather_keys(&set, keys, &places, &mut expected),
+                Reads::Everything => gather(&set, &instances, &cursors, &mut expected),
+                Reads::Keys(keys) => gather_keys(&set, keys, &cursors, &mut expected),
             }
             let comparison = output.check(gpu, |actual| {
                 exact(bytemuck::cast_slice::<_, u32>(actual), expected.as_flattened().as_flattened())

@@ -28,7 +28,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             drop(std::hint::black_box(loads(&map, [1024, 1024], 16)));
         }),
     ];

@@ -1,4 +1,4 @@
-//! Texel loads: twin of `kernels/baseline/loads.wgsl`.
+//! Texel loads: reference of `kernels/baseline/loads.wgsl`.
 
 use crate::surface::map::{Address, HeightMap};
 

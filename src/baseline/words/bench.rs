@@ -21,7 +21,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || drop(std::hint::black_box(words([1, 2], size[0], size[1])))),
+        Contender::host(Backend::Reference, || drop(std::hint::black_box(words([1, 2], size[0], size[1])))),
     ];
     bench.case(format!("{} × {}", size[0], size[1]), (count, "word"), 4 * count as u64, contenders)
 }

@@ -1,4 +1,4 @@
-//! Random words: twin of `kernels/baseline/words.wgsl`.
+//! Random words: reference of `kernels/baseline/words.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
 

@@ -11,7 +11,7 @@ use relievo::harness::{Row, table};
 use crate::Context;
 use crate::output::{json, say, write_file};
 
-/// Measures every kernel beside its CPU twin and a copy of the same bytes, in one run.
+/// Measures every kernel beside its CPU reference and a copy of the same bytes, in one run.
 #[derive(Args)]
 pub struct Bench {
     /// Only kernels whose name contains this, such as `terrain` or `height`.
@@ -27,7 +27,7 @@ impl Bench {
         let gpu = context.gpu()?;
         say(format_args!("adapter: {}", gpu.adapter()))?;
         if cfg!(debug_assertions) {
-            say("this is a debug build: the twins are slower than they should be (use --release)")?;
+            say("this is a debug build: the references are slower than they should be (use --release)")?;
         }
         let spinner = indicatif::ProgressBar::new_spinner();
         let summary = run(&gpu, self.only.as_deref(), &mut |row: &Row| {

@@ -47,10 +47,10 @@ use plan::Plan;
 /// "range", "frames", "rate", "focal_pixels", and "distances", a list of
 ///   "distance"; "mean_omega"
 ///   "interpolated", "skipped": bones of instances, of all moving ones in all frames but the first, which is full
-///   "share": interpolated / moving; "concatenated": bones whose matrices were computed; "concatenated_share": of all
-///   "nanoseconds_per_bone" {"gate", "sample", "concat", "total"}: medians over frames, divided by all bones of the
+///   "fraction": interpolated / moving; "concatenated": bones whose matrices were computed; "concatenated_fraction": of all
+///   "nanoseconds_per_bone" {"gate", "sample", "local_to_model", "total"}: medians over frames, divided by all bones of the
 ///     crowd; gate is the search for phases, the decision and the lists; on the CPU the total alone
-///   "full_nanoseconds_per_bone" {"sample", "concat", "total"}: the same crowd without a gate
+///   "full_nanoseconds_per_bone" {"sample", "local_to_model", "total"}: the same crowd without a gate
 ///   "error" {"rms_metres", "p99_metres", "max_metres", "rms_pixels", "p99_pixels", "max_pixels", "points", "unseen"}:
 ///     over all points and frames; metres are the model's; points nearer than the near plane are unseen, and have no
 ///     pixels
@@ -66,8 +66,8 @@ use plan::Plan;
 ///   "frame_nanoseconds": gate, places, sampling, concatenation, who is seen, skinning, and the drawing, in one
 ///     submission; "compute_nanoseconds", "draw_nanoseconds": what precedes the drawing, and the drawing, each alone
 ///   "full_…" of each: the same crowd without a gate, fully skinned
-///   "skinned_share": clusters that were skinned, of all, in the frames that were timed
-///   "triangle_share": triangles that were drawn, of all meshes in full
+///   "skinned_fraction": clusters that were skinned, of all, in the frames that were timed
+///   "triangle_fraction": triangles that were drawn, of all meshes in full
 ///   "drawn_timed_by": as "timed_by", of these; on a processor wall
 ///   "vertex_error": as "error", of all vertices of the full crowd to those drawn, or where a mesh lacks them, to its
 ///     surface, in the frames that were timed;
@@ -88,7 +88,7 @@ use plan::Plan;
 /// With --pareto, instead: error against cost for every gate, at one distance (--tall), on the CPU: DIR/pareto.json
 /// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
 /// "points", "verdicts"}, pareto_max.png, pareto_rms.png. Instances stand at one place, turned every way. A point is
-/// {"gate", "parameter", "cost", "concatenated_share", the fields of "error", "jump"}: "cost" is interpolated /
+/// {"gate", "parameter", "cost", "concatenated_fraction", the fields of "error", "jump"}: "cost" is interpolated /
 /// moving, "parameter" what the gate sweeps: Ω of uniform, random and skip-period, the share of the moving bones of
 /// budget, the pixels of bounded. Verdicts compare along these curves: "bounded_max_pixels" and "budget_rms_pixels"
 /// [{"cost", "gate", "uniform", "random", "ratio"}], errors at equal cost, ratio to the better rival;

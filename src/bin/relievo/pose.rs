@@ -6,12 +6,12 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 #[cfg(feature = "gpu")]
 use relievo::animation::ClipSet;
-use relievo::animation::concat::reference::concat;
-use relievo::animation::concat::{ConcatPass, Walk};
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
-use relievo::animation::place::PlacePass;
+use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::animation::local_to_model::reference::local_to_model;
+use relievo::animation::local_to_model::{LocalToModelPass, Walk};
 use relievo::animation::sample::SamplePass;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
@@ -140,7 +140,7 @@ impl Pose {
 
 pub fn on_cpu(model: &Model, clip: &Clip, time: f32) -> (Vec<Transform>, Vec<Affine>) {
     let locals = sample(clip, time, RotationPath::Slerp);
-    let models = concat(&model.skeleton, &locals);
+    let models = local_to_model(&model.skeleton, &locals);
     (locals, models)
 }
 
@@ -151,13 +151,13 @@ fn on_gpu(gpu: &Gpu, model: &Model, clip: &Clip, time: f32) -> Result<(Vec<Trans
     let clips = ClipBuffers::new(gpu, &set)?;
     // The time is inside the clip already, and its end is not its start here.
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
-    let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
+    let place = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &model.skeleton, &crowd)?;
+    let local_to_model = LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &model.skeleton, &crowd)?;
     gpu.run("pose", |encoder| {
         place.record(encoder);
         sample.record(encoder);
-        concat.record(encoder);
+        local_to_model.record(encoder);
     })?;
     let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
     Ok((locals, crowd.model_matrices().read_blocking(gpu)?))

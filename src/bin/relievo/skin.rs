@@ -9,13 +9,13 @@ use relievo::asset::Model;
 use relievo::asset::mesh::COORDINATE_LIMIT;
 use relievo::skinning::add_levels;
 use relievo::skinning::export::obj;
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::reference::{Part, Scene};
 use relievo::skinning::picture::texture::Surface;
 use relievo::skinning::picture::{Light, framing};
 use relievo::skinning::poses_of;
-use relievo::skinning::reduction::Reduction;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::surface::linear_image::LinearImage;
@@ -97,7 +97,7 @@ impl Skin {
 
     #[cfg_attr(not(feature = "gpu"), allow(unused_variables, reason = "the device is the context's"))]
     fn made(&self, context: &Context) -> Result<Made, Error> {
-        let reduction = reduction(&self.influences)?;
+        let instance_lod = instance_lod(&self.influences)?;
         let mut model = open(&self.model)?;
         if model.meshes.is_empty() {
             let bound = "must be at least one that is not compressed with Draco";
@@ -111,7 +111,7 @@ impl Skin {
             coarsen(&mut model, clip, metres)?;
         }
         let blend = if self.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
-        let moment = Moment { model: &model, clip, time, reduction, blend };
+        let moment = Moment { model: &model, clip, time, instance_lod, blend };
         let (vertices, picture) = match self.backend {
             #[cfg(feature = "gpu")]
             Backend::Gpu => device::skinned(&context.gpu()?, &moment)?,
@@ -151,14 +151,16 @@ struct Made {
 }
 
 /// `full`, `truncate:K` or `fade:LAMBDA`.
-fn reduction(text: &str) -> Result<Reduction, InputError> {
+fn instance_lod(text: &str) -> Result<InstanceLod, InputError> {
     let refused = || InputError::new("influences", text, "must be full, truncate:K or fade:LAMBDA");
     let named =
         |error: InputError| InputError::new("influences", text, format!("{} {}", error.field, error.bound));
     match text.split_once(':') {
-        None if text == "full" => Ok(Reduction::FULL),
-        Some(("truncate", most)) => Reduction::truncate(most.parse().map_err(|_| refused())?).map_err(named),
-        Some(("fade", fade)) => Reduction::fade(fade.parse().map_err(|_| refused())?).map_err(named),
+        None if text == "full" => Ok(InstanceLod::FULL),
+        Some(("truncate", most)) => {
+            InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(named)
+        }
+        Some(("fade", fade)) => InstanceLod::fade(fade.parse().map_err(|_| refused())?).map_err(named),
         _ => Err(refused()),
     }
 }
@@ -168,7 +170,7 @@ struct Moment<'a> {
     model: &'a Model,
     clip: usize,
     time: f32,
-    reduction: Reduction,
+    instance_lod: InstanceLod,
     blend: Blend,
 }
 
@@ -197,7 +199,7 @@ fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error
     let skinned: Vec<Vec<Vertex>> = (model.meshes.iter())
         .map(|mesh| {
             let palette = palette_for(&model.skins[mesh.skin], &models, moment.blend);
-            skin(&morph(mesh, &moment.weights(mesh)), &mesh.influences, &palette, moment.reduction)
+            skin(&morph(mesh, &moment.weights(mesh)), &mesh.influences, &palette, moment.instance_lod)
         })
         .collect();
     skinned.iter().enumerate().try_for_each(|(mesh, vertices)| check_range(mesh, vertices))?;
@@ -222,11 +224,11 @@ fn on_host(moment: &Moment<'_>) -> Result<(Vec<Vec<Vertex>>, LinearImage), Error
 mod device {
     use super::*;
     use relievo::animation::ClipSet;
-    use relievo::animation::concat::{ConcatPass, Walk};
     use relievo::animation::crowd::{ClipBuffers, Crowd};
     use relievo::animation::instance::Instance;
     use relievo::animation::instance::Wrap;
-    use relievo::animation::place::PlacePass;
+    use relievo::animation::keyframe_cursor::KeyframeCursorPass;
+    use relievo::animation::local_to_model::{LocalToModelPass, Walk};
     use relievo::animation::sample::SamplePass;
     use relievo::asset::keyframe::RotationPath;
     use relievo::asset::transform::AFFINE_IDENTITY;
@@ -262,13 +264,14 @@ mod device {
         let clips = ClipBuffers::new(gpu, &set)?;
         // The time is inside the clip already, and its end is not its start here.
         let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, moment.time, 0.0)])?;
-        let place = PlacePass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
+        let place = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
         let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-        let concat = ConcatPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &moment.model.skeleton, &crowd)?;
+        let local_to_model =
+            LocalToModelPass::new(gpu, Walk::of(gpu))?.prepare(gpu, &moment.model.skeleton, &crowd)?;
         gpu.run("pose", |encoder| {
             place.record(encoder);
             sample.record(encoder);
-            concat.record(encoder);
+            local_to_model.record(encoder);
         })?;
         Ok(crowd)
     }
@@ -281,7 +284,7 @@ mod device {
         albedo: &Albedo,
     ) -> Result<(Vec<Vertex>, SkinnedScene), Error> {
         let frame = SkinFrame::new(gpu, moment.model, mesh, posed.model_matrices(), 1, moment.blend)?;
-        frame.crowd.reductions.write(gpu, &[moment.reduction])?;
+        frame.crowd.instance_lods.write(gpu, &[moment.instance_lod])?;
         frame.crowd.weights.write(gpu, &moment.weights(&moment.model.meshes[mesh]))?;
         gpu.run("skin", |encoder| frame.record_all(encoder))?;
         let instances = SkinnedInstances {

@@ -214,7 +214,7 @@ impl Terrain {
         if grid.contains(&0) {
             return Err(InputError::new("patches", &self.patches, "must be at least 1x1").into());
         }
-        let width = u64::from(config.patch_size) + 2 * self.reach();
+        let width = u64::from(config.patch_size) + 2 * self.apron();
         let load = Load { grid, width, features: 0 };
         load.check(&self.patches)?;
         let patches = grid_patches(grid, origin)?;
@@ -235,7 +235,7 @@ impl Terrain {
         Ok(Plan { recipe, grid, patches, size, shading: Shading { weights, ..Shading::default() }, textures })
     }
 
-    fn reach(&self) -> u64 {
+    fn apron(&self) -> u64 {
         1 + u64::from(self.thermal.unwrap_or(0)) + u64::from(self.despike.is_some())
     }
 

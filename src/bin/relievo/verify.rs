@@ -12,7 +12,7 @@ use relievo::verify::{Report, run};
 use crate::Context;
 use crate::output::{json, say, write_file};
 
-/// Runs every kernel against its CPU twin on your adapter and says what holds. Exits 1 when something does not.
+/// Runs every kernel against its CPU reference on your adapter and says what holds. Exits 1 when something does not.
 #[derive(Args)]
 pub struct Verify {
     /// Only kernels whose name contains this, such as `terrain/height` or `thermal`.

@@ -8,9 +8,9 @@ use crate::measure::vertices::{FrameCost, VertexMeter};
 use crate::render::skinned::SkinnedScene;
 use crate::render::target::Target;
 use crate::skinning::frame::SkinFrame;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::LodJob;
 use crate::skinning::morph_weights::MorphWeightsJob;
-use crate::skinning::reduction::Reduction;
 
 /// A way to animate and skin, and its own vertices.
 pub(super) struct Look {
@@ -59,7 +59,7 @@ impl Look {
     pub(super) fn skin(&self, encoder: &mut wgpu::CommandEncoder) {
         for mesh in &self.meshes {
             match self.variant.animation {
-                Animation::Gated => mesh.skin.record_moved(encoder),
+                Animation::Gated => mesh.skin.record_updated_bones(encoder),
                 Animation::Full => mesh.skin.record_all(encoder),
             }
         }
@@ -84,10 +84,15 @@ impl Look {
     }
 
     /// Counts the clusters and triangles of a frame of a mesh.
-    pub(super) fn count(&mut self, gpu: &Gpu, mesh: usize, reductions: &[Reduction]) -> Result<(), Error> {
+    pub(super) fn count(
+        &mut self,
+        gpu: &Gpu,
+        mesh: usize,
+        instance_lods: &[InstanceLod],
+    ) -> Result<(), Error> {
         let skin = &self.meshes[mesh].skin;
-        let seen = reductions.iter().filter(|reduction| reduction.most > 0);
-        let levels = seen.map(|reduction| skin.clusters.level(reduction.level));
+        let seen = instance_lods.iter().filter(|instance_lod| instance_lod.most > 0);
+        let levels = seen.map(|instance_lod| skin.clusters.level(instance_lod.level));
         let clusters = match self.variant.animation {
             Animation::Full => levels.clone().map(|level| level.clusters).sum(),
             Animation::Gated => skin.active.dispatched.read_blocking(gpu)?[3],
@@ -113,8 +118,8 @@ impl Look {
             compute_nanoseconds: compute,
             draw_nanoseconds: draw,
             nanoseconds_per_vertex: skin / vertices as f64,
-            skinned_share: fraction(self.clusters),
-            triangle_share: fraction(self.triangles),
+            skinned_fraction: fraction(self.clusters),
+            triangle_fraction: fraction(self.triangles),
             vertex_error: self.errors.errors(),
         }
     }

@@ -211,16 +211,16 @@ impl<'a> Drawing<'a> {
                 let drawn = &look.meshes[mesh];
                 let own = drawn.skin.skinned.read_blocking(gpu)?;
                 let stale = Skinned { vertices: &own, places: &drawn.places };
-                let reductions = drawn.skin.crowd.reductions.read_blocking(gpu)?;
+                let instance_lods = drawn.skin.crowd.instance_lods.read_blocking(gpu)?;
                 let levelled = stage.levelled.as_ref().filter(|_| look.variant.mesh != MeshDetail::Full);
                 let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));
                 look.errors.add(
-                    (placements, stage.lens),
-                    Seen { reductions: &reductions, levels },
+                    (placements, stage.projection),
+                    Seen { instance_lods: &instance_lods, levels },
                     stale,
                     fresh,
                 );
-                look.count(gpu, mesh, &reductions)?;
+                look.count(gpu, mesh, &instance_lods)?;
             }
         }
         Ok(())

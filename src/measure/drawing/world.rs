@@ -16,10 +16,10 @@ use crate::render::target::COLOR_FORMAT;
 use crate::render::{Albedo, ColorTexture};
 use crate::skinning::Extent;
 use crate::skinning::frame::SkinFrame;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE, list_words};
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::picture::Light;
-use crate::skinning::reduction::Reduction;
 use crate::skinning::vertex::Blend;
 use crate::surface::mips::Mips;
 use crate::{Error, InputError};
@@ -55,7 +55,7 @@ impl<'a> World<'a> {
             clip_from_world: camera::rh::proj::directx::perspective(
                 FIELD_OF_VIEW,
                 aspect,
-                stage.lens.near,
+                stage.projection.near,
                 far,
             ),
             renderer: SkinnedRenderer::new(gpu, COLOR_FORMAT)?,
@@ -137,7 +137,7 @@ impl<'a> World<'a> {
         let Extent { center, radius, .. } = stage.extents[index];
         let most = match skinning {
             SkinningDetail::Truncate { max_influences } => max_influences,
-            _ => Reduction::FULL.most,
+            _ => InstanceLod::FULL.most,
         };
         let view = LodView {
             clip_from_world: self.clip_from_world,
@@ -150,8 +150,8 @@ impl<'a> World<'a> {
             radius,
             levels,
         };
-        let reductions = &skin.crowd.reductions;
-        Ok(LodPass::new(gpu)?.prepare(gpu, &view, placements, reductions, drawn, &scene.arguments)?)
+        let instance_lods = &skin.crowd.instance_lods;
+        Ok(LodPass::new(gpu)?.prepare(gpu, &view, placements, instance_lods, drawn, &scene.arguments)?)
     }
 }
 

@@ -35,7 +35,7 @@ pub struct ParetoPoint {
     /// Bones interpolated, of all that move, over all frames but the first.
     pub cost: f64,
     /// Bones whose matrices were computed, of all.
-    pub concatenated_share: f64,
+    pub concatenated_fraction: f64,
     /// Of points a bone's length from each bone, along its axes.
     #[serde(flatten)]
     pub error: Errors,
@@ -85,9 +85,9 @@ pub fn pareto(
 ) -> Result<ParetoReport, Error> {
     options.validate()?;
     let stage = Stage::new(subject, &options.crowd, None, listener)?;
-    let movers = stage.table(&GateMode::Off)?;
-    let moving_bones = moving_bones(&movers);
-    let points = points(&stage, options, &movers, listener)?;
+    let animated_bones = stage.table(&GateMode::Off)?;
+    let moving_bones = moving_bones(&animated_bones);
+    let points = points(&stage, options, &animated_bones, listener)?;
     let ParetoOptions { crowd, period, weights, tall_pixels } = options;
     Ok(ParetoReport {
         model: subject.name.to_owned(),
@@ -140,11 +140,11 @@ fn mode(gate: GateName, parameter: f64, moving: usize, options: &ParetoOptions) 
 fn points(
     stage: &Stage<'_>,
     options: &ParetoOptions,
-    movers: &GateTable,
+    animated_bones: &GateTable,
     listener: Listener<'_>,
 ) -> Result<Vec<ParetoPoint>, Error> {
     let placements = stage.line_up(options.tall_pixels);
-    let moving = stage.instances.len() * moving_bones(movers);
+    let moving = stage.instances.len() * moving_bones(animated_bones);
     let mut settings = Vec::new();
     for gate in GATES {
         let mode = |parameter| mode(gate, parameter, moving, options);
@@ -154,7 +154,7 @@ fn points(
     }
     let steps = Steps::new(listener, "comparing", settings.len() as u64);
     let points = settings.par_iter().map(|(mode, parameter, table)| {
-        let point = point(stage, &placements, mode, *parameter, [table, movers]);
+        let point = point(stage, &placements, mode, *parameter, [table, animated_bones]);
         steps.step();
         point
     });
@@ -166,7 +166,7 @@ fn point(
     placements: &Placements,
     mode: &GateMode,
     parameter: f64,
-    [table, movers]: [&GateTable; 2],
+    [table, animated_bones]: [&GateTable; 2],
 ) -> Result<ParetoPoint, Error> {
     let mut lods = stage.lods(placements, table, mode.pixels());
     if matches!(mode, GateMode::Uniform | GateMode::Random | GateMode::SkipPeriod { .. }) {
@@ -174,15 +174,15 @@ fn point(
         let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
         lods.iter_mut().for_each(|lod| lod.omega = omega);
     }
-    let mut crowds = Cpu::new(stage, table, movers, mode.choice(), lods)?;
+    let mut crowds = Cpu::new(stage, table, animated_bones, mode.choice(), lods)?;
     let found = play(&mut crowds, stage, placements, false, || {})?;
     let frames = f64::from(stage.options.frames);
-    let moving = stage.instances.len() * moving_bones(movers);
+    let moving = stage.instances.len() * moving_bones(animated_bones);
     Ok(ParetoPoint {
         gate: mode.name(),
         parameter,
         cost: found.interpolated as f64 / (moving.max(1) as f64 * frames),
-        concatenated_share: found.concatenated as f64 / (stage.pairs() as f64 * frames),
+        concatenated_fraction: found.concatenated as f64 / (stage.pairs() as f64 * frames),
         error: found.errors,
         jump: found.jump,
     })

@@ -67,11 +67,11 @@ impl<'a> Attributes<'a> {
     }
 
     /// The sum where a vertex becomes another, `d` away.
-    pub fn cost(&self, vertex: u32, heir: u32, d: DVec3) -> f64 {
+    pub fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
         let quadric = &self.quadrics[vertex as usize];
         let mut cost = quadric.at(d);
         for attribute in 0..self.stride {
-            let s = self.value(heir, attribute) - self.value(vertex, attribute);
+            let s = self.value(target, attribute) - self.value(vertex, attribute);
             let (gradient, lost) = self.sums[vertex as usize * self.stride + attribute];
             cost += s * (s * quadric.weight - 2.0 * (gradient.dot(d) + lost));
         }
@@ -79,13 +79,13 @@ impl<'a> Attributes<'a> {
     }
 
     /// A vertex becomes another, `d` away.
-    pub fn merge(&mut self, vertex: u32, heir: u32, d: DVec3) {
-        let cost = self.cost(vertex, heir, d);
-        let [from, to] = [vertex, heir].map(|vertex| vertex as usize * self.stride);
+    pub fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
+        let cost = self.cost(vertex, target, d);
+        let [from, to] = [vertex, target].map(|vertex| vertex as usize * self.stride);
         let weight = self.weight(vertex);
         let mut gradients = DVec3::ZERO;
         for attribute in 0..self.stride {
-            let s = self.value(heir, attribute) - self.value(vertex, attribute);
+            let s = self.value(target, attribute) - self.value(vertex, attribute);
             let (gradient, lost) = self.sums[from + attribute];
             gradients += gradient * s;
             let sum = &mut self.sums[to + attribute];
@@ -93,7 +93,7 @@ impl<'a> Attributes<'a> {
             sum.1 += gradient.dot(d) + lost - weight * s;
         }
         let moved = self.quadrics[vertex as usize].moved_by(d, gradients, cost);
-        self.quadrics[heir as usize].add(&moved);
+        self.quadrics[target as usize].add(&moved);
     }
 }
 

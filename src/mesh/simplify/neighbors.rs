@@ -4,12 +4,12 @@ use super::topology::{Kind, Marks, Topology};
 
 /// The vertices that something may become: none, one, or one of two.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Heirs {
+pub struct Remap {
     vertices: [u32; 2],
     count: usize,
 }
 
-impl Heirs {
+impl Remap {
     fn add(&mut self, vertex: u32) {
         let is_known = self.vertices[..self.count].contains(&vertex);
         if !is_known && self.count < 2 {
@@ -20,7 +20,7 @@ impl Heirs {
     }
 }
 
-impl IntoIterator for Heirs {
+impl IntoIterator for Remap {
     type Item = u32;
     type IntoIter = std::iter::Take<std::array::IntoIter<u32, 2>>;
 
@@ -76,13 +76,13 @@ impl Neighbors {
         let [points, vertices] = marks;
         points.clear();
         let mut is_split = false;
-        for spoke in topology.spokes(point) {
-            let own = Wedge { vertex: spoke.vertex, sheet: 0 };
+        for ring in topology.one_ring(point) {
+            let own = Wedge { vertex: ring.vertex, sheet: 0 };
             is_split |= self.wedges.first().is_some_and(|first| first.vertex != own.vertex);
             if self.wedges.is_empty() {
                 self.wedges.push(own);
             }
-            for other in [spoke.next, spoke.last] {
+            for other in [ring.next, ring.last] {
                 let at = points.get(other.point).unwrap_or_else(|| {
                     points.set(other.point, self.all.len() as u32);
                     self.all.push(Neighbor { point: other.point, triangles: 0, meets: Default::default() });
@@ -104,19 +104,19 @@ impl Neighbors {
     fn find_sheets(&mut self, topology: &Topology, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();
-        for spoke in topology.spokes(point) {
-            let own = vertices.get(spoke.vertex).unwrap_or_else(|| {
+        for ring in topology.one_ring(point) {
+            let own = vertices.get(ring.vertex).unwrap_or_else(|| {
                 let sheet = self.wedges.len() as u32;
-                self.wedges.push(Wedge { vertex: spoke.vertex, sheet });
-                vertices.set(spoke.vertex, sheet);
+                self.wedges.push(Wedge { vertex: ring.vertex, sheet });
+                vertices.set(ring.vertex, sheet);
                 sheet
             });
-            vertices.set(spoke.last.vertex, own);
+            vertices.set(ring.last.vertex, own);
         }
         self.sheets = self.wedges.len();
         let wedge = |vertex| vertices.get(vertex).map(|at| at as usize);
-        for spoke in topology.spokes(point) {
-            let (Some(own), Some(beside)) = (wedge(spoke.vertex), wedge(spoke.next.vertex)) else { continue };
+        for ring in topology.one_ring(point) {
+            let (Some(own), Some(beside)) = (wedge(ring.vertex), wedge(ring.next.vertex)) else { continue };
             let [own, beside] = [own, beside].map(|at| self.wedges[at].sheet);
             if own != beside {
                 let joined = self.wedges.iter_mut().filter(|wedge| wedge.sheet == own);
@@ -153,14 +153,14 @@ impl Neighbors {
     }
 
     /// What a wedge may become: what it shares an edge with, or else what others of its sheet do.
-    pub fn heirs(&self, neighbor: &Neighbor, wedge: &Wedge) -> Heirs {
-        let mut heirs = Heirs::default();
+    pub fn remap(&self, neighbor: &Neighbor, wedge: &Wedge) -> Remap {
+        let mut remap = Remap::default();
         let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);
-        own.for_each(|meet| heirs.add(meet.other));
-        if heirs.count == 0 {
+        own.for_each(|meet| remap.add(meet.other));
+        if remap.count == 0 {
             let beside = neighbor.meets().iter().filter(|meet| meet.own.sheet == wedge.sheet);
-            beside.for_each(|meet| heirs.add(meet.other));
+            beside.for_each(|meet| remap.add(meet.other));
         }
-        heirs
+        remap
     }
 }

@@ -61,7 +61,7 @@ impl<'a> Quadrics<'a> {
         let Some(attributes) = &self.attributes else { return 0.0 };
         let (mut sum, mut weight) = (0.0, 0.0);
         for wedge in neighbors.wedges() {
-            let (_, cost) = self.heir(points, neighbors, point, neighbor, wedge);
+            let (_, cost) = self.target(points, neighbors, point, neighbor, wedge);
             sum += cost;
             weight += attributes.weight(wedge.vertex);
         }
@@ -69,7 +69,7 @@ impl<'a> Quadrics<'a> {
     }
 
     /// What a wedge becomes, at the least cost to its attributes, and that cost.
-    pub fn heir(
+    pub fn target(
         &self,
         points: &Points,
         neighbors: &Neighbors,
@@ -78,8 +78,8 @@ impl<'a> Quadrics<'a> {
         wedge: &Wedge,
     ) -> (u32, f64) {
         let d = points.place(neighbor.point, 0) - points.place(point, 0);
-        let cost = |heir| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, heir, d));
-        let all = neighbors.heirs(neighbor, wedge).into_iter().map(|heir| (heir, cost(heir)));
+        let cost = |target| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, target, d));
+        let all = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0))
     }
 
@@ -131,10 +131,10 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, tri
 fn is_held(topology: &Topology, triangle: u32, from: Corner, to: Corner) -> bool {
     let is_shorter = topology.around(from.point).len() < topology.around(to.point).len();
     let [near, far] = if is_shorter { [from, to] } else { [to, from] };
-    let mut others = topology.spokes(near.point).filter(|spoke| spoke.triangle != triangle);
-    let beside = others.find_map(|spoke| {
-        let end = [spoke.next, spoke.last].into_iter().find(|end| end.point == far.point)?;
-        Some([spoke.vertex, end.vertex])
+    let mut others = topology.one_ring(near.point).filter(|ring| ring.triangle != triangle);
+    let beside = others.find_map(|ring| {
+        let end = [ring.next, ring.last].into_iter().find(|end| end.point == far.point)?;
+        Some([ring.vertex, end.vertex])
     });
     beside.is_none_or(|[vertex, end]| vertex != near.vertex && end != far.vertex)
 }

@@ -1,12 +1,12 @@
 //! Collapse after collapse.
 
-use super::attached::Attached;
 use super::melax;
 use super::neighbors::{Neighbor, Neighbors};
 use super::points::Points;
 use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
 use super::topology::{Kind, Marks, Topology};
+use super::tracked_samples::TrackedSamples;
 use super::turned::turns_any;
 use super::{Collapse, Cost, Options, Simplified, Stopped, Surface};
 
@@ -18,7 +18,7 @@ struct Reducer<'a> {
     /// With [`Cost::Quadric`] alone.
     quadrics: Option<Quadrics<'a>>,
     /// Where distances are limited.
-    attached: Option<Attached>,
+    tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
     /// Of points, and of vertices.
     marks: [Marks; 2],
@@ -63,16 +63,17 @@ impl<'a> Reducer<'a> {
             Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
             Cost::Melax { .. } => None,
         };
-        let attached = is_limited.then(|| Attached::new(&topology, &points, surface.indices.len() / 3));
+        let tracked_samples =
+            is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
         let (neighbors, changed) = (Neighbors::default(), Vec::new());
-        Self { points, topology, cost, quadrics, attached, neighbors, marks, changed }
+        Self { points, topology, cost, quadrics, tracked_samples, neighbors, marks, changed }
     }
 
     /// Goes on until nothing is left that is legal, with no place further off than a distance.
     fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
-        if let Some(attached) = &mut self.attached {
-            attached.set_most(distance);
+        if let Some(tracked_samples) = &mut self.tracked_samples {
+            tracked_samples.set_most(distance);
         }
         let mut queue = self.queue();
         loop {
@@ -125,7 +126,7 @@ impl<'a> Reducer<'a> {
                 queue.set(other, now);
             }
         }
-        if self.cost == (Cost::Melax { check_normals: true }) || self.attached.is_some() {
+        if self.cost == (Cost::Melax { check_normals: true }) || self.tracked_samples.is_some() {
             self.wake(queue, &changed);
         }
         self.changed = changed;
@@ -145,13 +146,13 @@ impl<'a> Reducer<'a> {
     }
 
     /// Whether what a point had best become is still there, and its other costs are what they were but for that of
-    /// becoming what `gone` became.
-    fn is_plain(&self, point: u32, gone: u32, best: &Best) -> bool {
+    /// becoming what `collapsed` became.
+    fn is_plain(&self, point: u32, collapsed: u32, best: &Best) -> bool {
         self.quadrics.as_ref().is_some_and(|quadrics| !quadrics.has_attributes())
             && self.topology.kind(point) == Kind::Interior
             && self.points.wedges(point).len() == 1
             && !best.is_second
-            && best.neighbor != gone
+            && best.neighbor != collapsed
     }
 
     /// The better of a neighbour and what was best.
@@ -167,8 +168,8 @@ impl<'a> Reducer<'a> {
         around.clear();
         let marks = &mut self.marks[0];
         marks.clear();
-        for spoke in points.iter().flat_map(|point| self.topology.spokes(*point)) {
-            for other in [spoke.next.point, spoke.last.point] {
+        for ring in points.iter().flat_map(|point| self.topology.one_ring(*point)) {
+            for other in [ring.next.point, ring.last.point] {
                 if marks.insert(other) {
                     around.push(other);
                 }
@@ -232,10 +233,9 @@ impl<'a> Reducer<'a> {
         !differ
             && self.topology.keeps_topology(point, neighbor, &mut self.marks[0])
             && !turns_any(&self.topology, &self.points, point, neighbor)
-            && self
-                .attached
-                .as_mut()
-                .is_none_or(|attached| attached.keeps_near(&self.topology, &self.points, point, neighbor))
+            && self.tracked_samples.as_mut().is_none_or(|tracked_samples| {
+                tracked_samples.keeps_near(&self.topology, &self.points, point, neighbor)
+            })
     }
 
     /// A point becomes its neighbour: all its vertices, those too that have no triangles any more.
@@ -244,25 +244,25 @@ impl<'a> Reducer<'a> {
         self.neighbors.look(&self.topology, point, &mut self.marks);
         if let Some(to) = self.neighbors.all().iter().find(|other| other.point == neighbor) {
             for wedge in self.neighbors.wedges() {
-                let heir = match &self.quadrics {
-                    Some(quadrics) => quadrics.heir(&self.points, &self.neighbors, point, to, wedge).0,
-                    None => self.neighbors.heirs(to, wedge).into_iter().next().unwrap_or(wedge.vertex),
+                let target = match &self.quadrics {
+                    Some(quadrics) => quadrics.target(&self.points, &self.neighbors, point, to, wedge).0,
+                    None => self.neighbors.remap(to, wedge).into_iter().next().unwrap_or(wedge.vertex),
                 };
-                moved.push([wedge.vertex, heir]);
+                moved.push([wedge.vertex, target]);
             }
         }
         let live = moved.len();
-        if let Some(attached) = &mut self.attached {
-            attached.collapse(&self.topology, &self.points, point, neighbor);
+        if let Some(tracked_samples) = &mut self.tracked_samples {
+            tracked_samples.collapse(&self.topology, &self.points, point, neighbor);
         }
         self.topology.collapse(point, neighbor, &moved[start..]);
         if let Some(quadrics) = &mut self.quadrics {
             quadrics.merge(&self.points, point, neighbor, &moved[start..]);
         }
-        let heir = moved[start][1];
+        let target = moved[start][1];
         for &wedge in self.points.wedges(point) {
             if !moved[start..live].iter().any(|[from, _]| *from == wedge) {
-                moved.push([wedge, heir]);
+                moved.push([wedge, target]);
             }
         }
     }
@@ -303,7 +303,7 @@ mod tests {
         let points = Points::new(surface.poses);
         let topology = Topology::new(&points, surface.indices);
         let mut reducer = Reducer::new(surface, points, topology, cost, distance < f32::INFINITY);
-        reducer.attached.iter_mut().for_each(|attached| attached.set_most(distance));
+        reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(distance));
         let mut queue = reducer.queue();
         let (mut moved, mut seconds, mut steps) = (Vec::new(), 0, 0);
         while let Some((point, best)) = reducer.next(&mut queue) {

@@ -49,7 +49,7 @@ pub struct Corner {
 
 /// A triangle seen from one of its points: its vertex there, and the other corners in the triangle's order.
 #[derive(Debug, Clone, Copy)]
-pub struct Spoke {
+pub struct RingTriangle {
     pub triangle: u32,
     pub vertex: u32,
     pub next: Corner,
@@ -105,18 +105,18 @@ impl Topology {
     /// A point is manifold where each neighbour begins at most one triangle and ends at most one, and following them
     /// from one to the next passes all.
     fn kind_of(&self, point: u32, follows: &mut Marks, leads: &mut Marks) -> Kind {
-        let Some(some) = self.spokes(point).next() else { return Kind::Locked };
+        let Some(some) = self.one_ring(point).next() else { return Kind::Locked };
         follows.clear();
         leads.clear();
-        for spoke in self.spokes(point) {
-            let is_new = follows.get(spoke.next.point).is_none() && leads.get(spoke.last.point).is_none();
+        for ring in self.one_ring(point) {
+            let is_new = follows.get(ring.next.point).is_none() && leads.get(ring.last.point).is_none();
             if !is_new {
                 return Kind::Locked;
             }
-            follows.set(spoke.next.point, spoke.last.point);
-            leads.set(spoke.last.point, spoke.next.point);
+            follows.set(ring.next.point, ring.last.point);
+            leads.set(ring.last.point, ring.next.point);
         }
-        let border = self.spokes(point).map(|spoke| spoke.next.point).find(|next| leads.get(*next).is_none());
+        let border = self.one_ring(point).map(|ring| ring.next.point).find(|next| leads.get(*next).is_none());
         let first = border.unwrap_or(some.next.point);
         let (mut at, mut passed) = (first, 0);
         while let Some(next) = follows.get(at) {
@@ -150,7 +150,7 @@ impl Topology {
         &self.around[point as usize]
     }
 
-    pub fn spokes(&self, point: u32) -> impl Iterator<Item = Spoke> + '_ {
+    pub fn one_ring(&self, point: u32) -> impl Iterator<Item = RingTriangle> + '_ {
         self.around(point).iter().map(move |&triangle| {
             let [a, b, c] = self.corners[triangle as usize];
             let [own, next, last] = match point {
@@ -158,7 +158,7 @@ impl Topology {
                 _ if b.point == point => [b, c, a],
                 _ => [c, a, b],
             };
-            Spoke { triangle, vertex: own.vertex, next, last }
+            RingTriangle { triangle, vertex: own.vertex, next, last }
         })
     }
 
@@ -168,12 +168,12 @@ impl Topology {
         marks.clear();
         let mut across = [u32::MAX; 2];
         let mut shared = 0;
-        for spoke in self.spokes(neighbor) {
-            marks.insert(spoke.next.point);
-            marks.insert(spoke.last.point);
-            let has_point = [spoke.next.point, spoke.last.point].iter().position(|other| *other == point);
+        for ring in self.one_ring(neighbor) {
+            marks.insert(ring.next.point);
+            marks.insert(ring.last.point);
+            let has_point = [ring.next.point, ring.last.point].iter().position(|other| *other == point);
             if let Some(at) = has_point {
-                let other = [spoke.last.point, spoke.next.point][at];
+                let other = [ring.last.point, ring.next.point][at];
                 if shared == 2 || across[..shared].contains(&other) {
                     return false;
                 }
@@ -182,16 +182,18 @@ impl Topology {
             }
         }
         let both_across =
-            |spoke: Spoke| across.contains(&spoke.next.point) && across.contains(&spoke.last.point);
+            |ring: RingTriangle| across.contains(&ring.next.point) && across.contains(&ring.last.point);
         if shared == 1 && self.around(point).len() == 1 && self.around(neighbor).len() == 1
-            || shared == 2 && self.spokes(point).any(both_across) && self.spokes(neighbor).any(both_across)
+            || shared == 2
+                && self.one_ring(point).any(both_across)
+                && self.one_ring(neighbor).any(both_across)
         {
             return false;
         }
         // Of each neighbour in common, once: those across are known to be two different ones.
         let mut common = 0;
-        for spoke in self.spokes(point) {
-            for other in [spoke.next.point, spoke.last.point] {
+        for ring in self.one_ring(point) {
+            for other in [ring.next.point, ring.last.point] {
                 if marks.get(other) == Some(0) {
                     marks.set(other, 1);
                     common += 1;

@@ -32,10 +32,10 @@ pub fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32
             (Ok(before), Ok(after)) => before.dot(after) > 0.0,
         }
     };
-    let spokes =
-        || topology.spokes(point).filter(|spoke| ![spoke.next.point, spoke.last.point].contains(&neighbor));
+    let one_ring =
+        || topology.one_ring(point).filter(|ring| ![ring.next.point, ring.last.point].contains(&neighbor));
     (0..points.poses()).any(|pose| {
         let ends = [point, neighbor].map(|point| points.place(point, pose));
-        spokes().any(|spoke| !stays(pose, ends, [spoke.next.point, spoke.last.point]))
+        one_ring().any(|ring| !stays(pose, ends, [ring.next.point, ring.last.point]))
     })
 }

@@ -114,7 +114,7 @@ impl TerrainScene {
         };
         let uniform = Uniform::new(gpu, "field", &params)?;
         let bytes = fields.count as usize * Place::SHADER_SIZE.get() as usize;
-        let places = Buffer::new(gpu, "places", bytes.max(Place::SHADER_SIZE.get() as usize))?;
+        let places = Buffer::new(gpu, "cursors", bytes.max(Place::SHADER_SIZE.get() as usize))?;
         let resources = [
             uniform.raw().as_entire_binding(),
             fields.heights.raw().as_entire_binding(),

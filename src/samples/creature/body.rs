@@ -12,7 +12,7 @@ use crate::asset::influences::{Influence, Influences};
 use crate::asset::mesh::solved_tangents;
 
 /// The most bones of a vertex.
-const MOST: usize = 4;
+const MAX: usize = 4;
 
 /// The mesh of a skin of all bones; `places` are where those are at rest.
 ///
@@ -111,9 +111,9 @@ impl Body<'_> {
         for (position, influences) in surface.positions[first..].iter().zip(&mut surface.influences[first..])
         {
             let near = (1.0 - position.distance(center) / 0.12).max(0.0);
-            let share = (0.8 * near * near * (3.0 - 2.0 * near)) as f32;
-            influences.iter_mut().for_each(|influence| influence.weight *= 1.0 - share);
-            influences.push(Influence { bone, weight: share });
+            let fraction = (0.8 * near * near * (3.0 - 2.0 * near)) as f32;
+            influences.iter_mut().for_each(|influence| influence.weight *= 1.0 - fraction);
+            influences.push(Influence { bone, weight: fraction });
         }
     }
 
@@ -254,7 +254,7 @@ fn strongest(mut influences: Vec<Influence>) -> Vec<Influence> {
         }
     }
     merged.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    merged.truncate(MOST);
+    merged.truncate(MAX);
     merged
 }
 

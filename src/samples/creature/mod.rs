@@ -67,7 +67,7 @@ fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::concat::reference::concat;
+    use crate::animation::local_to_model::reference::local_to_model;
     use crate::animation::sample::reference::sample;
     use crate::asset::clip::Part as TrackPart;
     use crate::asset::keyframe::RotationPath;
@@ -79,7 +79,7 @@ mod tests {
 
     fn pose(model: &Model, clip: &str, time: f32) -> Vec<Affine> {
         let clip = model.clip(clip).expect("there");
-        concat(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
+        local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
     }
 
     fn place(model: &Model, pose: &[Affine], name: &str) -> [f32; 3] {
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(model.clips.iter().map(Clip::name).collect::<Vec<_>>(), ["walk", "idle", "wave"]);
         assert!(model.skins[0].validate(&model.skeleton).is_ok());
         // At rest the skin's matrices are identities.
-        let rest = concat(&model.skeleton, &model.skeleton.rest());
+        let rest = local_to_model(&model.skeleton, &model.skeleton.rest());
         for (model, bind) in rest.iter().zip(&model.skins[0].inverse_binds) {
             let [x, y, z] = [bind[12], bind[13], bind[14]];
             let moved = model.map(|row| row[0] * x + row[1] * y + row[2] * z + row[3]);
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn it_stands_as_tall_as_a_person() {
         let model = model();
-        let rest = concat(&model.skeleton, &model.skeleton.rest());
+        let rest = local_to_model(&model.skeleton, &model.skeleton.rest());
         let heights = rest.iter().map(|bone| bone[1][3]);
         let [low, high] = [heights.clone().fold(f32::MAX, f32::min), heights.fold(f32::MIN, f32::max)];
         assert!((-0.02..0.1).contains(&low) && (1.6..2.1).contains(&high), "{low} to {high}");

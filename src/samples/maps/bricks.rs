@@ -62,17 +62,17 @@ impl Pattern for Bricks {
         let (wear, grain) = (self.wear.signed(u, v), self.grain.signed(u, v));
         // Edges crumble where the wear is strongest.
         let inside = depth_inside(place, half) - 0.006 * (wear - 0.25).max(0.0);
-        let share = (inside / BEVEL).clamp(0.0, 1.0);
+        let fraction = (inside / BEVEL).clamp(0.0, 1.0);
         let tilt = 0.5 * ((tilt_x - 0.5) * place[0] + (tilt_y - 0.5) * place[1]);
         let top = 0.86 + 0.08 * (rise - 0.5) + tilt + 0.045 * wear + 0.025 * grain;
         let joint = 0.24 + 0.05 * wear + 0.05 * grain;
-        let height = blend(joint, top, share * (2.0 - share));
+        let height = blend(joint, top, fraction * (2.0 - fraction));
 
         let stain = self.stain.at(u, v);
         let clay = blend_color(CLAY[0], CLAY[1], 2.0 * tone);
         let clay = blend_color(clay, CLAY[2], 2.0 * tone - 1.0);
         let clay = shade(clay, 0.82 + 0.36 * stain + 0.07 * grain + 0.05 * wear);
         let mortar = shade(MORTAR, 0.85 + 0.25 * stain + 0.10 * grain);
-        Sample { height, color: blend_color(mortar, clay, smooth_step(0.0, 0.35, share)) }
+        Sample { height, color: blend_color(mortar, clay, smooth_step(0.0, 0.35, fraction)) }
     }
 }

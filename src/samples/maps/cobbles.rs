@@ -102,10 +102,10 @@ impl Pattern for Cobbles {
             (random(27, stone.id), random(28, stone.id), random(29, stone.id));
         let (bumps, grain, patches) =
             (self.bumps.signed(u, v), self.grain.signed(u, v), self.patches.at(u, v));
-        let share = ((stone.border - GAP) / RIM).clamp(0.0, 1.0);
+        let fraction = ((stone.border - GAP) / RIM).clamp(0.0, 1.0);
         let tilt = 0.22 * ((tilt_x - 0.5) * stone.offset[0] + (tilt_y - 0.5) * stone.offset[1]);
         // A quarter of a circle: steep at the gap, level at the top.
-        let dome = (share * (2.0 - share)).sqrt();
+        let dome = (fraction * (2.0 - fraction)).sqrt();
         let top = 0.90 - 0.16 * rise + tilt + 0.05 * bumps + 0.018 * grain;
         let gap = 0.13 + 0.08 * bumps + 0.05 * grain;
         let height = blend(gap, top, dome);
@@ -115,6 +115,6 @@ impl Pattern for Cobbles {
         let granite = shade(granite, 0.86 + 0.22 * patches + 0.10 * grain + 0.08 * bumps);
         let ground = blend_color(SOIL, MOSS, smooth_step(0.45, 0.62, patches));
         let ground = shade(ground, 1.0 + 0.25 * grain);
-        Sample { height, color: blend_color(ground, granite, smooth_step(0.0, 0.10, share)) }
+        Sample { height, color: blend_color(ground, granite, smooth_step(0.0, 0.10, fraction)) }
     }
 }

@@ -48,13 +48,15 @@ impl Line {
         Self { glyphs }
     }
 
-    /// The distance to the nearest outline: positive inside the letters, negative outside. Further than `reach`
-    /// outside, just below −`reach`.
-    pub fn depth_inside(&self, place: [f64; 2], reach: f64) -> f64 {
+    /// The distance to the nearest outline: positive inside the letters, negative outside. Further than `bone_radius`
+    /// outside, just below −`bone_radius`.
+    pub fn depth_inside(&self, place: [f64; 2], bone_radius: f64) -> f64 {
         let near = |glyph: &&Glyph| {
-            (0..2).all(|axis| place[axis] > glyph.low[axis] - reach && place[axis] < glyph.high[axis] + reach)
+            (0..2).all(|axis| {
+                place[axis] > glyph.low[axis] - bone_radius && place[axis] < glyph.high[axis] + bone_radius
+            })
         };
-        self.glyphs.iter().filter(near).map(|glyph| glyph.depth_inside(place)).fold(-reach, f64::max)
+        self.glyphs.iter().filter(near).map(|glyph| glyph.depth_inside(place)).fold(-bone_radius, f64::max)
     }
 }
 

@@ -130,13 +130,13 @@ impl FromStr for BuiltInMap {
 }
 
 /// From `a` (at 0 or less) to `b` (at 1 or more).
-fn blend(a: f64, b: f64, share: f64) -> f64 {
-    a + (b - a) * share.clamp(0.0, 1.0)
+fn blend(a: f64, b: f64, fraction: f64) -> f64 {
+    a + (b - a) * fraction.clamp(0.0, 1.0)
 }
 
 /// As [`blend`], a channel at a time.
-fn blend_color(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
-    std::array::from_fn(|channel| blend(a[channel], b[channel], share))
+fn blend_color(a: [f64; 3], b: [f64; 3], fraction: f64) -> [f64; 3] {
+    std::array::from_fn(|channel| blend(a[channel], b[channel], fraction))
 }
 
 /// A colour made brighter by a factor near 1.

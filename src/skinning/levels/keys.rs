@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::places;
+use super::points;
 use crate::asset::Model;
 use crate::asset::mesh::Mesh;
 use crate::skinning::pose::{Moment, Pose};
@@ -41,9 +41,9 @@ impl Keys {
         }
         let (first, size) = (all[0].moment, all[0].size);
         let unit = power_of_two(size);
-        all.par_iter_mut().for_each(|key| key.places.as_flattened_mut().iter_mut().for_each(|x| *x /= unit));
+        all.par_iter_mut().for_each(|key| key.points.as_flattened_mut().iter_mut().for_each(|x| *x /= unit));
         let normals = Pose::new(model, mesh, first).normals(mesh);
-        Self { poses: all.into_iter().map(|key| key.places).collect(), normals, size: size / unit, unit }
+        Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }
 
     /// Units that one of texture coordinates covers in the first pose, on average: so a texture counts by how far it slips
@@ -64,15 +64,15 @@ impl Keys {
 /// A mesh at a moment.
 struct Key {
     moment: Moment,
-    places: Vec<[f32; 3]>,
+    points: Vec<[f32; 3]>,
     size: f32,
 }
 
 impl Key {
     fn new(model: &Model, mesh: &Mesh, moment: Moment) -> Self {
-        let places: Vec<[f32; 3]> = places(model, mesh, moment, 1.0).iter().map(Vec3::to_array).collect();
-        let size = diagonal(&places, &mesh.indices);
-        Self { moment, places, size }
+        let points: Vec<[f32; 3]> = points(model, mesh, moment, 1.0).iter().map(Vec3::to_array).collect();
+        let size = diagonal(&points, &mesh.indices);
+        Self { moment, points, size }
     }
 
     fn is_unlike(&self, size: f32) -> bool {
@@ -84,7 +84,7 @@ impl Key {
 fn diagonal(pose: &[[f32; 3]], indices: &[u32]) -> f32 {
     let corners = indices.iter().map(|vertex| Vec3::from(pose[*vertex as usize]));
     let (low, high) =
-        corners.fold((Vec3::MAX, Vec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+        corners.fold((Vec3::MAX, Vec3::MIN), |(low, high), point| (low.min(point), high.max(point)));
     if indices.is_empty() {
         return 0.0;
     }
@@ -112,8 +112,8 @@ mod tests {
 
     #[test]
     fn what_has_no_triangle_has_no_size() {
-        let places = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0], [900.0; 3]];
-        assert_eq!(diagonal(&places, &[0, 1, 2]), 5.0);
-        assert_eq!(diagonal(&places, &[]), 0.0);
+        let points = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0], [900.0; 3]];
+        assert_eq!(diagonal(&points, &[0, 1, 2]), 5.0);
+        assert_eq!(diagonal(&points, &[]), 0.0);
     }
 }

@@ -12,7 +12,7 @@ use crate::mesh::simplify::Simplified;
 use crate::surface::tangent::Adjacency;
 
 /// So many triangles may be nearest in some pose: those that are in the first.
-const MOST: usize = 32;
+const MAX: usize = 32;
 
 /// For things in a row, the triangles near each.
 #[derive(Debug, Clone, Default)]
@@ -33,11 +33,11 @@ impl Near {
     }
 
     /// The place nearest to `wanted` on those near a thing, if there are any.
-    pub(super) fn nearest(&self, thing: usize, wanted: Vec3, place: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
+    pub(super) fn nearest(&self, thing: usize, wanted: Vec3, point: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
         let range = self.starts[thing] as usize..self.starts[thing + 1] as usize;
-        let on = |triangle: &[u32; 3]| nearest_on_triangle(wanted, triangle.map(place));
-        let places = self.triangles[range].iter().map(on);
-        places.min_by(|a, b| a.distance_squared(wanted).total_cmp(&b.distance_squared(wanted)))
+        let on = |triangle: &[u32; 3]| nearest_on_triangle(wanted, triangle.map(point));
+        let points = self.triangles[range].iter().map(on);
+        points.min_by(|a, b| a.distance_squared(wanted).total_cmp(&b.distance_squared(wanted)))
     }
 }
 
@@ -56,12 +56,12 @@ impl Sides {
     pub(super) fn new(
         mesh: &Mesh,
         simplified: &Simplified,
-        Found { heirs, indices: level }: &Found,
+        Found { remap, indices: level }: &Found,
         keys: &[Vec<Vec3>],
     ) -> Self {
         let point = |vertex: u32| simplified.point(vertex);
-        let around = |indices: &[u32], heir: &dyn Fn(u32) -> u32| {
-            let corners: Vec<u32> = indices.iter().map(|vertex| point(heir(*vertex))).collect();
+        let around = |indices: &[u32], target: &dyn Fn(u32) -> u32| {
+            let corners: Vec<u32> = indices.iter().map(|vertex| point(target(*vertex))).collect();
             Around::new(&corners, mesh.vertices())
         };
         let ring = around(level, &|vertex| vertex);
@@ -72,16 +72,16 @@ impl Sides {
                 return Vec::new();
             }
             // None for a vertex without triangles. The heir itself may be a wedge that the level has no triangle of.
-            let candidates = ring.two_rings(heirs[vertex as usize], level, &point);
-            let places = |key: &Vec<Vec3>| key[vertex as usize];
-            nearest_in_each(keys, places, candidates.into_iter())
+            let candidates = ring.two_rings(remap[vertex as usize], level, &point);
+            let points = |key: &Vec<Vec3>| key[vertex as usize];
+            nearest_in_each(keys, points, candidates.into_iter())
         };
         let near = Near::of((0..mesh.vertices() as u32).map(before));
 
         // Triangles of the mesh, but those without area, by the points that their corners became.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let whole: Vec<u32> = mesh.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
-        let became = around(&whole, &|vertex| heirs[vertex as usize]);
+        let became = around(&whole, &|vertex| remap[vertex as usize]);
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
         let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
             let mut candidates: Vec<u32> = (ring.beside(triangle, level, &point).into_iter())
@@ -90,22 +90,22 @@ impl Sides {
             candidates.sort_unstable();
             candidates.dedup();
             samples_of(triangle).map(|(corners, parts)| {
-                let place = |key: &Vec<Vec3>| blend(&corners, &parts, &|vertex| key[vertex as usize]);
-                nearest_in_each(keys, place, candidates.iter().map(|at| corners_of(&whole, *at)))
+                let point = |key: &Vec<Vec3>| blend(&corners, &parts, &|vertex| key[vertex as usize]);
+                nearest_in_each(keys, point, candidates.iter().map(|at| corners_of(&whole, *at)))
             })
         }));
         Self { near, samples, behind }
     }
 
     /// The largest distance where all vertices of the mesh are at these places.
-    pub(super) fn error(&self, places: &[Vec3]) -> f32 {
-        let place = |vertex: u32| places[vertex as usize];
+    pub(super) fn error(&self, points: &[Vec3]) -> f32 {
+        let point = |vertex: u32| points[vertex as usize];
         let off = |near: &Near, thing: usize, wanted: Vec3| {
-            near.nearest(thing, wanted, &place).map_or(0.0, |found| found.distance(wanted))
+            near.nearest(thing, wanted, &point).map_or(0.0, |found| found.distance(wanted))
         };
-        let forth = places.iter().enumerate().map(|(vertex, wanted)| off(&self.near, vertex, *wanted));
+        let forth = points.iter().enumerate().map(|(vertex, wanted)| off(&self.near, vertex, *wanted));
         let back = (self.samples.iter().enumerate())
-            .map(|(at, (corners, parts))| off(&self.behind, at, blend(corners, parts, &place)));
+            .map(|(at, (corners, parts))| off(&self.behind, at, blend(corners, parts, &point)));
         forth.chain(back).fold(0.0, f32::max)
     }
 }
@@ -117,8 +117,8 @@ fn samples_of(triangle: &[u32]) -> [([u32; 3], [f32; 3]); 4] {
     [[THIRD; 3], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]].map(|parts| (corners, parts))
 }
 
-fn blend(corners: &[u32; 3], parts: &[f32; 3], place: &impl Fn(u32) -> Vec3) -> Vec3 {
-    corners.iter().zip(parts).map(|(corner, part)| *part * place(*corner)).sum()
+fn blend(corners: &[u32; 3], parts: &[f32; 3], point: &impl Fn(u32) -> Vec3) -> Vec3 {
+    corners.iter().zip(parts).map(|(corner, part)| *part * point(*corner)).sum()
 }
 
 fn corners_of(indices: &[u32], triangle: u32) -> [u32; 3] {
@@ -138,9 +138,9 @@ fn nearest_in_each(
     let first = wanted(&keys[0]);
     let mut candidates: Vec<_> =
         candidates.map(|triangle| (off(&keys[0], first, &triangle).to_bits(), triangle)).collect();
-    if candidates.len() > MOST {
-        candidates.select_nth_unstable(MOST);
-        candidates.truncate(MOST);
+    if candidates.len() > MAX {
+        candidates.select_nth_unstable(MAX);
+        candidates.truncate(MAX);
     }
     candidates.sort_unstable();
     let mut nearest = BTreeSet::new();

@@ -51,9 +51,9 @@ impl Welded {
     }
 
     /// What each vertex has become after so many collapses, among first ones.
-    pub(super) fn heirs(&self, simplified: &Simplified, collapses: usize) -> Vec<u32> {
-        let heirs = simplified.heirs(collapses);
-        self.first.iter().map(|first| heirs[*first as usize]).collect()
+    pub(super) fn remap(&self, simplified: &Simplified, collapses: usize) -> Vec<u32> {
+        let remap = simplified.remap(collapses);
+        self.first.iter().map(|first| remap[*first as usize]).collect()
     }
 
     /// The triangles with three different points where vertices have become these heirs, of vertices that are `used`: a
@@ -62,23 +62,23 @@ impl Welded {
         &self,
         mesh: &Mesh,
         simplified: &Simplified,
-        heirs: &[u32],
+        remap: &[u32],
         used: &[bool],
     ) -> Vec<u32> {
         let normal = |vertex: u32| Vec3::from(mesh.normals[vertex as usize]);
         let corner = |vertex: u32| {
-            let heir = heirs[vertex as usize];
-            if heir == self.first[vertex as usize] {
+            let target = remap[vertex as usize];
+            if target == self.first[vertex as usize] {
                 return vertex;
             }
             let facing = |other: &&u32| normal(**other).dot(normal(vertex));
-            let others = self.all[&heir].iter().filter(|other| used[**other as usize]);
+            let others = self.all[&target].iter().filter(|other| used[**other as usize]);
             // The first of several.
-            others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(heir)
+            others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(target)
         };
         let mut left = Vec::new();
         for triangle in mesh.indices.chunks_exact(3) {
-            if simplified.are_apart([0, 1, 2].map(|at| heirs[triangle[at] as usize])) {
+            if simplified.are_apart([0, 1, 2].map(|at| remap[triangle[at] as usize])) {
                 left.extend(triangle.iter().map(|vertex| corner(*vertex)));
             }
         }

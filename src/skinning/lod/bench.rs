@@ -6,9 +6,9 @@ use crate::Error;
 use crate::asset::transform::Affine;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::reference::lod;
-use crate::skinning::lod::{LevelRanges, LodPass, LodView, standing};
-use crate::skinning::reduction::Reduction;
+use crate::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use crate::terrain::bench::copy_of;
 
 /// A field of instances, a quarter of them seen.
@@ -34,19 +34,19 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for count in [1000, 100_000] {
         let place = |index: usize| {
             let (x, z) = ((index % 400) as f32 - 200.0, (index / 400) as f32 * 2.0 - 250.0);
-            standing(Vec3::new(x, 0.0, z), index as f32, 1.0)
+            placed(Vec3::new(x, 0.0, z), index as f32, 1.0)
         };
         let placements: Vec<Affine> = (0..count).map(place).collect();
         let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
-        let reductions = Buffer::from_slice(gpu, "reductions", &vec![Reduction::FULL; count])?;
+        let instance_lods = Buffer::from_slice(gpu, "instance_lods", &vec![InstanceLod::FULL; count])?;
         let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 10)?);
-        let job = pass.prepare(gpu, &view, &buffer, &reductions, &drawn, &arguments)?;
+        let job = pass.prepare(gpu, &view, &buffer, &instance_lods, &drawn, &arguments)?;
         // A place in; a reduction and a number out.
         let copied = copy_of(gpu, 16 * count / 2)?;
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
+            Contender::host(Backend::Reference, || {
                 drop(std::hint::black_box(
                     placements.iter().map(|place| lod(&view, place)).collect::<Vec<_>>(),
                 ));

@@ -2,15 +2,15 @@
 //! which level of detail of the mesh it has there.
 //!
 //! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
-//! noticeably. An instance that is not seen is not skinned ([`Reduction::UNSEEN`]); seen again, it is skinned as a whole.
+//! noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`]); seen again, it is skinned as a whole.
 
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::InputError;
-use crate::asset::influences::MOST_INFLUENCES;
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::influences::MAX_INFLUENCES;
+use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -32,7 +32,7 @@ pub struct LodView {
     pub clip_from_world: Mat4,
     /// The eye, world units.
     pub eye: Vec3,
-    /// Every influence counts up to here, world units as [`LodView::away`] counts them.
+    /// Every influence counts up to here, world units as [`LodView::projected_distance`] counts them.
     pub near: f32,
     /// From here on vertices follow one bone, likewise.
     pub far: f32,
@@ -48,26 +48,26 @@ pub struct LodView {
     pub levels: LevelRanges,
 }
 
-/// World units, as [`LodView::away`] counts them, from which on levels 1, 2 … of a character
+/// World units, as [`LodView::projected_distance`] counts them, from which on levels 1, 2 … of a character
 /// ([`level_errors`](super::level_errors)) are used, in place of finer ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelRanges {
-    distances: [f32; MOST_LEVELS - 1],
+    distances: [f32; MAX_LEVELS - 1],
     coarser: usize,
 }
 
 impl LevelRanges {
     /// Level 0 everywhere: the mesh itself.
-    pub const NONE: Self = Self { distances: [f32::MAX; MOST_LEVELS - 1], coarser: 0 };
+    pub const NONE: Self = Self { distances: [f32::MAX; MAX_LEVELS - 1], coarser: 0 };
 
     /// Where level 1 begins, level 2 and so on. A level that begins where the next one does is not used.
     ///
     /// # Errors
-    /// [`InputError`] for distances that are not finite, or descend, and for [`MOST_LEVELS`] or more of them.
+    /// [`InputError`] for distances that are not finite, or descend, and for [`MAX_LEVELS`] or more of them.
     pub fn new(distances: &[f32]) -> Result<Self, InputError> {
         let mut ranges = Self { coarser: distances.len(), ..Self::NONE };
         let Some(to) = ranges.distances.get_mut(..distances.len()) else {
-            let bound = format!("must be at most {}", MOST_LEVELS - 1);
+            let bound = format!("must be at most {}", MAX_LEVELS - 1);
             return Err(InputError::new("levels.len", distances.len(), bound));
         };
         to.copy_from_slice(distances);
@@ -98,7 +98,7 @@ pub fn list_stride(instances: usize) -> usize {
     instances.next_multiple_of(64)
 }
 
-/// Words of the lists of drawn instances of so many levels, 1 to [`MOST_LEVELS`]: [`list_stride`] each, but for a single
+/// Words of the lists of drawn instances of so many levels, 1 to [`MAX_LEVELS`]: [`list_stride`] each, but for a single
 /// one, which needs no more than there are instances.
 pub fn list_words(instances: usize, levels: usize) -> usize {
     if levels == 1 { instances } else { levels * list_stride(instances) }
@@ -123,10 +123,10 @@ impl LodView {
         if self.steps == 0 || self.steps > 1 << 16 {
             return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
         }
-        if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
-            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.most) {
+            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MAX_INFLUENCES}")));
         }
-        Reduction::at_distance(0.0, [self.near, self.far])
+        InstanceLod::at_distance(0.0, [self.near, self.far])
             .map(|_| ())
             .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
     }
@@ -135,7 +135,7 @@ impl LodView {
     /// perspective makes things larger; 0 beside the eye and behind it. For a place at a depth z and a distance d that is
     /// z²/d, since what moves there by a small step moves on screen by focal·step·d/z² pixels at most. Of a parallel view
     /// the distance.
-    pub fn away(&self, place: Vec3) -> f32 {
+    pub fn projected_distance(&self, place: Vec3) -> f32 {
         let towards = place - self.eye;
         let distance = towards.length();
         match self.ahead() {
@@ -166,7 +166,7 @@ impl LodView {
 
 /// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
 /// its clips: [`Extent`](super::extent::Extent).
-pub fn ball(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
+pub fn bounding_sphere(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
     let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
     let center = middle_of(low, high);
     (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
@@ -181,7 +181,7 @@ pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
 }
 
 /// Where an instance of uniform scale stands: turned about +Y, then moved.
-pub fn standing(at: Vec3, turn: f32, scale: f32) -> Affine {
+pub fn placed(at: Vec3, turn: f32, scale: f32) -> Affine {
     let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
     [[cosine, 0.0, sine, at.x], [0.0, scale, 0.0, at.y], [-sine, 0.0, cosine, at.z]]
 }
@@ -249,14 +249,23 @@ mod tests {
     fn what_lies_aside_counts_as_nearer() {
         let eye = Vec3::new(1.0, 2.0, 3.0);
         let look = camera::rh::view::look_at_mat4(eye, eye + Vec3::X, Vec3::Y);
-        let lens = camera::rh::proj::directx::perspective(1.0, 1.5, 0.1, 90.0);
-        let away =
-            |x, y, z| LodView { clip_from_world: lens * look, eye, ..view() }.away(eye + Vec3::new(x, y, z));
-        assert!((away(7.0, 0.0, 0.0) - 7.0).abs() < 1e-5);
-        assert!((away(4.0, 0.0, -3.0) - 16.0 / 5.0).abs() < 1e-5);
-        assert_eq!([away(0.0, 0.0, 0.0), away(0.0, 5.0, 0.0), away(-5.0, 1.0, 0.0)], [0.0; 3]);
+        let projection = camera::rh::proj::directx::perspective(1.0, 1.5, 0.1, 90.0);
+        let projected_distance = |x, y, z| {
+            LodView { clip_from_world: projection * look, eye, ..view() }
+                .projected_distance(eye + Vec3::new(x, y, z))
+        };
+        assert!((projected_distance(7.0, 0.0, 0.0) - 7.0).abs() < 1e-5);
+        assert!((projected_distance(4.0, 0.0, -3.0) - 16.0 / 5.0).abs() < 1e-5);
+        assert_eq!(
+            [
+                projected_distance(0.0, 0.0, 0.0),
+                projected_distance(0.0, 5.0, 0.0),
+                projected_distance(-5.0, 1.0, 0.0)
+            ],
+            [0.0; 3]
+        );
         // The identity is a parallel view.
-        assert_eq!(view().away(Vec3::new(0.0, 3.0, -4.0)), 5.0);
+        assert_eq!(view().projected_distance(Vec3::new(0.0, 3.0, -4.0)), 5.0);
     }
 
     #[test]
@@ -277,8 +286,8 @@ mod tests {
     #[test]
     fn balls_hold_their_places() {
         let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
-        let (center, radius) = ball(places.into_iter());
+        let (center, radius) = bounding_sphere(places.into_iter());
         assert!(places.iter().all(|place| place.distance(center) <= radius) && radius < 1.5);
-        assert_eq!(ball(std::iter::empty()), (Vec3::ZERO, 0.0));
+        assert_eq!(bounding_sphere(std::iter::empty()), (Vec3::ZERO, 0.0));
     }
 }

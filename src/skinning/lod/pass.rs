@@ -4,11 +4,11 @@ use encase::ShaderType;
 use glam::Vec4;
 
 use super::{LodView, list_stride, list_words};
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::picture::is_mirrored;
-use crate::skinning::reduction::Reduction;
 use crate::{Error, InputError};
 
 /// `LodParams` of the kernel.
@@ -17,12 +17,12 @@ pub(crate) struct LodParams {
     pub planes: [Vec4; 6],
     pub eye: Vec4,
     pub ahead: Vec4,
-    pub ball: Vec4,
+    pub bounding_sphere: Vec4,
     pub far: f32,
     pub steps: f32,
     pub instances: u32,
     pub most: u32,
-    pub distances: [Vec4; MOST_LEVELS / 4],
+    pub distances: [Vec4; MAX_LEVELS / 4],
     pub coarser: u32,
     pub stride: u32,
     pub side: f32,
@@ -36,7 +36,7 @@ impl LodParams {
             planes: view.planes(),
             eye: view.eye.extend(view.near),
             ahead: view.ahead().map_or(Vec4::ZERO, |ahead| ahead.extend(1.0)),
-            ball: view.center.extend(view.radius),
+            bounding_sphere: view.center.extend(view.radius),
             far: view.far,
             steps: view.steps as f32,
             instances: instances as u32,
@@ -94,13 +94,13 @@ impl LodPass {
         gpu: &Gpu,
         view: &LodView,
         placements: &Buffer<Affine>,
-        reductions: &Buffer<Reduction>,
+        instance_lods: &Buffer<InstanceLod>,
         drawn: &Buffer<u32>,
         arguments: &Buffer<u32>,
     ) -> Result<LodJob, Error> {
         view.validate()?;
         let instances = placements.len();
-        reductions.check_holds("reductions", instances)?;
+        instance_lods.check_holds("instance_lods", instances)?;
         let levels = 1 + view.levels.distances().len();
         drawn.check_holds("drawn", list_words(instances, levels))?;
         arguments.check_holds("arguments", LEVEL_WORDS * levels)?;
@@ -108,7 +108,7 @@ impl LodPass {
         let resources = [
             uniform.raw().as_entire_binding(),
             placements.raw().as_entire_binding(),
-            reductions.raw().as_entire_binding(),
+            instance_lods.raw().as_entire_binding(),
             drawn.raw().as_entire_binding(),
             arguments.raw().as_entire_binding(),
         ];
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
     use crate::gpu::Options;
     use crate::gpu::layout::layout_test;
-    use crate::skinning::lod::{LevelRanges, NO_FADE, standing};
+    use crate::skinning::lod::{LevelRanges, NO_FADE, placed};
     use glam::{Mat4, Vec3};
 
     /// Lists of levels that a view no longer has are empty; more levels than there are lists are refused.
@@ -194,13 +194,14 @@ mod tests {
             radius: 10.0,
             levels: LevelRanges::new(distances).expect("ascending"),
         };
-        let places = [0.5, 1.5, 2.5, 3.5].map(|x| standing(Vec3::X * x, 0.0, 1.0));
+        let places = [0.5, 1.5, 2.5, 3.5].map(|x| placed(Vec3::X * x, 0.0, 1.0));
         let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
-        let reductions = Buffer::new(&gpu, "reductions", 4).expect("allocated");
+        let instance_lods = Buffer::new(&gpu, "instance_lods", 4).expect("allocated");
         let drawn = Buffer::new(&gpu, "drawn", list_words(4, 3)).expect("allocated");
         let arguments = Buffer::new(&gpu, "arguments", 30).expect("allocated");
         let pass = LodPass::new(&gpu).expect("compiled");
-        let prepare = |view: &LodView| pass.prepare(&gpu, view, &placements, &reductions, &drawn, &arguments);
+        let prepare =
+            |view: &LodView| pass.prepare(&gpu, view, &placements, &instance_lods, &drawn, &arguments);
         let lod = prepare(&view(&[1.0, 2.0])).expect("prepared");
         let seen = || {
             gpu.run("lod", |encoder| lod.record(encoder)).expect("run");

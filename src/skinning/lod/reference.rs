@@ -1,11 +1,11 @@
-//! What is drawn: twin of `kernels/skinning/lod.wgsl`.
+//! What is drawn: reference of `kernels/skinning/lod.wgsl`.
 
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
 use crate::asset::transform::Affine;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::LodView;
 use crate::skinning::picture::is_mirrored;
-use crate::skinning::reduction::Reduction;
 
 /// How an instance at this place is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,9 +13,9 @@ pub struct Seen {
     /// How far the model's ball reaches into the view's volume; negative where it does not.
     pub depth: f32,
     /// How far away the middle of the ball counts.
-    pub away: f32,
+    pub projected_distance: f32,
     /// The way from the beginning of the fade to its end, 0 to 1, before it is cut into steps.
-    pub way: f32,
+    pub fade_fraction: f32,
 }
 
 /// At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
@@ -32,9 +32,13 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let center = Vec3::from_array(rows.map(|row| row.dot(view.center.extend(1.0))));
     let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
-    let away = view.away(center);
-    let way = (away - view.near) / (view.far - view.near);
-    Seen { depth: depths.into_iter().fold(f32::INFINITY, f32::min), away, way: way.clamp(0.0, 1.0) }
+    let projected_distance = view.projected_distance(center);
+    let fade_fraction = (projected_distance - view.near) / (view.far - view.near);
+    Seen {
+        depth: depths.into_iter().fold(f32::INFINITY, f32::min),
+        projected_distance,
+        fade_fraction: fade_fraction.clamp(0.0, 1.0),
+    }
 }
 
 /// Whether an instance may be seen as a mirror image: its placement mirrors, or the view does, and not both. What is
@@ -45,14 +49,18 @@ pub fn may_mirror(view: &LodView, placement: &Affine) -> bool {
     side * x.dot(y.cross(z)) < 1e-5 * (x.length() * y.length() * z.length())
 }
 
-/// What an instance is drawn with; [`Reduction::UNSEEN`] where it is not seen.
-pub fn lod(view: &LodView, placement: &Affine) -> Reduction {
-    let Seen { depth, away, way } = seen(view, placement);
+/// What an instance is drawn with; [`InstanceLod::UNSEEN`] where it is not seen.
+pub fn lod(view: &LodView, placement: &Affine) -> InstanceLod {
+    let Seen { depth, projected_distance, fade_fraction } = seen(view, placement);
     let steps = view.steps as f32;
     if depth < 0.0 {
-        return Reduction::UNSEEN;
+        return InstanceLod::UNSEEN;
     }
-    Reduction { fade: (way * steps).floor() / steps, most: view.most, level: view.levels.at(away) }
+    InstanceLod {
+        fade: (fade_fraction * steps).floor() / steps,
+        most: view.most,
+        level: view.levels.at(projected_distance),
+    }
 }
 
 #[cfg(test)]

@@ -9,14 +9,14 @@ use crate::gpu::Buffer;
 use crate::harness::compare::{Comparison, LeftOut};
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::reference::{Seen, lod, may_mirror, seen};
-use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, standing};
-use crate::skinning::reduction::Reduction;
+use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, placed};
 
 /// Of a level: indices, instances and the first index of two draws, before the decision.
 const ARGUMENTS: [u32; 10] = [7, 99, 3, 0, 0, 7, 98, 3, 0, 0];
 
-/// How far a fade may lie from its twin: the quotient of a whole number of steps and how many there are, at most 1, 2.5 ULP.
+/// How far a fade may lie from its reference: the quotient of a whole number of steps and how many there are, at most 1, 2.5 ULP.
 const FADE_BOUND: f32 = 3e-7;
 
 /// How near to a decision rounding may decide otherwise: places are within 200 of the origin, and their sums carry some
@@ -50,7 +50,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut draw = Draw::new(case ^ 0x10d);
         let mut place = |instance| {
             let at = [0; 3].map(|_| 100.0 * draw.signed());
-            let [x, y, z] = standing(
+            let [x, y, z] = placed(
                 Vec3::from(at) * Vec3::new(1.0, 0.1, 1.0),
                 3.0 * draw.signed(),
                 1.0 + 0.5 * draw.signed(),
@@ -66,22 +66,22 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             }
             let levels = 1 + levels.len();
             let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
-            let (reductions, drawn) =
-                (Poisoned::<Reduction>::new(gpu, count)?, Poisoned::new(gpu, list_words(count, levels))?);
+            let (instance_lods, drawn) =
+                (Poisoned::<InstanceLod>::new(gpu, count)?, Poisoned::new(gpu, list_words(count, levels))?);
             let arguments = Buffer::from_slice(gpu, "arguments", &ARGUMENTS.repeat(levels))?;
-            let job = pass.prepare(gpu, &view, &buffer, &reductions.buffer, &drawn.buffer, &arguments)?;
+            let job = pass.prepare(gpu, &view, &buffer, &instance_lods.buffer, &drawn.buffer, &arguments)?;
             // Twice: the number of instances begins anew.
             gpu.run("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
             let arguments = arguments.read_blocking(gpu)?;
             let (mut lists, mut found) = (Vec::new(), Vec::new());
             let kept = drawn.check(gpu, |drawn| split(drawn, &arguments, count, &mut lists))?;
             let mirrored = mirrored(&view, &placements, &arguments, &lists);
-            let guard = reductions.check(gpu, |reductions| {
-                found = reductions.to_vec();
+            let guard = instance_lods.check(gpu, |instance_lods| {
+                found = instance_lods.to_vec();
                 compare::exact(&[0], &[0])
             })?;
             cases.add(format!("{count} instances, {name}: the lists' ends"), kept);
-            cases.add(format!("{count} instances, {name}: the reductions' end"), guard);
+            cases.add(format!("{count} instances, {name}: the instances' end"), guard);
             cases.add(format!("{count} instances, {name}: the last mirrored one"), mirrored);
             cases.add(format!("{count} instances, {name}"), compared(&view, &placements, &found, &lists));
         }
@@ -135,7 +135,7 @@ fn mirrored(view: &LodView, placements: &[Affine], arguments: &[u32], lists: &[V
 fn compared(
     view: &LodView,
     placements: &[Affine],
-    reductions: &[Reduction],
+    instance_lods: &[InstanceLod],
     lists: &[Vec<u32>],
 ) -> Comparison {
     let count = placements.len();
@@ -148,7 +148,7 @@ fn compared(
     }
     let (mut actual, mut expected) = (vec![foreign as f32], vec![0.0]);
     let mut at_edges = 0;
-    for (instance, (found, placement)) in reductions.iter().zip(placements).enumerate() {
+    for (instance, (found, placement)) in instance_lods.iter().zip(placements).enumerate() {
         let all: u32 = times.iter().map(|times| times[instance]).sum();
         let own = times.get(found.level as usize).map_or(0, |times| times[instance]);
         let is_seen = f32::from(found.most > 0);
@@ -168,11 +168,12 @@ fn compared(
 
 /// Whether rounding may decide otherwise: at the very edge of the view, of a step of the fade or of a level.
 fn is_at_an_edge(view: &LodView, placement: &Affine) -> bool {
-    let Seen { depth, away, way } = seen(view, placement);
-    let step = way * view.steps as f32;
-    let at_step = way > 0.0 && way < 1.0 && (step - step.round()).abs() < TOUCH;
+    let Seen { depth, projected_distance, fade_fraction } = seen(view, placement);
+    let step = fade_fraction * view.steps as f32;
+    let at_step = fade_fraction > 0.0 && fade_fraction < 1.0 && (step - step.round()).abs() < TOUCH;
     // z²/d moves with z twice as far, and with d as far.
-    let at_level = view.levels.distances().iter().any(|begin| (away - begin).abs() < 3.0 * TOUCH);
+    let at_level =
+        view.levels.distances().iter().any(|begin| (projected_distance - begin).abs() < 3.0 * TOUCH);
     // Who is out of view has neither.
     depth.abs() < TOUCH || depth > 0.0 && (at_step || at_level)
 }
@@ -185,7 +186,7 @@ mod tests {
     struct Right {
         view: LodView,
         placements: Vec<Affine>,
-        reductions: Vec<Reduction>,
+        instance_lods: Vec<InstanceLod>,
         lists: Vec<Vec<u32>>,
     }
 
@@ -197,23 +198,25 @@ mod tests {
             let view = LodView { levels, ..view };
             let center = view.center;
             let placements: Vec<Affine> =
-                far.map(|far| standing(view.eye + Vec3::Z * far - center, 0.0, 1.0)).collect();
-            let reductions: Vec<_> = placements.iter().map(|placement| lod(&view, placement)).collect();
+                far.map(|far| placed(view.eye + Vec3::Z * far - center, 0.0, 1.0)).collect();
+            let instance_lods: Vec<_> = placements.iter().map(|placement| lod(&view, placement)).collect();
             let mut lists = vec![vec![]; 3];
-            for (instance, reduction) in (0..).zip(&reductions).filter(|(_, reduction)| reduction.most > 0) {
-                lists[reduction.level as usize].push(instance);
+            for (instance, instance_lod) in
+                (0..).zip(&instance_lods).filter(|(_, instance_lod)| instance_lod.most > 0)
+            {
+                lists[instance_lod.level as usize].push(instance);
             }
-            Self { view, placements, reductions, lists }
+            Self { view, placements, instance_lods, lists }
         }
 
         fn compared(&self) -> Comparison {
-            compared(&self.view, &self.placements, &self.reductions, &self.lists)
+            compared(&self.view, &self.placements, &self.instance_lods, &self.lists)
         }
 
-        fn with(&self, change: impl FnOnce(&mut Vec<Reduction>, &mut Vec<Vec<u32>>)) -> Comparison {
-            let (mut reductions, mut lists) = (self.reductions.clone(), self.lists.clone());
-            change(&mut reductions, &mut lists);
-            compared(&self.view, &self.placements, &reductions, &lists)
+        fn with(&self, change: impl FnOnce(&mut Vec<InstanceLod>, &mut Vec<Vec<u32>>)) -> Comparison {
+            let (mut instance_lods, mut lists) = (self.instance_lods.clone(), self.lists.clone());
+            change(&mut instance_lods, &mut lists);
+            compared(&self.view, &self.placements, &instance_lods, &lists)
         }
     }
 
@@ -222,14 +225,15 @@ mod tests {
         let right = Right::new((0..400).map(|at| 3.03 + 0.25 * at as f32));
         let left_out = right.compared().left_out.expect("says so");
         assert!(right.compared().holds && left_out.count == 0, "{:?}", right.compared());
-        let unseen = right.reductions.iter().position(|reduction| reduction.most == 0).expect("some");
+        let unseen =
+            right.instance_lods.iter().position(|instance_lod| instance_lod.most == 0).expect("some");
         assert!(right.lists.iter().all(|list| list.len() > 20));
-        type Change = fn(&mut Vec<Reduction>, &mut Vec<Vec<u32>>);
+        type Change = fn(&mut Vec<InstanceLod>, &mut Vec<Vec<u32>>);
         let faults: [Change; 8] = [
-            |reductions, _| reductions[100].fade += 1.0 / 16.0,
-            |reductions, _| reductions[100].fade = f32::NAN,
-            |reductions, _| reductions[100].most -= 1,
-            |reductions, _| reductions[100].level += 1,
+            |instance_lods, _| instance_lods[100].fade += 1.0 / 16.0,
+            |instance_lods, _| instance_lods[100].fade = f32::NAN,
+            |instance_lods, _| instance_lods[100].most -= 1,
+            |instance_lods, _| instance_lods[100].level += 1,
             |_, lists| lists[1].truncate(3),
             |_, lists| lists[1].push(0),
             |_, lists| lists[0].push(7777),
@@ -242,7 +246,7 @@ mod tests {
             assert!(!right.with(fault).holds, "fault {number}");
         }
         assert!(!right.with(|_, lists| lists[0].push(unseen as u32)).holds);
-        assert!(!right.with(|reductions, _| reductions[unseen].most = 5).holds);
+        assert!(!right.with(|instance_lods, _| instance_lods[unseen].most = 5).holds);
     }
 
     /// Level 1 begins at 20. One of 400 there does not hide the others, and neither hides that it is not listed.
@@ -253,15 +257,15 @@ mod tests {
         let one = right(1);
         assert!(one.compared().holds);
         assert_eq!(one.compared().left_out, Some(LeftOut { count: 1, of: 400, most: 2 }));
-        let other_side = |reductions: &mut Vec<Reduction>, lists: &mut Vec<Vec<u32>>| {
-            let level = reductions[0].level as usize;
+        let other_side = |instance_lods: &mut Vec<InstanceLod>, lists: &mut Vec<Vec<u32>>| {
+            let level = instance_lods[0].level as usize;
             lists[level].retain(|instance| *instance != 0);
             lists[1 - level].push(0);
-            reductions[0].level = 1 - level as u32;
+            instance_lods[0].level = 1 - level as u32;
         };
         assert!(one.with(other_side).holds);
-        assert!(!one.with(|reductions, _| reductions[0].level = 1 - reductions[0].level).holds);
-        assert!(!one.with(|reductions, _| reductions[1].most -= 1).holds);
+        assert!(!one.with(|instance_lods, _| instance_lods[0].level = 1 - instance_lods[0].level).holds);
+        assert!(!one.with(|instance_lods, _| instance_lods[1].most -= 1).holds);
         assert!(right(2).compared().holds);
         let three = right(3).compared();
         assert!(!three.holds && three.fault.expect("a fault").contains("3 of 400 are left out"));

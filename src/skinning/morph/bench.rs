@@ -22,7 +22,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         // A vertex and two offsets in, one delta of 12 words and its weight, a vertex out.
         let words = 10 + 2 + 13 + 10;
         let copied = copy_of(gpu, words * all / 2)?;
-        let twin = || {
+        let reference = || {
             for _ in 0..instances {
                 drop(std::hint::black_box(morph(&scene.model.meshes[0], &[0.5; 4])));
             }
@@ -30,7 +30,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, twin),
+            Contender::host(Backend::Reference, reference),
         ];
         bench.case(
             format!("4 targets, 10k × {instances}"),

@@ -4,7 +4,7 @@ use encase::ShaderType;
 use glam::UVec4;
 
 use crate::Error;
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::mesh::MAX_LEVELS;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
@@ -17,7 +17,7 @@ pub(crate) struct MorphParams {
     pub targets: u32,
     pub instances: u32,
     pub pairs: u32,
-    pub levels: [UVec4; MOST_LEVELS / 4],
+    pub levels: [UVec4; MAX_LEVELS / 4],
 }
 
 /// Adds morph targets.
@@ -90,7 +90,7 @@ fn bind(
 ) -> Result<Group, Error> {
     crowd.morphed.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
     crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
-    crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+    crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
     let params = MorphParams {
         vertices: mesh.vertices.len() as u32,
         targets: mesh.targets as u32,
@@ -105,7 +105,7 @@ fn bind(
         mesh.delta_offsets.raw().as_entire_binding(),
         mesh.deltas.raw().as_entire_binding(),
         crowd.weights.raw().as_entire_binding(),
-        crowd.reductions.raw().as_entire_binding(),
+        crowd.instance_lods.raw().as_entire_binding(),
         active.pairs.raw().as_entire_binding(),
         active.dispatched.raw().as_entire_binding(),
         crowd.morphed.raw().as_entire_binding(),

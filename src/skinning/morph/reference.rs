@@ -1,4 +1,4 @@
-//! Morph targets: twin of `kernels/skinning/morph.wgsl`.
+//! Morph targets: reference of `kernels/skinning/morph.wgsl`.
 
 use crate::asset::Mesh;
 use crate::skinning::vertex::{Vertex, vertices_of};

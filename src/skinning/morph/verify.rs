@@ -8,9 +8,9 @@ use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::CLUSTER;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::morph::{MORPH_BOUND, MorphPass};
-use crate::skinning::reduction::Reduction;
 use crate::skinning::verify::{SHAPES, Shape, flat, poisoned, random_model};
 use crate::skinning::vertex::{Blend, Vertex};
 
@@ -51,8 +51,8 @@ fn one(
     crowd.morphed = output.buffer.clone();
     crowd.weights.write(gpu, &weights)?;
     if instances > 3 {
-        let (coarsest, coarse) = (Reduction::level(15)?, Reduction::level(1)?);
-        crowd.reductions.write_at(gpu, 1, &[coarsest, coarse, Reduction::UNSEEN])?;
+        let (coarsest, coarse) = (InstanceLod::level(15)?, InstanceLod::level(1)?);
+        crowd.instance_lods.write_at(gpu, 1, &[coarsest, coarse, InstanceLod::UNSEEN])?;
     }
     let pairs = (clusters.len() * instances) as u32;
     let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every.unwrap_or(1) == 0).collect();

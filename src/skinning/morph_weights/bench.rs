@@ -10,9 +10,9 @@ use crate::asset::{Clip, Interpolation};
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::bench::Scene;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph_weights::reference::morph_weights;
 use crate::skinning::morph_weights::{MorphWeightsPass, WeightSet};
-use crate::skinning::reduction::Reduction;
 use crate::terrain::bench::copy_of;
 
 /// Targets of the mesh, and keys of the clip.
@@ -32,8 +32,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for count in [100, 10_000] {
         let mut scene = Scene::new(gpu, 1, TARGETS, 1)?;
         scene.crowd.weights = Buffer::new(gpu, "weights", count * TARGETS)?;
-        let reductions = vec![Reduction::FULL; count];
-        scene.crowd.reductions = Buffer::from_slice(gpu, "reductions", &reductions)?;
+        let instance_lods = vec![InstanceLod::FULL; count];
+        scene.crowd.instance_lods = Buffer::from_slice(gpu, "instance_lods", &instance_lods)?;
         scene.crowd.instances = count;
         scene.model.meshes[0].weight_keys = vec![(0, keys.clone())];
         let (mesh, skeleton) = (&scene.model.meshes[0], &scene.model.skeleton);
@@ -51,9 +51,9 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
+            Contender::host(Backend::Reference, || {
                 let weights = std::hint::black_box(&mut weights);
-                morph_weights(mesh, (&set, &[0]), &instances, &reductions, 0.5, weights);
+                morph_weights(mesh, (&set, &[0]), &instances, &instance_lods, 0.5, weights);
             }),
         ];
         bench.case(format!("4 targets × {count}"), (all, "weight"), (4 * words * all) as u64, contenders)?;

@@ -16,7 +16,7 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{MorphWeightsJob, MorphWeightsPass};
 
-/// How far a weight may lie from the twin's, on any device, for values and tangents (per second) of at most 1, keys 1/8 to
+/// How far a weight may lie from the reference's, on any device, for values and tangents (per second) of at most 1, keys 1/8 to
 /// 1 s apart, and times up to 16 s.
 ///
 /// With ε = 2⁻²⁴ a time carries 3ε of 16 s, in stretches of 1/8 s 2.3e-5 of a stretch; a spline's slope there is at most

@@ -46,7 +46,7 @@ impl MorphWeightsPass {
         let pairs = crowd.instances * set.targets;
         instances.check_holds("instances", crowd.instances)?;
         crowd.weights.check_holds("crowd.weights", pairs)?;
-        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         let params = MorphWeightsParams { targets: set.targets as u32, pairs: pairs as u32, elapsed: 0.0 };
         let uniform = Uniform::new(gpu, "morph weights", &params)?;
         let mut steps = Vec::new();
@@ -58,7 +58,7 @@ impl MorphWeightsPass {
                 uniform.raw().as_entire_binding(),
                 instances.raw().as_entire_binding(),
                 entries.raw().as_entire_binding(),
-                crowd.reductions.raw().as_entire_binding(),
+                crowd.instance_lods.raw().as_entire_binding(),
                 times.raw().as_entire_binding(),
                 values.raw().as_entire_binding(),
                 crowd.weights.raw().as_entire_binding(),
@@ -85,7 +85,7 @@ impl MorphWeightsJob {
     /// Chooses the time of the next submission: seconds since the instances' starts.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(self.uniform.write(gpu, &MorphWeightsParams { elapsed, ..self.params })?)

@@ -1,10 +1,10 @@
-//! Weights of morph targets: twin of `kernels/skinning/morph_weights.wgsl`.
+//! Weights of morph targets: reference of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
-use crate::animation::place::reference::inside_clip;
+use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::asset::Mesh;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 
 /// The weights of a mesh's targets where instances stand in the clips of a set, instance by instance; those of instances
 /// that are not seen stay. `clips` says which of the model's each of the set is.
@@ -15,13 +15,13 @@ pub fn morph_weights(
     mesh: &Mesh,
     (set, clips): (&ClipSet, &[usize]),
     instances: &[Instance],
-    reductions: &[Reduction],
+    instance_lods: &[InstanceLod],
     elapsed: f32,
     weights: &mut [f32],
 ) {
     let targets = mesh.targets.len().max(1);
-    let rooms = weights.chunks_exact_mut(targets).zip(instances).zip(reductions);
-    for ((weights, instance), _) in rooms.filter(|(_, reduction)| reduction.most > 0) {
+    let rooms = weights.chunks_exact_mut(targets).zip(instances).zip(instance_lods);
+    for ((weights, instance), _) in rooms.filter(|(_, instance_lod)| instance_lod.most > 0) {
         let duration = set.clips()[instance.clip as usize].duration;
         let time = inside_clip(instance.wrap(), duration, instance.start + instance.rate * elapsed);
         weights.copy_from_slice(&mesh.weights_at(clips[instance.clip as usize], time));

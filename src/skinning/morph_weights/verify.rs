@@ -3,7 +3,7 @@
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
-use crate::animation::place::reference::inside_clip;
+use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::animation::verify::Draw;
 use crate::asset::clip::BoneKeys;
 use crate::asset::morph::WeightKeys;
@@ -13,9 +13,9 @@ use crate::harness::compare::{Comparison, LeftOut};
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph_weights::reference::morph_weights;
 use crate::skinning::morph_weights::{MORPH_WEIGHTS_BOUND, MorphWeightsPass, WeightSet};
-use crate::skinning::reduction::Reduction;
 use crate::skinning::verify::{SHAPES, Shape, random_model};
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
@@ -52,9 +52,10 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let instances: Vec<Instance> = (0..count).map(play).collect();
             let mut crowd = SkinnedCrowd::new(gpu, &buffers, count, Blend::Linear)?;
             let is_seen = |at: usize| at % 5 != 4;
-            let reductions: Vec<_> =
-                (0..count).map(|at| if is_seen(at) { Reduction::FULL } else { Reduction::UNSEEN }).collect();
-            crowd.reductions.write(gpu, &reductions)?;
+            let instance_lods: Vec<_> = (0..count)
+                .map(|at| if is_seen(at) { InstanceLod::FULL } else { InstanceLod::UNSEEN })
+                .collect();
+            crowd.instance_lods.write(gpu, &instance_lods)?;
             let output = Poisoned::<f32>::new(gpu, count * shape.targets)?;
             crowd.weights = output.buffer.clone();
             let playing = Buffer::from_slice(gpu, "instances", &instances)?;
@@ -64,7 +65,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 job.set(gpu, elapsed)?;
                 gpu.run("verify", |encoder| job.record(encoder))?;
                 let mut expected = vec![f32::from_bits(POISON); count * shape.targets];
-                morph_weights(mesh, (&set, &clips), &instances, &reductions, elapsed, &mut expected);
+                morph_weights(mesh, (&set, &clips), &instances, &instance_lods, elapsed, &mut expected);
                 let jumps: Vec<bool> = instances
                     .iter()
                     .enumerate()

@@ -20,20 +20,20 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for instances in CROWDS {
         let scene = Scene::new(gpu, 1, 0, instances)?;
         let matrices = random_matrices(1, 2 * BONES, instances);
-        let models = ModelMatrices::new(&Buffer::from_slice(gpu, "models", &matrices)?);
-        let job = pass.prepare(gpu, &scene.mesh, &models, &scene.crowd)?;
+        let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
+        let job = pass.prepare(gpu, &scene.mesh, &model_matrices, &scene.crowd)?;
         let pairs = BONES * instances;
         // Two matrices and a number in, a matrix out.
         let copied = copy_of(gpu, 37 * pairs / 2)?;
-        let twin = || {
-            for models in matrices.chunks(2 * BONES) {
-                drop(std::hint::black_box(palette(&scene.model.skins[0], models)));
+        let reference = || {
+            for model_matrices in matrices.chunks(2 * BONES) {
+                drop(std::hint::black_box(palette(&scene.model.skins[0], model_matrices)));
             }
         };
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, twin),
+            Contender::host(Backend::Reference, reference),
         ];
         bench.case(
             format!("{BONES} bones × {instances}"),

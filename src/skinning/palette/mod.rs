@@ -17,7 +17,7 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::PalettePass;
 
-/// How far a component may lie from the twin's, on any device: times the palette's largest (at least 1), for matrices
+/// How far a component may lie from the reference's, on any device: times the palette's largest (at least 1), for matrices
 /// whose columns are no shorter than ½ and no nearer to each other than 45°. A product of rows carries 16ε (ε = 2⁻²⁴);
 /// Gram–Schmidt's axes carry twice that over the length (64ε), again over the sine (128ε), and their cross product
 /// 256ε; the quaternion's components, differences of these over at least 1, 512ε; the dual part as much times the

@@ -48,7 +48,7 @@ impl PalettePass {
         crowd: &SkinnedCrowd,
     ) -> Result<Job, Error> {
         matrices.buffer().check_holds("matrices", crowd.instances * mesh.all_bones)?;
-        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         if crowd.blend == Blend::DualQuaternion {
             matrices.consumer().claim(Consumer::DualQuaternions)?;
         }
@@ -64,7 +64,7 @@ impl PalettePass {
             mesh.bones.raw().as_entire_binding(),
             mesh.inverse_binds.raw().as_entire_binding(),
             matrices.raw().as_entire_binding(),
-            crowd.reductions.raw().as_entire_binding(),
+            crowd.instance_lods.raw().as_entire_binding(),
             crowd.palette.raw().as_entire_binding(),
         ];
         let step = Step {

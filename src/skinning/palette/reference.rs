@@ -1,6 +1,6 @@
-//! Palettes: twin of `kernels/skinning/palette.wgsl`.
+//! Palettes: reference of `kernels/skinning/palette.wgsl`.
 
-use crate::animation::concat::reference::product;
+use crate::animation::local_to_model::reference::product;
 use crate::asset::skeleton::Skin;
 use crate::asset::transform::Affine;
 use crate::asset::transform::rows;
@@ -10,15 +10,15 @@ use crate::skinning::vertex::Blend;
 /// What takes vertices from where they were bound to the model's space: one matrix a bone of the skin.
 ///
 /// # Panics
-/// For a skin that does not fit the skeleton of `models`.
-pub fn palette(skin: &Skin, models: &[Affine]) -> Vec<Affine> {
+/// For a skin that does not fit the skeleton of `model_matrices`.
+pub fn palette(skin: &Skin, model_matrices: &[Affine]) -> Vec<Affine> {
     let bones = skin.bones.iter().zip(&skin.inverse_binds);
-    bones.map(|(bone, bind)| product(&models[*bone as usize], &rows(bind))).collect()
+    bones.map(|(bone, bind)| product(&model_matrices[*bone as usize], &rows(bind))).collect()
 }
 
 /// The palette of a kind of blending.
-pub fn palette_for(skin: &Skin, models: &[Affine], blend: Blend) -> Palette {
-    let linear = palette(skin, models);
+pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Palette {
+    let linear = palette(skin, model_matrices);
     match blend {
         Blend::Linear => Palette::Linear(linear),
         Blend::DualQuaternion => Palette::Dual(linear.iter().map(dual).collect()),

@@ -6,9 +6,9 @@ use crate::gpu::Buffer;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::palette::reference::palette_for;
 use crate::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
-use crate::skinning::reduction::Reduction;
 use crate::skinning::verify::{SHAPES, poisoned, random_matrices, random_model};
 use crate::skinning::vertex::Blend;
 
@@ -25,17 +25,17 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let skin = &model.skins[0];
         for (instances, blend) in [(3, Blend::Linear), (7, Blend::DualQuaternion)] {
             let matrices = random_matrices(case, shape.bones, instances);
-            let models = ModelMatrices::new(&Buffer::from_slice(gpu, "models", &matrices)?);
+            let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
             let (mesh, _) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
             let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
             let output = Poisoned::<[f32; 4]>::new(gpu, crowd.palette.len())?;
             crowd.palette = output.buffer.clone();
-            crowd.reductions.write_at(gpu, 1, &[Reduction::UNSEEN])?;
-            let job = pass.prepare(gpu, &mesh, &models, &crowd)?;
+            crowd.instance_lods.write_at(gpu, 1, &[InstanceLod::UNSEEN])?;
+            let job = pass.prepare(gpu, &mesh, &model_matrices, &crowd)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
             let mut expected: Vec<[f32; 4]> = matrices
                 .chunks(shape.bones)
-                .flat_map(|models| match palette_for(skin, models, blend) {
+                .flat_map(|model_matrices| match palette_for(skin, model_matrices, blend) {
                     Palette::Linear(bones) => bones.as_flattened().to_vec(),
                     Palette::Dual(bones) => bytemuck::cast_slice(&bones).to_vec(),
                 })

@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn mirror_images_are_told_from_pictures() {
         let look = look_at_mat4(Vec3::new(3.0, 4.0, 5.0), Vec3::new(0.0, 1.0, -2.0), Vec3::Y);
-        for lens in [
+        for projection in [
             directx::perspective(0.8, 1.5, 0.1, 90.0),
             directx::perspective_infinite_reverse(0.8, 1.5, 0.1),
             directx::frustum(0.3, 0.9, -0.2, 0.1, 0.5, 40.0),
@@ -102,10 +102,12 @@ mod tests {
                 Mat4::from_rotation_x(2.0),
                 Mat4::from_scale(Vec3::new(-1e-13, -1e-13, 2e-13)),
             ] {
-                assert!(!is_mirrored(&(lens * look * turn)), "{lens} {turn}");
+                assert!(!is_mirrored(&(projection * look * turn)), "{projection} {turn}");
                 let mirror = Mat4::from_scale(Vec3::new(1.0, 1.0, -3.0));
-                assert!(is_mirrored(&(lens * look * turn * mirror)), "{lens} {turn}");
-                assert!(is_mirrored(&(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * lens * look * turn)));
+                assert!(is_mirrored(&(projection * look * turn * mirror)), "{projection} {turn}");
+                assert!(is_mirrored(
+                    &(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * projection * look * turn)
+                ));
             }
         }
     }

@@ -1,10 +1,10 @@
-//! A picture of skinned meshes without a GPU: twin of `wgsl/render/skinned.wgsl`, for one instance.
+//! A picture of skinned meshes without a GPU: reference of `wgsl/render/skinned.wgsl`, for one instance.
 
 use glam::{Mat4, Vec3, Vec4};
 
 use super::texture::Surface;
 use crate::asset::Mesh;
-use crate::asset::material::{Alpha, screen};
+use crate::asset::material::{Alpha, dithered};
 use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
@@ -118,12 +118,12 @@ impl Canvas<'_> {
 
     fn fragment(&mut self, place: [u32; 2], triangle: &Triangle<'_>) {
         let [x, y] = place.map(|at| at as f32 + 0.5);
-        let shares = triangle.shares(x, y);
-        if shares.min_element() < 0.0 {
+        let barycentric = triangle.barycentric(x, y);
+        if barycentric.min_element() < 0.0 {
             return;
         }
         let pixel = (place[1] * self.scene.size[0] + place[0]) as usize;
-        let depth = shares.dot(Vec3::from(triangle.screen.map(|corner| corner.z)));
+        let depth = barycentric.dot(Vec3::from(triangle.screen.map(|corner| corner.z)));
         if !(0.0..self.depths[pixel]).contains(&depth) {
             return;
         }
@@ -135,7 +135,7 @@ impl Canvas<'_> {
         let least = match surface.alpha {
             Alpha::Opaque => f32::NEG_INFINITY,
             Alpha::Mask(cutoff) => cutoff,
-            Alpha::Screen => screen(place),
+            Alpha::Dithered => dithered(place),
         };
         if alpha < least {
             return;
@@ -152,15 +152,15 @@ impl Canvas<'_> {
 
 impl Triangle<'_> {
     /// What each corner has of a place on the screen.
-    fn shares(&self, x: f32, y: f32) -> Vec3 {
+    fn barycentric(&self, x: f32, y: f32) -> Vec3 {
         let [a, b, c] = self.screen;
-        let share = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
-        Vec3::new(share(b, c), share(c, a), share(a, b))
+        let edge = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
+        Vec3::new(edge(b, c), edge(c, a), edge(a, b))
     }
 
     /// The same of the triangle itself.
     fn weights(&self, x: f32, y: f32) -> Vec3 {
-        let weights = self.shares(x, y) * Vec3::from(self.screen.map(|corner| corner.w));
+        let weights = self.barycentric(x, y) * Vec3::from(self.screen.map(|corner| corner.w));
         weights / weights.element_sum()
     }
 

@@ -109,15 +109,15 @@ impl Texels {
             return texel(x, y);
         }
         let low = place.map(|at| (at - 0.5).floor());
-        let share = [0, 1].map(|axis| place[axis] - 0.5 - low[axis]);
+        let fraction = [0, 1].map(|axis| place[axis] - 0.5 - low[axis]);
         let [x, y] = low.map(|at| at as i64);
-        let row = |y: i64| mixed(texel(x, y), texel(x.saturating_add(1), y), share[0]);
-        mixed(row(y), row(y.saturating_add(1)), share[1])
+        let row = |y: i64| mixed(texel(x, y), texel(x.saturating_add(1), y), fraction[0]);
+        mixed(row(y), row(y.saturating_add(1)), fraction[1])
     }
 }
 
-fn mixed(a: [f32; 4], b: [f32; 4], share: f32) -> [f32; 4] {
-    std::array::from_fn(|channel| a[channel] + (b[channel] - a[channel]) * share)
+fn mixed(a: [f32; 4], b: [f32; 4], fraction: f32) -> [f32; 4] {
+    std::array::from_fn(|channel| a[channel] + (b[channel] - a[channel]) * fraction)
 }
 
 fn wrapped(at: i64, size: i64, wrapping: Wrapping) -> usize {

@@ -19,14 +19,14 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let scene = Scene::new(gpu, 4, 0, instances)?;
         let buffers = SelectBuffers::new(gpu, &scene.mesh, &scene.crowd)?;
         let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
-        let moved = vec![0x0101_0101; instances * scene.mesh.mask_words];
-        buffers.moved.write(gpu, &moved)?;
-        let reductions = seen_of(instances, seen);
-        scene.crowd.reductions.write(gpu, &reductions)?;
+        let updated_bones = vec![0x0101_0101; instances * scene.mesh.mask_words];
+        buffers.updated_bones.write(gpu, &updated_bones)?;
+        let instance_lods = seen_of(instances, seen);
+        scene.crowd.instance_lods.write(gpu, &instance_lods)?;
         let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, &buffers, &active)?;
         let pairs = scene.clusters.len() * instances;
         let last: Vec<Skinned> =
-            reductions.iter().map(|now| Skinned { reduction: *now, ..Skinned::nothing(0) }).collect();
+            instance_lods.iter().map(|now| Skinned { instance_lod: *now, ..Skinned::nothing(0) }).collect();
         let words = scene.mesh.mask_words;
         // A reduction and what is remembered in, and of what is seen a mask and a set of bones.
         let read = 2 + SKINNED_WORDS + 2 * words / seen;
@@ -34,8 +34,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
-                let now = Now { moved: &moved, reductions: &reductions, weights: &[] };
+            Contender::host(Backend::Reference, || {
+                let now = Now { updated_bones: &updated_bones, instance_lods: &instance_lods, weights: &[] };
                 drop(std::hint::black_box(select(&scene.clusters, &now, &last)));
             }),
         ];

@@ -4,7 +4,7 @@ use encase::ShaderType;
 use glam::UVec4;
 
 use crate::Error;
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::mesh::MAX_LEVELS;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
 
@@ -17,7 +17,7 @@ pub(crate) struct SelectParams {
     pub most: u32,
     pub vertices: u32,
     pub targets: u32,
-    pub levels: [UVec4; MOST_LEVELS / 4],
+    pub levels: [UVec4; MAX_LEVELS / 4],
 }
 
 /// What a selection reads and remembers.
@@ -25,8 +25,8 @@ pub(crate) struct SelectParams {
 pub struct SelectBuffers {
     /// The bones of each instance that were recomputed this frame, a bit a slot of the skeleton's order, in
     /// [`MeshBuffers::mask_words`] words an instance. [`SkinFrame`](crate::skinning::frame::SkinFrame) puts
-    /// [`Active::dirty`](crate::animation::active::Active::dirty) here where a gate decides. A bone below one that moved has moved too.
-    pub moved: Buffer<u32>,
+    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here where a gate decides. A bone below one that moved has moved too.
+    pub updated_bones: Buffer<u32>,
     /// Of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, most
     /// influences and level; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first,
     /// so that what is seen then is skinned.
@@ -47,7 +47,7 @@ impl SelectBuffers {
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
-            moved: Buffer::new(gpu, "moved bones", crowd.instances * mesh.mask_words)?,
+            updated_bones: Buffer::new(gpu, "updated bones", crowd.instances * mesh.mask_words)?,
             skinned: Buffer::new(gpu, "skinned last", crowd.instances * (SKINNED_WORDS + mesh.targets))?,
         })
     }
@@ -83,9 +83,9 @@ impl SelectPass {
         active: &ActiveClusters,
     ) -> Result<Job, Error> {
         let pairs = crowd.instances * mesh.clusters();
-        buffers.moved.check_holds("moved", crowd.instances * mesh.mask_words)?;
+        buffers.updated_bones.check_holds("updated_bones", crowd.instances * mesh.mask_words)?;
         buffers.skinned.check_holds("skinned", crowd.instances * (SKINNED_WORDS + mesh.targets))?;
-        crowd.reductions.check_holds("crowd.reductions", crowd.instances)?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
         active.dispatched.check_holds("active.dispatched", DISPATCHED_WORDS)?;
         active.pairs.check_holds("active.pairs", pairs)?;
@@ -102,8 +102,8 @@ impl SelectPass {
         let resources = [
             uniform.raw().as_entire_binding(),
             mesh.masks.raw().as_entire_binding(),
-            buffers.moved.raw().as_entire_binding(),
-            crowd.reductions.raw().as_entire_binding(),
+            buffers.updated_bones.raw().as_entire_binding(),
+            crowd.instance_lods.raw().as_entire_binding(),
             crowd.weights.raw().as_entire_binding(),
             mesh.delta_offsets.raw().as_entire_binding(),
             buffers.skinned.raw().as_entire_binding(),

@@ -1,15 +1,15 @@
-//! Which clusters are skinned: twin of `kernels/skinning/select.wgsl`.
+//! Which clusters are skinned: reference of `kernels/skinning/select.wgsl`.
 
 use crate::skinning::clusters::Clusters;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 
 /// What decides in a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Now<'a> {
     /// The bones of each instance that moved, [`Clusters::mask_words`] words an instance.
-    pub moved: &'a [u32],
+    pub updated_bones: &'a [u32],
     /// One an instance.
-    pub reductions: &'a [Reduction],
+    pub instance_lods: &'a [InstanceLod],
     /// Of morph targets, instance by instance.
     pub weights: &'a [f32],
 }
@@ -18,7 +18,7 @@ pub struct Now<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skinned {
     /// Its reduction then.
-    pub reduction: Reduction,
+    pub instance_lod: InstanceLod,
     /// For how many frames it has been seen, 2 for more: see
     /// [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned).
     pub seen: u32,
@@ -29,13 +29,13 @@ pub struct Skinned {
 impl Skinned {
     /// Before the first frame.
     pub fn nothing(targets: usize) -> Self {
-        Self { reduction: Reduction::UNSEEN, seen: 0, weights: vec![0.0; targets] }
+        Self { instance_lod: InstanceLod::UNSEEN, seen: 0, weights: vec![0.0; targets] }
     }
 }
 
 /// How influences count.
-fn bits(reduction: &Reduction) -> [u32; 2] {
-    [reduction.fade.to_bits(), reduction.most]
+fn bits(instance_lod: &InstanceLod) -> [u32; 2] {
+    [instance_lod.fade.to_bits(), instance_lod.most]
 }
 
 /// `cluster · instances + instance` of what is skinned, of the instances that are seen, at their level of detail:
@@ -48,18 +48,18 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
     let words = clusters.mask_words;
     let is_selected = |pair: &u32| {
         let (cluster, instance) = (*pair as usize / last.len(), *pair as usize % last.len());
-        let (reduction, last) = (&now.reductions[instance], &last[instance]);
+        let (instance_lod, last) = (&now.instance_lods[instance], &last[instance]);
         let is_beyond = |level| cluster >= clusters.level(level).clusters as usize;
-        if reduction.most == 0 || is_beyond(reduction.level) {
+        if instance_lod.most == 0 || is_beyond(instance_lod.level) {
             return false;
         }
         let mask = &clusters.masks[cluster * words..][..words];
-        let moved = &now.moved[instance * words..][..words];
+        let updated_bones = &now.updated_bones[instance * words..][..words];
         let targets = last.weights.len();
         let weights = now.weights[instance * targets..][..targets].iter().zip(&last.weights);
-        bits(reduction) != bits(&last.reduction)
-            || is_beyond(last.reduction.level)
-            || mask.iter().zip(moved).any(|(a, b)| a & b != 0)
+        bits(instance_lod) != bits(&last.instance_lod)
+            || is_beyond(last.instance_lod.level)
+            || mask.iter().zip(updated_bones).any(|(a, b)| a & b != 0)
             || clusters.morphs[cluster] && weights.clone().any(|(a, b)| a.to_bits() != b.to_bits())
     };
     (0..(clusters.len() * last.len()) as u32).filter(is_selected).collect()
@@ -68,8 +68,8 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
 /// Takes note of a frame, after [`select`].
 pub fn remember(now: &Now<'_>, last: &mut [Skinned]) {
     for (instance, last) in last.iter_mut().enumerate() {
-        last.reduction = now.reductions[instance];
-        last.seen = if last.reduction.most == 0 { 0 } else { (last.seen + 1).min(2) };
+        last.instance_lod = now.instance_lods[instance];
+        last.seen = if last.instance_lod.most == 0 { 0 } else { (last.seen + 1).min(2) };
         let targets = last.weights.len();
         last.weights.copy_from_slice(&now.weights[instance * targets..][..targets]);
     }

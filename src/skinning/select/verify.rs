@@ -10,10 +10,10 @@ use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::{CLUSTER, Clusters};
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::select::reference::{Now, Skinned, remember, select};
 use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
-use crate::skinning::verify::{SHAPES, Shape, random_model, random_reductions};
+use crate::skinning::verify::{SHAPES, Shape, random_instance_lods, random_model};
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
@@ -33,38 +33,38 @@ const FRAMES: [(&str, u32, bool); 10] = [
 
 /// What decides in a frame.
 struct Frame {
-    moved: Vec<u32>,
-    reductions: Vec<Reduction>,
+    updated_bones: Vec<u32>,
+    instance_lods: Vec<InstanceLod>,
     weights: Vec<f32>,
 }
 
 impl Frame {
     fn now(&self) -> Now<'_> {
-        Now { moved: &self.moved, reductions: &self.reductions, weights: &self.weights }
+        Now { updated_bones: &self.updated_bones, instance_lods: &self.instance_lods, weights: &self.weights }
     }
 
     /// The frame after this one.
-    fn next(&self, draw: &mut Draw, case: u32, (name, share, is_other): (&str, u32, bool)) -> Self {
+    fn next(&self, draw: &mut Draw, case: u32, (name, fraction, is_other): (&str, u32, bool)) -> Self {
         let word =
-            |_: &u32| (0..32).fold(0_u32, |word, bit| word | u32::from(draw.word() % 64 < share) << bit);
-        let moved = self.moved.iter().map(word).collect();
-        let instances = self.reductions.len();
-        let reductions = match name {
-            "all unseen" => vec![Reduction::UNSEEN; instances],
-            "all back" | "all whole" => vec![Reduction::FULL; instances],
+            |_: &u32| (0..32).fold(0_u32, |word, bit| word | u32::from(draw.word() % 64 < fraction) << bit);
+        let updated_bones = self.updated_bones.iter().map(word).collect();
+        let instances = self.instance_lods.len();
+        let instance_lods = match name {
+            "all unseen" => vec![InstanceLod::UNSEEN; instances],
+            "all back" | "all whole" => vec![InstanceLod::FULL; instances],
             "other levels" | "other levels again" => {
-                let level = |old: &Reduction| Reduction { level: draw.word() % 5, ..*old };
-                self.reductions.iter().map(level).collect()
+                let level = |old: &InstanceLod| InstanceLod { level: draw.word() % 5, ..*old };
+                self.instance_lods.iter().map(level).collect()
             }
-            _ if is_other => random_reductions(case + share, instances),
-            _ => self.reductions.clone(),
+            _ if is_other => random_instance_lods(case + fraction, instances),
+            _ => self.instance_lods.clone(),
         };
         // Every third one changes, and all of them while nobody is seen.
         let weight = |(at, old): (usize, &f32)| {
             if is_other && at % 3 == 0 || name == "all unseen" { draw.signed() } else { *old }
         };
         let weights = self.weights.iter().enumerate().map(weight).collect();
-        Self { moved, reductions, weights }
+        Self { updated_bones, instance_lods, weights }
     }
 }
 
@@ -94,15 +94,15 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut last = vec![Skinned::nothing(shape.targets); instances];
         let mut draw = Draw::new(case ^ 0xb17);
         let mut frame = Frame {
-            moved: vec![0; instances * clusters.mask_words],
-            reductions: vec![Reduction::UNSEEN; instances],
+            updated_bones: vec![0; instances * clusters.mask_words],
+            instance_lods: vec![InstanceLod::UNSEEN; instances],
             weights: vec![0.0; instances * shape.targets],
         };
         for given in FRAMES {
             frame = frame.next(&mut draw, case, given);
-            crowd.reductions.write(gpu, &frame.reductions)?;
+            crowd.instance_lods.write(gpu, &frame.instance_lods)?;
             crowd.weights.write(gpu, &frame.weights)?;
-            buffers.moved.write(gpu, &frame.moved)?;
+            buffers.updated_bones.write(gpu, &frame.updated_bones)?;
             output.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
             let expected = select(&clusters, &frame.now(), &last);
@@ -132,7 +132,7 @@ fn listed(actual: &[u32], dispatched: &[u32], expected: &[u32]) -> Comparison {
 
 fn words_of(last: &[Skinned]) -> Vec<u32> {
     let words = |last: &Skinned| {
-        let Reduction { fade, most, level } = last.reduction;
+        let InstanceLod { fade, most, level } = last.instance_lod;
         let weights = last.weights.iter().map(|weight| weight.to_bits());
         [fade.to_bits(), most, level, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
     };

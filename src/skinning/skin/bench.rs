@@ -8,9 +8,9 @@ use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::bench::{CROWDS, RING, Scene, seen_of, tube};
 use crate::skinning::buffers::ActiveClusters;
 use crate::skinning::clusters::CLUSTER;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::Palette;
-use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::SkinPass;
 use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::{Blend, Vertex};
@@ -35,9 +35,14 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             let mesh = &scene.model.meshes[0];
             let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
             let unskinned = morph(mesh, &[]);
-            let twin = || {
+            let reference = || {
                 for _ in 0..instances {
-                    drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
+                    drop(std::hint::black_box(skin(
+                        &unskinned,
+                        &mesh.influences,
+                        &palette,
+                        InstanceLod::FULL,
+                    )));
                 }
             };
             // The same output without influences.
@@ -50,7 +55,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
                 Contender::recorded(Backend::Limit, |encoder| {
                     jobs.iter().for_each(|_| unmoved.record(encoder))
                 }),
-                Contender::host(Backend::Twin, twin),
+                Contender::host(Backend::Reference, reference),
             ];
             let all = instances * vertices;
             let case = format!("{influences} influences, 10k × {instances}");
@@ -80,9 +85,9 @@ fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             for _ in 0..vertices / unskinned.len() {
-                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, Reduction::FULL)));
+                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, InstanceLod::FULL)));
             }
         }),
     ];
@@ -94,9 +99,9 @@ fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
 fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    scene.crowd.reductions.write(gpu, &seen_of(CROWDS[1], 4))?;
+    scene.crowd.instance_lods.write(gpu, &seen_of(CROWDS[1], 4))?;
     let work =
-        Work { instances: CROWDS[1] / 4, vertices: RING * RING, words: 73, reduction: Reduction::FULL };
+        Work { instances: CROWDS[1] / 4, vertices: RING * RING, words: 73, instance_lod: InstanceLod::FULL };
     crowd(bench, pass, &scene, "4, a quarter of 10k × 100 seen, no list", &work)
 }
 
@@ -109,20 +114,20 @@ fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let quarter = mesh.indices[..mesh.indices.len() / 12 * 3].to_vec();
     mesh.levels = vec![MeshLevel { indices: quarter, error: 0.0 }];
     let scene = Scene::of(gpu, model, CROWDS[1])?;
-    let level = Reduction::level(1)?;
-    scene.crowd.reductions.write(gpu, &[level; CROWDS[1]])?;
+    let level = InstanceLod::level(1)?;
+    scene.crowd.instance_lods.write(gpu, &[level; CROWDS[1]])?;
     let each = CLUSTER * scene.clusters.level(1).clusters as usize;
-    let work = Work { instances: CROWDS[1], vertices: each, words: 73, reduction: level };
+    let work = Work { instances: CROWDS[1], vertices: each, words: 73, instance_lod: level };
     crowd(bench, pass, &scene, "4, 10k × 100 at a level of a quarter, no list", &work)
 }
 
-/// What is skinned of a crowd. Which vertices of an instance these are does not matter to the twin.
+/// What is skinned of a crowd. Which vertices of an instance these are does not matter to the reference.
 struct Work {
     instances: usize,
     vertices: usize,
     /// That are loaded and stored, a vertex.
     words: usize,
-    reduction: Reduction,
+    instance_lod: InstanceLod,
 }
 
 /// A hundred instances without a list: nanoseconds a vertex of those that are skinned.
@@ -144,10 +149,10 @@ fn crowd(
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             let some = &unskinned[..work.vertices];
             for _ in 0..work.instances {
-                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, work.reduction)));
+                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, work.instance_lod)));
             }
         }),
     ];
@@ -158,10 +163,10 @@ fn crowd(
 fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    let rigid = Reduction { fade: 1.0, ..Reduction::FULL };
-    scene.crowd.reductions.write(gpu, &[rigid; CROWDS[1]])?;
+    let rigid = InstanceLod { fade: 1.0, ..InstanceLod::FULL };
+    scene.crowd.instance_lods.write(gpu, &[rigid; CROWDS[1]])?;
     // A vertex, a bone and a weight in, the bone's rows, a vertex out.
-    let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, reduction: rigid };
+    let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, instance_lod: rigid };
     crowd(bench, pass, &scene, "4 faded to 1, 10k × 100", &work)
 }
 

@@ -16,7 +16,7 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{SkinPass, keep_last};
 
-/// How far a component of a position may lie from the twin's, on any device: times the palette's largest component L (at
+/// How far a component of a position may lie from the reference's, on any device: times the palette's largest component L (at
 /// least 1), times 1 + |x| + |y| + |z| of the vertex.
 ///
 /// With ε = 2⁻²⁴ (`+ − ×` to either neighbour 2ε, division 5ε): a weight carries 13ε of itself (λ times the second 2ε,

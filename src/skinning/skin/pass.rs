@@ -5,7 +5,7 @@ use std::ops::Range;
 use encase::ShaderType;
 use glam::UVec4;
 
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::mesh::MAX_LEVELS;
 use crate::gpu::{
     Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
 };
@@ -21,7 +21,7 @@ pub(crate) struct SkinParams {
     pub bones: u32,
     pub instances: u32,
     pub first_instance: u32,
-    pub levels: [UVec4; MOST_LEVELS / 4],
+    pub levels: [UVec4; MAX_LEVELS / 4],
 }
 
 /// Skins vertices.
@@ -136,7 +136,7 @@ impl SkinPass {
             vertices.raw().as_entire_binding(),
             mesh.influences.raw().as_entire_binding(),
             crowd.palette.raw().as_entire_binding(),
-            crowd.reductions.raw().as_entire_binding(),
+            crowd.instance_lods.raw().as_entire_binding(),
             active.pairs.raw().as_entire_binding(),
             active.dispatched.raw().as_entire_binding(),
             skinned.raw().as_entire_binding(),

@@ -9,15 +9,15 @@ use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::Clusters;
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::Palette;
 use crate::skinning::palette::reference::palette_for;
-use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::skin::reference::{blended, skin_seen};
 use crate::skinning::skin::{SKIN_BOUND, SkinPass, TRUNCATED};
 use crate::skinning::verify::{
-    SHAPES, Shape, flat, poisoned, random_matrices, random_model, random_reductions,
+    SHAPES, Shape, flat, poisoned, random_instance_lods, random_matrices, random_model,
 };
 use crate::skinning::vertex::{Blend, Vertex};
 
@@ -81,8 +81,8 @@ impl Scene {
         let model = random_model(case, shape)?;
         let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
         let mut crowd = SkinnedCrowd::new(gpu, &mesh, INSTANCES, blend)?;
-        let reductions = random_reductions(case, INSTANCES);
-        crowd.reductions.write(gpu, &reductions)?;
+        let instance_lods = random_instance_lods(case, INSTANCES);
+        crowd.instance_lods.write(gpu, &instance_lods)?;
         let matrices = random_matrices(case, shape.bones, INSTANCES);
         let mut vectors: Vec<[f32; 4]> = Vec::new();
         let mut placed = Vec::new();
@@ -97,7 +97,7 @@ impl Scene {
                 (0..shape.targets).map(|target| 0.5 - 0.25 * (target + instance) as f32).collect();
             let vertices = morph(&model.meshes[0], &weights);
             placed.extend(clusters.order.iter().map(|vertex| vertices[*vertex as usize]));
-            expected.extend(expect(&model, (&vertices, &clusters), &palette, reductions[instance]));
+            expected.extend(expect(&model, (&vertices, &clusters), &palette, instance_lods[instance]));
         }
         crowd.palette = Buffer::from_slice(gpu, "palette", &vectors)?;
         if shape.targets > 0 {
@@ -129,7 +129,7 @@ impl Scene {
     fn compare(&self, actual: &[Vertex], expected: &[Expected]) -> Comparison {
         let ordered =
             actual.chunks(self.clusters.order.len()).flat_map(|actual| self.clusters.in_mesh_order(actual));
-        let shares = |vertices: Vec<Vertex>| {
+        let relative = |vertices: Vec<Vertex>| {
             let mut values = flat(&vertices);
             for (values, expected) in values.chunks_exact_mut(10).zip(expected) {
                 let Expected { position: p, normal: n, tangent: t, .. } = *expected;
@@ -138,22 +138,22 @@ impl Scene {
             }
             values
         };
-        let expected = shares(expected.iter().map(|expected| expected.vertex).collect());
-        compare::absolute(&shares(ordered.collect()), &expected, 1.0)
+        let expected = relative(expected.iter().map(|expected| expected.vertex).collect());
+        compare::absolute(&relative(ordered.collect()), &expected, 1.0)
     }
 }
 
-/// The twin's vertices, each with its own bounds: see [`SKIN_BOUND`].
+/// The reference's vertices, each with its own bounds: see [`SKIN_BOUND`].
 fn expect(
     model: &Model,
     (vertices, clusters): (&[Vertex], &Clusters),
     palette: &Palette,
-    reduction: Reduction,
+    instance_lod: InstanceLod,
 ) -> Vec<Expected> {
     let influences = &model.meshes[0].influences;
     let mut skinned = vec![poisoned(); vertices.len()];
-    skin_seen(&mut skinned, vertices, (influences, clusters), palette, reduction);
-    if reduction == Reduction::UNSEEN {
+    skin_seen(&mut skinned, vertices, (influences, clusters), palette, instance_lod);
+    if instance_lod == InstanceLod::UNSEEN {
         return skinned.into_iter().map(|vertex| Expected { vertex, ..Expected::untouched() }).collect();
     }
     let largest = match palette {
@@ -165,9 +165,9 @@ fn expect(
         if vertex == poisoned() {
             return Expected::untouched();
         }
-        let matrix = blended(palette, &reduced(influences.of(at), reduction));
+        let matrix = blended(palette, &reduced(influences.of(at), instance_lod));
         let old = &vertices[at];
-        let is_truncated = (reduction.most as usize) < influences.of(at).len();
+        let is_truncated = (instance_lod.most as usize) < influences.of(at).len();
         let bound = SKIN_BOUND * if is_truncated { TRUNCATED } else { 1.0 } * largest;
         let sum = |vector: &[f32]| vector.iter().map(|x| x.abs()).sum::<f32>();
         let [normal, tangent] = lengths(&matrix, old);
@@ -198,7 +198,7 @@ mod tests {
     use super::*;
     use crate::gpu::Options;
 
-    /// The twin's own vertices hold; one of them elsewhere, turned, or mirrored does not.
+    /// The reference's own vertices hold; one of them elsewhere, turned, or mirrored does not.
     #[test]
     fn vertices_that_go_astray_are_seen() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");

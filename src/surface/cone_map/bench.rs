@@ -31,7 +31,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| jobs.iter().for_each(|job| job.record(encoder))),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::TwinParallel, || {
+            Contender::host(Backend::ReferenceParallel, || {
                 drop(std::hint::black_box(cone_map(&map, &pyramid, Address::Wrap)));
             }),
         ];

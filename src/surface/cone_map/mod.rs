@@ -21,7 +21,7 @@ pub use pass::{ConeMapPass, Cones};
 /// a march one load in twenty-five, and takes half as long again to make.
 pub const OPENING: f32 = 2.0;
 
-/// How far a radius may lie from the twin's, relative to it, on any device.
+/// How far a radius may lie from the reference's, relative to it, on any device.
 ///
 /// A radius is a quotient (2.5 ULP) of a distance (a square root of exact integers, 1.5 ULP, or a sum of two
 /// products of them: 3 ULP) and a difference of heights (1 ULP), less a millionth (1 ULP): 8 ULP < 1e-6. Which

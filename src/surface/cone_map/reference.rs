@@ -1,4 +1,4 @@
-//! Twin of `kernels/surface/cone_map.wgsl`.
+//! Reference of `kernels/surface/cone_map.wgsl`.
 
 use rayon::prelude::*;
 

@@ -27,7 +27,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
+            Contender::host(Backend::Reference, || {
                 for _ in 0..count {
                     drop(std::hint::black_box(height_pyramid(&map, Address::Wrap)));
                 }

@@ -1,4 +1,4 @@
-//! Twin of `kernels/surface/height_pyramid.wgsl`.
+//! Reference of `kernels/surface/height_pyramid.wgsl`.
 
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};

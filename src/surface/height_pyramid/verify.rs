@@ -57,7 +57,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The twin's pyramid as bits, with poison where no node lies, and what fills a row of level 0 to a multiple of four.
+/// The reference's pyramid as bits, with poison where no node lies, and what fills a row of level 0 to a multiple of four.
 fn with_poison(map: &HeightMap, layout: &PyramidLayout, address: Address) -> Vec<u32> {
     let pyramid = height_pyramid(map, address);
     let mut bits = vec![POISON; layout.len()];

@@ -28,7 +28,7 @@ const ANGLE: f32 = 60.0;
 
 /// Cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
 /// (the case names them), and nothing else. Then 1024² pixels by the fragment pass: `limit` is `plain` drawn the
-/// same, the twin marches and does not shade.
+/// same, the reference marches and does not shade.
 ///
 /// All kernels come before all pictures: lavapipe's timestamps around compute work are too short once a picture
 /// has been drawn.
@@ -55,7 +55,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| draw(&scene, encoder)),
             Contender::recorded(Backend::Limit, |encoder| draw(&plain, encoder)),
-            Contender::host(Backend::TwinParallel, || {
+            Contender::host(Backend::ReferenceParallel, || {
                 drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
             }),
         ];
@@ -89,7 +89,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), 
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &bare),
-        Contender::host(Backend::TwinParallel, || {
+        Contender::host(Backend::ReferenceParallel, || {
             drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
         }),
     ];

@@ -27,13 +27,13 @@ use crate::surface::map::Address;
 pub const LEAST_COSINE: f32 = 1.0 / 128.0;
 
 /// The most linear steps of a march.
-pub const MOST_STEPS: u32 = 1024;
+pub const MAX_STEPS: u32 = 1024;
 
 /// The most binary steps of a march.
-pub const MOST_BINARY: u32 = 24;
+pub const MAX_BINARY: u32 = 24;
 
 /// The deepest relief, in uv units.
-pub const MOST_SCALE: f32 = 1.0;
+pub const MAX_SCALE: f32 = 1.0;
 
 /// How the surface is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
@@ -139,9 +139,9 @@ impl Ray {
 pub struct March {
     /// What lies beyond the map's edge. Acceleration maps are made for one address mode.
     pub address: Address,
-    /// Linear steps straight down and at the horizon, 1 to [`MOST_STEPS`]; between, ⌈mix(min, max, 1 − V.z)⌉.
+    /// Linear steps straight down and at the horizon, 1 to [`MAX_STEPS`]; between, ⌈mix(min, max, 1 − V.z)⌉.
     pub steps: [u32; 2],
-    /// Binary steps behind them, and behind cones, up to [`MOST_BINARY`].
+    /// Binary steps behind them, and behind cones, up to [`MAX_BINARY`].
     pub binary_steps: u32,
 }
 
@@ -158,12 +158,12 @@ impl March {
     /// [`InputError`].
     pub fn validate(&self) -> Result<(), InputError> {
         let [low, high] = self.steps;
-        if low < 1 || high < low || high > MOST_STEPS {
-            let bound = format!("must satisfy 1 <= MIN <= MAX <= {MOST_STEPS}");
+        if low < 1 || high < low || high > MAX_STEPS {
+            let bound = format!("must satisfy 1 <= MIN <= MAX <= {MAX_STEPS}");
             return Err(InputError::new("steps", format!("{low},{high}"), bound));
         }
-        if self.binary_steps > MOST_BINARY {
-            let bound = format!("must be at most {MOST_BINARY}");
+        if self.binary_steps > MAX_BINARY {
+            let bound = format!("must be at most {MAX_BINARY}");
             return Err(InputError::new("binary_steps", self.binary_steps, bound));
         }
         Ok(())
@@ -230,12 +230,12 @@ mod tests {
 
     #[test]
     fn steps_out_of_bounds_are_refused() {
-        for steps in [[0, 4], [8, 4], [1, MOST_STEPS + 1]] {
+        for steps in [[0, 4], [8, 4], [1, MAX_STEPS + 1]] {
             assert_eq!(March { steps, ..March::default() }.validate().expect_err("refused").field, "steps");
         }
-        let march = March { binary_steps: MOST_BINARY + 1, ..March::default() };
+        let march = March { binary_steps: MAX_BINARY + 1, ..March::default() };
         assert_eq!(march.validate().expect_err("refused").field, "binary_steps");
-        assert!(March { steps: [1, MOST_STEPS], binary_steps: 0, ..March::default() }.validate().is_ok());
+        assert!(March { steps: [1, MAX_STEPS], binary_steps: 0, ..March::default() }.validate().is_ok());
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &bare),
-            Contender::host(Backend::TwinParallel, || {
+            Contender::host(Backend::ReferenceParallel, || {
                 drop(std::hint::black_box(shade_all(&surface, method, &march, &view, &points)));
             }),
         ];

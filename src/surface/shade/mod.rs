@@ -18,7 +18,7 @@ pub use pass::ShadePass;
 use glam::{Mat4, Vec4};
 
 use crate::InputError;
-use crate::surface::relief::{Hit, MOST_STEPS, Ray};
+use crate::surface::relief::{Hit, MAX_STEPS, Ray};
 
 /// What all points of a list are shaded with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub struct ShadeView {
     pub clip_from_world: Mat4,
     /// The eye with w = 1, or the direction towards it with w = 0 for a parallel projection; world space.
     pub eye: Vec4,
-    /// Heights on the way to the light that a soft shadow looks at, 1 to [`MOST_STEPS`].
+    /// Heights on the way to the light that a soft shadow looks at, 1 to [`MAX_STEPS`].
     pub shadow_steps: u32,
     /// How far the surface rises above the way to the light, over its distance, where a soft shadow is full; 0.001 to
     /// 1000.
@@ -61,8 +61,8 @@ impl ShadeView {
         if !self.eye.is_finite() {
             return Err(InputError::new("eye", self.eye, "must be finite"));
         }
-        if !(1..=MOST_STEPS).contains(&self.shadow_steps) {
-            let bound = format!("must be in 1..={MOST_STEPS}");
+        if !(1..=MAX_STEPS).contains(&self.shadow_steps) {
+            let bound = format!("must be in 1..={MAX_STEPS}");
             return Err(InputError::new("shadow_steps", self.shadow_steps, bound));
         }
         if !(1e-3..=1e3).contains(&self.softness) {
@@ -114,7 +114,7 @@ mod tests {
         let field = |view: ShadeView| view.validate().expect_err("refused").field;
         assert_eq!(field(ShadeView { clip_from_world: Mat4::NAN, ..good }), "clip_from_world");
         assert_eq!(field(ShadeView { eye: Vec4::INFINITY, ..good }), "eye");
-        for shadow_steps in [0, MOST_STEPS + 1] {
+        for shadow_steps in [0, MAX_STEPS + 1] {
             assert_eq!(field(ShadeView { shadow_steps, ..good }), "shadow_steps");
         }
         for softness in [0.0, 2e3, f32::NAN] {

@@ -24,7 +24,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || drop(std::hint::black_box(tangents(&torus.mesh())))),
+        Contender::host(Backend::Reference, || drop(std::hint::black_box(tangents(&torus.mesh())))),
     ];
     bench.case("512x512 torus", (vertices, "vertex"), 100 * vertices as u64, contenders)
 }

@@ -23,7 +23,7 @@ pub struct Owned {
 }
 
 impl Owned {
-    /// As what the pass and the twin take.
+    /// As what the pass and the reference take.
     pub fn mesh(&self) -> Mesh<'_> {
         Mesh { positions: &self.positions, normals: &self.normals, uv: &self.uv, indices: &self.indices }
     }
@@ -174,30 +174,30 @@ fn literals() -> Vec<(&'static str, Owned, [[f32; 4]; 3])> {
 /// A tenth below and above each threshold. The fallback would be another frame than what is above.
 fn thresholds() -> Vec<(&'static str, Owned)> {
     // A line in uv, but for a little in v.
-    let sliver = |share: f32| {
-        let mut mesh = triangle([[0.0, 0.0], [1.0, 1.0], [1.0, 1.0 - share * DEGENERATE]]);
+    let sliver = |fraction: f32| {
+        let mut mesh = triangle([[0.0, 0.0], [1.0, 1.0], [1.0, 1.0 - fraction * DEGENERATE]]);
         mesh.normals = vec![[0.3, 0.2, 1.0]; 3];
         mesh
     };
     // A line in space, but for a little in y: along it lies u, or v.
-    let flat = |share: f32, uv: [[f32; 2]; 3]| {
+    let flat = |fraction: f32, uv: [[f32; 2]; 3]| {
         let mut mesh = triangle(uv);
-        mesh.positions[2] = [1.0, -share * DEGENERATE, 0.0];
+        mesh.positions[2] = [1.0, -fraction * DEGENERATE, 0.0];
         mesh.normals = vec![[0.3, 0.2, 1.0]; 3];
         mesh
     };
     let along = [[1.0, 0.0], [0.0, 0.0], [1.0, 1.0]];
     let across = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     // The tangent is +Y, of which a share is left when the normal's part is taken off.
-    let leaning = |share: f32| {
+    let leaning = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [0.0, -1.0], [1.0, 0.0]]);
-        mesh.normals[0] = [0.0, (1.0 - share * share).sqrt(), share];
+        mesh.normals[0] = [0.0, (1.0 - fraction * fraction).sqrt(), fraction];
         mesh
     };
     // The face's normal is +Z, which the vertices' normals turn away from by a little more than a right angle.
-    let turned = |share: f32| {
+    let turned = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-        mesh.normals = vec![[0.0, (1.0 - share * share).sqrt(), -share]; 3];
+        mesh.normals = vec![[0.0, (1.0 - fraction * fraction).sqrt(), -fraction]; 3];
         mesh
     };
     vec![

@@ -2,7 +2,7 @@
 
 use super::bounds::{ULP, off};
 use crate::surface::map::{Address, HeightMap};
-use crate::surface::relief::{LEAST_COSINE, MOST_STEPS};
+use crate::surface::relief::{LEAST_COSINE, MAX_STEPS};
 use crate::surface::shade::{ShadePoint, ShadeView};
 
 /// What heights may differ by before a point shades itself: `SURFACE_SHADOW_BIAS`.
@@ -66,11 +66,11 @@ pub fn penumbra(terrain: &Terrain<'_>, view: &ShadeView, point: &ShadePoint) -> 
         20.0 * way + 2.0 * farthest + looked_up(farthest)
     });
     let travel = (slope[0] * size[0]).abs().max((slope[1] * size[1]).abs());
-    let count = view.shadow_steps.clamp(1, MOST_STEPS);
+    let count = view.shadow_steps.clamp(1, MAX_STEPS);
     let mut most = [0.0_f64; 2];
     for step in 1..=count {
-        let share = f64::from(step) / f64::from(count + 1);
-        let travelled = share * share;
+        let fraction = f64::from(step) / f64::from(count + 1);
+        let travelled = fraction * fraction;
         let [height, steepness] = terrain.at([0, 1].map(|i| uv[i] - rise * travelled * slope[i]));
         let excess = height - (1.0 - rise * (1.0 - travelled)) - BIAS;
         let excess_off =

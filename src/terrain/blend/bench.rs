@@ -32,7 +32,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             let window = &host[..(width * width) as usize];
             for _ in 0..count {
                 drop(std::hint::black_box(blend(window, width as usize, 1.0, &zones, &shading)));

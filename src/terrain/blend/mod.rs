@@ -97,7 +97,7 @@ pub fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
     Ok(())
 }
 
-/// How far a pixel of a colour map may lie from the twin's: one level of 255. The colour carries some tens of
+/// How far a pixel of a colour map may lie from the reference's: one level of 255. The colour carries some tens of
 /// rounding errors of 2⁻²³ and `pow`'s 28 ULP, far less than a level, but rounding to 8 bits may fall on
 /// either side.
 pub const MAP_BOUND: u8 = 1;

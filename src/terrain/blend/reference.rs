@@ -1,4 +1,4 @@
-//! Zone weights and the top-down colour map: twin of `kernels/terrain/blend.wgsl` and
+//! Zone weights and the top-down colour map: reference of `kernels/terrain/blend.wgsl` and
 //! `wgsl/terrain/zones.wgsl`.
 
 use crate::srgb;
@@ -12,7 +12,7 @@ pub fn zone_weight(zone: &MapZone, height: f32) -> f32 {
 }
 
 /// The zones' parts of the colour at a height.
-pub fn zone_shares(zones: &[MapZone], height: f32, weights: WeightMode) -> Vec<f32> {
+pub fn zone_fractions(zones: &[MapZone], height: f32, weights: WeightMode) -> Vec<f32> {
     let all: Vec<f32> = zones.iter().map(|zone| zone_weight(zone, height)).collect();
     let total: f32 = all.iter().sum();
     if weights == WeightMode::Additive {
@@ -45,11 +45,11 @@ pub fn blend(
             let facing: f32 = normal.iter().zip(shading.light).map(|(n, l)| n * l).sum::<f32>().max(0.0);
             let light = shading.ambient + (1.0 - shading.ambient) * facing;
             let mut color = [0.0; 3];
-            for (share, zone) in
-                zone_shares(zones, at(x, y) as f32 / 65_536.0, shading.weights).iter().zip(zones)
+            for (fraction, zone) in
+                zone_fractions(zones, at(x, y) as f32 / 65_536.0, shading.weights).iter().zip(zones)
             {
                 for (sum, channel) in color.iter_mut().zip(zone.color) {
-                    *sum += share * channel;
+                    *sum += fraction * channel;
                 }
             }
             let bytes = color.map(|channel| srgb::byte(channel * light));

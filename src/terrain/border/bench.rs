@@ -26,7 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             for (index, around) in around.iter().enumerate() {
                 let (earlier, rest) = host.split_at_mut(index * points);
                 let around = around.map(|at| at.map(|at| &earlier[at * points..(at + 1) * points]));

@@ -1,4 +1,4 @@
-//! B's transition area: twin of `kernels/terrain/border.wgsl`.
+//! B's transition area: reference of `kernels/terrain/border.wgsl`.
 
 /// Moves the samples of `patch` (rows of `size`) within `width` of a border towards the existing patches
 /// left, right, above and below it.

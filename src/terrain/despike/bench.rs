@@ -26,7 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             for window in host.chunks_exact((width * width) as usize) {
                 let field = despike(window, width as usize, params.fixed_threshold(), |_, _| false);
                 drop(std::hint::black_box(field));

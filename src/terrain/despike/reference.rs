@@ -1,4 +1,4 @@
-//! Removal of spikes: twin of `kernels/terrain/despike.wgsl`.
+//! Removal of spikes: reference of `kernels/terrain/despike.wgsl`.
 
 use crate::terrain::fixed::mean_of_four;
 

@@ -44,16 +44,16 @@ fn case(bench: &mut Bench<'_>, size: u32, count: u32, with_features: bool) -> Re
     let rows = words.len() as u32 / 1024;
     let drawn = WordsPass::new(gpu)?.prepare(gpu, config.key(), [1024, rows], &words)?;
     let parts = batch.fields().len();
-    let twin = |patch: &[i32; 2]| height(&config, &features, Window { patch: *patch, reach: 0 });
+    let reference = |patch: &[i32; 2]| height(&config, &features, Window { patch: *patch, apron: 0 });
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| batch.record(encoder)),
         Contender::recorded(Backend::Limit, |encoder| (0..parts).for_each(|_| drawn.record(encoder))),
         Contender::recorded(Backend::Copy, |encoder| (0..parts).for_each(|_| copied.record(encoder))),
-        Contender::host(Backend::Twin, || {
-            patches.iter().for_each(|patch| drop(std::hint::black_box(twin(patch))))
+        Contender::host(Backend::Reference, || {
+            patches.iter().for_each(|patch| drop(std::hint::black_box(reference(patch))))
         }),
-        Contender::host(Backend::TwinParallel, || {
-            patches.par_iter().for_each(|patch| drop(std::hint::black_box(twin(patch))));
+        Contender::host(Backend::ReferenceParallel, || {
+            patches.par_iter().for_each(|patch| drop(std::hint::black_box(reference(patch))));
         }),
     ];
     let name = format!("{size}x{size} batch {count}{}", if with_features { " valleys" } else { "" });

@@ -97,7 +97,7 @@ impl HeightPass {
         Ok(Self { stages, cell_rows: blocks.cell_rows, with_features: features.is_some() })
     }
 
-    /// Prepares generation of `count` windows with `reach` into `output`, which holds
+    /// Prepares generation of `count` windows with `apron` into `output`, which holds
     /// [`HeightJob::output_points`] heights. There is room for `feature_capacity` injected points, counted once
     /// in every window that sees them.
     ///
@@ -108,7 +108,7 @@ impl HeightPass {
         &self,
         gpu: &Gpu,
         config: &Config,
-        [count, reach]: [u32; 2],
+        [count, apron]: [u32; 2],
         feature_capacity: usize,
         output: &Buffer<i32>,
         scratch: &HeightScratch,
@@ -120,9 +120,9 @@ impl HeightPass {
                 InputError::new("border", value, "must be \"seamless\" for windows of the plane").into()
             );
         }
-        Window { patch: [0, 0], reach }.validate(config)?;
-        let widths = level_widths(config, reach);
-        output.check_holds("output", HeightJob::output_points(config, count, reach))?;
+        Window { patch: [0, 0], apron }.validate(config)?;
+        let widths = level_widths(config, apron);
+        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
         scratch.check(self, &widths, count)?;
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
         let features = FeatureIndex::new(gpu, &widths, count, capacity)?;
@@ -153,7 +153,7 @@ impl HeightPass {
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         let job = Job::new(gpu, "terrain/height", steps)?;
-        Ok(HeightJob { config: config.clone(), count, reach, widths, origins, features, job })
+        Ok(HeightJob { config: config.clone(), count, apron, widths, origins, features, job })
     }
 
     /// The coarse level and the number of levels of every dispatch.
@@ -196,8 +196,8 @@ impl HeightPass {
 }
 
 /// Points along an edge at every level, enough for windows of any alignment; the base lattice first.
-fn level_widths(config: &Config, reach: u32) -> Vec<u32> {
-    let mut widths = vec![config.patch_size + 2 * reach];
+fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
+    let mut widths = vec![config.patch_size + 2 * apron];
     for _ in 0..config.levels() {
         widths.push((widths[widths.len() - 1] - 1) / 2 + 3);
     }
@@ -214,7 +214,7 @@ pub struct HeightBatch {
 }
 
 impl HeightBatch {
-    /// Allocates everything for `count` windows with `reach`, with room for `feature_capacity` injected points
+    /// Allocates everything for `count` windows with `apron`, with room for `feature_capacity` injected points
     /// in each part.
     ///
     /// # Errors
@@ -223,22 +223,22 @@ impl HeightBatch {
         gpu: &Gpu,
         pass: &HeightPass,
         config: &Config,
-        [count, reach]: [u32; 2],
+        [count, apron]: [u32; 2],
         feature_capacity: usize,
     ) -> Result<Self, Error> {
         config.validate()?;
-        Window { patch: [0, 0], reach }.validate(config)?;
-        let largest = Fields::most(gpu, config.patch_size + 2 * reach) as u32;
+        Window { patch: [0, 0], apron }.validate(config)?;
+        let largest = Fields::most(gpu, config.patch_size + 2 * apron) as u32;
         let parts = count.div_ceil(largest).max(1);
-        let scratch = HeightScratch::new(gpu, pass, config, count.div_ceil(parts), reach)?;
+        let scratch = HeightScratch::new(gpu, pass, config, count.div_ceil(parts), apron)?;
         let (mut jobs, mut fields) = (Vec::new(), Vec::new());
         for part in 0..parts {
             let size = count * (part + 1) / parts - count * part / parts;
-            let output = Fields::new(gpu, "terrain heights", config.patch_size + 2 * reach, size)?;
+            let output = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, size)?;
             jobs.push(pass.prepare(
                 gpu,
                 config,
-                [size, reach],
+                [size, apron],
                 feature_capacity,
                 &output.heights,
                 &scratch,
@@ -291,7 +291,7 @@ pub struct HeightScratch {
 }
 
 impl HeightScratch {
-    /// Scratch for `count` windows with `reach`.
+    /// Scratch for `count` windows with `apron`.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -300,9 +300,9 @@ impl HeightScratch {
         pass: &HeightPass,
         config: &Config,
         count: u32,
-        reach: u32,
+        apron: u32,
     ) -> Result<Self, GpuError> {
-        let [first, second] = Self::points(pass, &level_widths(config, reach), count);
+        let [first, second] = Self::points(pass, &level_widths(config, apron), count);
         let buffer = |points| Buffer::new(gpu, "terrain scratch", points);
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
@@ -335,7 +335,7 @@ impl HeightScratch {
 pub struct HeightJob {
     config: Config,
     count: u32,
-    reach: u32,
+    apron: u32,
     widths: Vec<u32>,
     origins: Vec<Buffer<[i32; 2]>>,
     features: FeatureIndex,
@@ -344,8 +344,8 @@ pub struct HeightJob {
 
 impl HeightJob {
     /// Heights that the output must hold.
-    pub fn output_points(config: &Config, count: u32, reach: u32) -> usize {
-        let width = (config.patch_size + 2 * reach) as usize;
+    pub fn output_points(config: &Config, count: u32, apron: u32) -> usize {
+        let width = (config.patch_size + 2 * apron) as usize;
         count as usize * width * width
     }
 
@@ -360,7 +360,7 @@ impl HeightJob {
         }
         let mut origins = vec![Vec::with_capacity(patches.len()); self.widths.len()];
         for &patch in patches {
-            let window = Window { patch, reach: self.reach };
+            let window = Window { patch, apron: self.apron };
             window.validate(&self.config)?;
             for (level, spans) in window.levels(&self.config).into_iter().enumerate() {
                 origins[level].push(spans.map(|span| span.first as i32));
@@ -417,9 +417,9 @@ mod tests {
     #[test]
     fn scratch_holds_what_dispatches_leave() {
         let gpu = Gpu::headless(&crate::gpu::Options::default()).expect("the suite needs an adapter");
-        let points = |size, coarse_levels, reach, levels| {
+        let points = |size, coarse_levels, apron, levels| {
             let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
-            let widths = level_widths(&config, reach);
+            let widths = level_widths(&config, apron);
             let blocks = Blocks { cell_rows: 1, levels };
             let pass = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
             HeightScratch::points(&pass, &widths, 3)
@@ -438,11 +438,11 @@ mod tests {
     /// Uniform widths cover every window, whatever its alignment.
     #[test]
     fn level_widths_cover_every_alignment() {
-        for (size, coarse_levels, reach) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {
+        for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {
             let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
-            let widths = level_widths(&config, reach);
+            let widths = level_widths(&config, apron);
             for patch in -300..300 {
-                let levels = Window { patch: [patch, 1 - patch], reach }.levels(&config);
+                let levels = Window { patch: [patch, 1 - patch], apron }.levels(&config);
                 for (spans, width) in levels.iter().zip(&widths) {
                     let fits = |span: &Span| span.width() <= *width as usize;
                     assert!(spans.iter().all(fits), "size {size} patch {patch}: {spans:?} exceeds {width}");

@@ -1,4 +1,4 @@
-//! Heights of a window onto the plane: twin of `kernels/terrain/height.wgsl`. Rows of coarse points are
+//! Heights of a window onto the plane: reference of `kernels/terrain/height.wgsl`. Rows of coarse points are
 //! streamed as in the kernel; what a thread does there for four cells is done here for a whole row.
 
 use crate::terrain::config::Config;

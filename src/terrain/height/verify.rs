@@ -45,7 +45,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 /// Large patches with what small ones are tested with: coarse levels, reach, neighbours, features.
 fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
-    for (size, coarse_levels, reach, offset, mode) in [
+    for (size, coarse_levels, apron, offset, mode) in [
         (513, 8, 3, Offset::Gaussian, None),
         (1025, 4, 17, Offset::Positive, None),
         (1025, 8, 0, Offset::Signed, None),
@@ -61,21 +61,21 @@ fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
             None => Features::default(),
         };
         let patches = if size < 2000 { &[[2, -3], [3, -4]][..] } else { &[[3, -3]] };
-        check(cases, &pass, &config, &features, patches, reach)?;
+        check(cases, &pass, &config, &features, patches, apron)?;
     }
     Ok(())
 }
 
 fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = HeightPass::new(cases.gpu, Offset::Signed, None)?;
-    for (size, coarse_levels, reach) in
+    for (size, coarse_levels, apron) in
         [(3, 0, 1), (5, 1, 2), (17, 2, 3), (33, 3, 40), (65, 8, 7), (129, 0, 64), (257, 0, 1)]
     {
         let config = config(&json!({
             "patchSize": size, "scaleFactor": 12.5, "seed": "windows", "coarseLevels": coarse_levels,
         }))?;
         let patches: Vec<_> = (0..7).map(|i| [3 * i - 10, -i * i]).collect();
-        check(cases, &pass, &config, &Features::default(), &patches, reach)?;
+        check(cases, &pass, &config, &Features::default(), &patches, apron)?;
     }
     // The last patches whose world coordinates fit.
     let config = config(&json!({"patchSize": 9, "scaleFactor": 40.0, "seed": "far"}))?;
@@ -86,7 +86,7 @@ fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
 fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
     for mode in [FeatureMode::Keep, FeatureMode::Additive] {
         let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(mode))?;
-        for (case, (size, coarse_levels, reach)) in
+        for (case, (size, coarse_levels, apron)) in
             [(3, 0, 0), (5, 0, 1), (17, 1, 0), (33, 0, 0), (33, 2, 5), (129, 0, 3), (257, 0, 0)]
                 .into_iter()
                 .enumerate()
@@ -96,18 +96,18 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             }))?;
             let features = scattered(&config, [2, -3], mode, case as u32)?;
             let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [9, 9]];
-            check(cases, &pass, &config, &features, &patches, reach)?;
+            check(cases, &pass, &config, &features, &patches, apron)?;
         }
     }
     // Every point of a patch, whose windows end anywhere in a word.
     let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(FeatureMode::Additive))?;
-    for (size, reach) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
+    for (size, apron) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
         let config = config(&json!({"patchSize": size, "scaleFactor": 4.0, "seed": "dense"}))?;
         let points =
             (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
         let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: points.collect() };
         let features = Features::new(&config, &[file], FeatureMode::Additive)?;
-        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], reach)?;
+        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], apron)?;
     }
     Ok(())
 }
@@ -136,20 +136,20 @@ fn check(
     config: &Config,
     features: &Features,
     patches: &[[i32; 2]],
-    reach: u32,
+    apron: u32,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let count = patches.len() as u32;
-    let output = Poisoned::new(gpu, HeightJob::output_points(config, count, reach))?;
-    let scratch = HeightScratch::new(gpu, pass, config, count, reach)?;
+    let output = Poisoned::new(gpu, HeightJob::output_points(config, count, apron))?;
+    let scratch = HeightScratch::new(gpu, pass, config, count, apron)?;
     let capacity = features.len() * patches.len();
-    let job = pass.prepare(gpu, config, [count, reach], capacity, &output.buffer, &scratch)?;
+    let job = pass.prepare(gpu, config, [count, apron], capacity, &output.buffer, &scratch)?;
     job.set(gpu, patches, features)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> =
-        patches.iter().flat_map(|&patch| height(config, features, Window { patch, reach })).collect();
+        patches.iter().flat_map(|&patch| height(config, features, Window { patch, apron })).collect();
     let name = format!(
-        "{size}×{size} {offset:?} k={k} reach {reach} × {count} at {at:?}{features}",
+        "{size}×{size} {offset:?} k={k} apron {apron} × {count} at {at:?}{features}",
         size = config.patch_size,
         offset = config.offset,
         k = config.coarse_levels,

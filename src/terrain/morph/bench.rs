@@ -25,7 +25,9 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || drop(std::hint::black_box(morph(&from, &to, params.fixed_time())))),
+        Contender::host(Backend::Reference, || {
+            drop(std::hint::black_box(morph(&from, &to, params.fixed_time())))
+        }),
     ];
     bench.case("257x257 batch 64", (points, "point"), 12 * points as u64, contenders)
 }

@@ -26,7 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             for window in host.chunks_exact((width * width) as usize) {
                 drop(std::hint::black_box(normals(window, width as usize, 1.0)));
             }

@@ -16,5 +16,5 @@ pub use pass::NormalsPass;
 /// With ε = 2⁻²³ (WGSL lets `+ − ×` and conversions round to either neighbour): a component of (−dx, 2·scale,
 /// −dy) carries ε, its square 3ε, a sum of three squares 5ε whatever the order or fusion, the square root of
 /// that 2.5ε; `inverseSqrt` adds 2 ULP ≤ 2ε, the product ε. With the component's own ε: 6.5ε < 8e-7 of a value
-/// of at most 1; the twin computes in f64 and rounds once (½ε).
+/// of at most 1; the reference computes in f64 and rounds once (½ε).
 pub const NORMAL_BOUND: f32 = 8.5e-7;

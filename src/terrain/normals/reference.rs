@@ -1,4 +1,4 @@
-//! Slopes and unit normals: twin of `kernels/terrain/normals.wgsl`.
+//! Slopes and unit normals: reference of `kernels/terrain/normals.wgsl`.
 
 use crate::terrain::config::HEIGHT_ONE;
 

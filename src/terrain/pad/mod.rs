@@ -41,11 +41,11 @@ pub fn surrounds(config: &Config, patches: &[[i32; 2]]) -> Vec<Surround> {
 /// Checks that windows do not reach past the neighbours.
 ///
 /// # Errors
-/// [`InputError`] when `reach` is patchSize or more.
-pub fn validate(patch_size: u32, reach: u32) -> Result<(), InputError> {
-    if reach < patch_size {
+/// [`InputError`] when `apron` is patchSize or more.
+pub fn validate(patch_size: u32, apron: u32) -> Result<(), InputError> {
+    if apron < patch_size {
         return Ok(());
     }
     let bound = format!("must be below patchSize = {patch_size} with the borders \"wrap\" and \"blend\"");
-    Err(InputError::new("reach", reach, bound))
+    Err(InputError::new("apron", apron, bound))
 }

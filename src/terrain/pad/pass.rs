@@ -22,7 +22,7 @@ impl PadPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares windows that reach `reach` samples beyond patches, one for each of `surrounds`, from `parts`, where
+    /// Prepares windows that reach `apron` samples beyond patches, one for each of `surrounds`, from `parts`, where
     /// the patches lie one after the other, to `windows`. Surroundings are counted through all parts.
     ///
     /// # Errors
@@ -32,19 +32,19 @@ impl PadPass {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        reach: u32,
+        apron: u32,
         surrounds: &[Surround],
         parts: &[Fields],
         windows: &Buffer<i32>,
     ) -> Result<Job, Error> {
         let size = parts.first().map_or(0, |part| part.width);
-        validate(size, reach)?;
-        let width = size + 2 * reach;
+        validate(size, apron)?;
+        let width = size + 2 * apron;
         let places = places(parts, size)?;
         check_surrounds(surrounds, places.len())?;
         windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
         let tiles: Vec<_> = surrounds.iter().flatten().map(|tile| tile.map(|patch| places[patch])).collect();
-        let uniform = Uniform::new(gpu, "pad", &PadParams { size, reach })?;
+        let uniform = Uniform::new(gpu, "pad", &PadParams { size, apron })?;
         let mut steps = Vec::new();
         for (part, patches) in parts.iter().enumerate() {
             let Some(around) = tiles_in(part, &tiles) else { continue };

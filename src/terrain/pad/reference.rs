@@ -1,13 +1,13 @@
-//! Windows around patches: twin of `kernels/terrain/pad.wgsl`.
+//! Windows around patches: reference of `kernels/terrain/pad.wgsl`.
 
-/// The window of `size` + 2·`reach` samples a row around a patch, given the nine patches around and at it.
+/// The window of `size` + 2·`apron` samples a row around a patch, given the nine patches around and at it.
 /// The middle one must be there.
-pub fn pad(size: usize, reach: usize, around: [Option<&[i32]>; 9]) -> Vec<i32> {
-    let width = size + 2 * reach;
+pub fn pad(size: usize, apron: usize, around: [Option<&[i32]>; 9]) -> Vec<i32> {
+    let width = size + 2 * apron;
     let mut window = Vec::with_capacity(width * width);
     for row in 0..width {
         for column in 0..width {
-            window.push(sample(size, around, column as i64 - reach as i64, row as i64 - reach as i64));
+            window.push(sample(size, around, column as i64 - apron as i64, row as i64 - apron as i64));
         }
     }
     window

@@ -37,26 +37,26 @@ fn case(
     pass: &PadPass,
     border: &serde_json::Value,
     (patches, most): (&[[i32; 2]], usize),
-    [size, reach]: [u32; 2],
+    [size, apron]: [u32; 2],
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let config = config(&json!({"patchSize": size, "scaleFactor": 1.0, "seed": "", "border": border}))?;
     let points = (size * size) as usize;
-    let heights = random_heights(size + reach, points * patches.len(), LIMIT);
+    let heights = random_heights(size + apron, points * patches.len(), LIMIT);
     let around = surrounds(&config, patches);
     let mut parts = Vec::new();
     for part in heights.chunks(most * points) {
         let count = (part.len() / points) as u32;
         parts.push(Fields { heights: Buffer::from_slice(gpu, "patches", part)?, width: size, count });
     }
-    let output = Poisoned::new(gpu, patches.len() * ((size + 2 * reach) as usize).pow(2))?;
-    let job = pass.prepare(gpu, reach, &around, &parts, &output.buffer)?;
+    let output = Poisoned::new(gpu, patches.len() * ((size + 2 * apron) as usize).pow(2))?;
+    let job = pass.prepare(gpu, apron, &around, &parts, &output.buffer)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let field = |index: usize| &heights[index * points..(index + 1) * points];
     let expected: Vec<i32> = (around.iter())
-        .flat_map(|around| pad(size as usize, reach as usize, around.map(|tile| tile.map(field))))
+        .flat_map(|around| pad(size as usize, apron as usize, around.map(|tile| tile.map(field))))
         .collect();
-    let mut name = format!("{size}×{size} × {} patches, {border}, reach {reach}", patches.len());
+    let mut name = format!("{size}×{size} × {} patches, {border}, apron {apron}", patches.len());
     if parts.len() > 1 {
         name += &format!(", {} buffers", parts.len());
     }

@@ -29,7 +29,7 @@ fn case(bench: &mut Bench<'_>, name: &str, [width, count]: [u32; 2], iterations:
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::recorded(Backend::Copy, |encoder| (0..iterations).for_each(|_| copied.record(encoder))),
-        Contender::host(Backend::Twin, || {
+        Contender::host(Backend::Reference, || {
             for window in host.chunks_exact((width * width) as usize) {
                 let mut field = window.to_vec();
                 for iteration in 0..iterations {

@@ -1,4 +1,4 @@
-//! Thermal erosion: twin of `kernels/terrain/thermal.wgsl`.
+//! Thermal erosion: reference of `kernels/terrain/thermal.wgsl`.
 
 /// One iteration on a window of `width` samples a row, cropped by one on every side. `threshold` is the
 /// difference that stays.

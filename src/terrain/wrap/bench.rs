@@ -27,12 +27,12 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let features = Features::default();
     job.set(gpu, &patches, &features)?;
     let copied = copy_of(gpu, points)?;
-    let twin = |patch: &[i32; 2]| drop(std::hint::black_box(wrap(&config, &features, *patch)));
+    let reference = |patch: &[i32; 2]| drop(std::hint::black_box(wrap(&config, &features, *patch)));
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Twin, || patches.iter().for_each(twin)),
-        Contender::host(Backend::TwinParallel, || patches.par_iter().for_each(twin)),
+        Contender::host(Backend::Reference, || patches.iter().for_each(reference)),
+        Contender::host(Backend::ReferenceParallel, || patches.par_iter().for_each(reference)),
     ];
     bench.case(format!("{size}x{size} batch {count}"), (points, "point"), 4 * points as u64, contenders)
 }

@@ -123,7 +123,7 @@ impl WrapJob {
             return Err(InputError::new("patches", patches.len(), bound).into());
         }
         for &patch in patches {
-            Window { patch, reach: 0 }.validate(&self.config)?;
+            Window { patch, apron: 0 }.validate(&self.config)?;
         }
         let origins: Vec<_> =
             patches.iter().map(|patch| patch.map(|index| (i64::from(index) * PATCH_EDGE) as i32)).collect();

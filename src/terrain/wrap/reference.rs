@@ -1,4 +1,4 @@
-//! Heights of a patch by itself, whose neighbours wrap around: twin of `kernels/terrain/wrap.wgsl`.
+//! Heights of a patch by itself, whose neighbours wrap around: reference of `kernels/terrain/wrap.wgsl`.
 
 use crate::terrain::config::{Config, PATCH_EDGE};
 use crate::terrain::features::Features;

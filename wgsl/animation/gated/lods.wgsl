@@ -1,4 +1,4 @@
-import package::wgsl::animation::gating::Lod;
+import package::wgsl::animation::gate_state::Lod;
 
 // One an instance.
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;

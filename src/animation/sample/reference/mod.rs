@@ -1,13 +1,13 @@
-//! Sampling of clips: twin of `kernels/animation/sample.wgsl`.
+//! Sampling of clips: reference of `kernels/animation/sample.wgsl`.
 
 use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
 use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, all_instances};
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::clip::{Clip, Interpolation, Part, Track};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
-use crate::asset::keyframe::place;
+use crate::asset::keyframe::keyframe_cursor;
 use crate::asset::transform::Transform;
 
 mod arcs;
@@ -27,23 +27,27 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
     let of = |part| {
         let track: &Track = clip.track(bone, part);
         let values = &clip.values()[track.first_value as usize..];
-        (values, track.interpolation(), place(clip.times_of(track), time))
+        (values, track.interpolation(), keyframe_cursor(clip.times_of(track), time))
     };
     let vector = |part| {
-        let (values, interpolation, place) = of(part);
-        let [x, y, z, _] = vector_at(values, interpolation, place);
+        let (values, interpolation, cursor) = of(part);
+        let [x, y, z, _] = vector_at(values, interpolation, cursor);
         [x, y, z]
     };
-    let (values, interpolation, place) = of(Part::Rotation);
-    let rotation = rotation_at(values, interpolation, place, path);
+    let (values, interpolation, cursor) = of(Part::Rotation);
+    let rotation = rotation_at(values, interpolation, cursor, path);
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
 
-pub(crate) fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place: Place) -> [f32; 4] {
-    let key = place.key as usize;
+pub(crate) fn vector_at(
+    values: &[[f32; 4]],
+    interpolation: Interpolation,
+    cursor: KeyframeCursor,
+) -> [f32; 4] {
+    let key = cursor.key as usize;
     match interpolation {
-        Interpolation::CubicSpline => spline(values, place),
-        Interpolation::Linear if place.fraction > 0.0 => lerp(values[key], values[key + 1], place.fraction),
+        Interpolation::CubicSpline => spline(values, cursor),
+        Interpolation::Linear if cursor.fraction > 0.0 => lerp(values[key], values[key + 1], cursor.fraction),
         _ => values[key],
     }
 }
@@ -51,26 +55,26 @@ pub(crate) fn vector_at(values: &[[f32; 4]], interpolation: Interpolation, place
 pub(crate) fn rotation_at(
     values: &[[f32; 4]],
     interpolation: Interpolation,
-    place: Place,
+    cursor: KeyframeCursor,
     path: RotationPath,
 ) -> [f32; 4] {
-    let key = place.key as usize;
+    let key = cursor.key as usize;
     match interpolation {
         Interpolation::CubicSpline => {
-            let between = spline(values, place);
+            let between = spline(values, cursor);
             normalized(if dot(between, between) < VANISHING { values[3 * key + 1] } else { between })
         }
-        Interpolation::Linear if place.fraction > 0.0 => match path {
-            RotationPath::Slerp => slerp(values[key], values[key + 1], place.fraction),
-            RotationPath::Nlerp => normalized(lerp(values[key], values[key + 1], place.fraction)),
+        Interpolation::Linear if cursor.fraction > 0.0 => match path {
+            RotationPath::Slerp => slerp(values[key], values[key + 1], cursor.fraction),
+            RotationPath::Nlerp => normalized(lerp(values[key], values[key + 1], cursor.fraction)),
         },
         _ => values[key],
     }
 }
 
 /// glTF's spline: values and tangents, three a key.
-fn spline(values: &[[f32; 4]], place: Place) -> [f32; 4] {
-    let (at, t) = (3 * place.key as usize, place.fraction);
+fn spline(values: &[[f32; 4]], cursor: KeyframeCursor) -> [f32; 4] {
+    let (at, t) = (3 * cursor.key as usize, cursor.fraction);
     let start = values[at + 1];
     if t <= 0.0 {
         return start;
@@ -126,11 +130,11 @@ fn slerp_weight(t: f32, less_one: f32) -> f32 {
 pub fn sample_set(
     set: &ClipSet,
     instances: &[Instance],
-    places: &[Place],
+    cursors: &[KeyframeCursor],
     path: RotationPath,
 ) -> Vec<Transform> {
     let mut transforms = vec![Transform::IDENTITY; instances.len() * set.bones()];
-    sample_set_into(set, instances, places, path, &mut transforms);
+    sample_set_into(set, instances, cursors, path, &mut transforms);
     transforms
 }
 
@@ -141,31 +145,31 @@ pub fn sample_set(
 pub fn sample_set_into(
     set: &ClipSet,
     instances: &[Instance],
-    places: &[Place],
+    cursors: &[KeyframeCursor],
     path: RotationPath,
     transforms: &mut [Transform],
 ) {
     let (bones, room) = (set.bones(), set.timelines_a_clip());
     for (index, instance) in instances.iter().enumerate() {
         let tracks = &set.tracks()[3 * bones * instance.clip as usize..][..3 * bones];
-        let places = &places[index * room..][..room];
+        let cursors = &cursors[index * room..][..room];
         let transforms = &mut transforms[index * bones..][..bones];
         let mut arcs = Arcs::default();
         for (bone, tracks) in tracks.chunks_exact(3).enumerate() {
             let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
-                let (values, interpolation, place) = find(set, track, places);
-                let [x, y, z, _] = vector_at(values, interpolation, place);
+                let (values, interpolation, cursor) = find(set, track, cursors);
+                let [x, y, z, _] = vector_at(values, interpolation, cursor);
                 [x, y, z]
             });
             transforms[bone].translation = translation;
             transforms[bone].scale = scale;
-            let (values, interpolation, place) = find(set, tracks[1], places);
-            let is_between = interpolation == Interpolation::Linear && place.fraction > 0.0;
+            let (values, interpolation, cursor) = find(set, tracks[1], cursors);
+            let is_between = interpolation == Interpolation::Linear && cursor.fraction > 0.0;
             if is_between && path == RotationPath::Slerp {
-                let key = place.key as usize;
-                arcs.push(bone, [values[key], values[key + 1]], place.fraction, transforms);
+                let key = cursor.key as usize;
+                arcs.push(bone, [values[key], values[key + 1]], cursor.fraction, transforms);
             } else {
-                transforms[bone].rotation = rotation_at(values, interpolation, place, path);
+                transforms[bone].rotation = rotation_at(values, interpolation, cursor, path);
             }
         }
         arcs.finish(transforms);
@@ -179,18 +183,18 @@ pub fn sample_set_into(
 pub fn sample_pair(
     set: &ClipSet,
     instance: &Instance,
-    places: &[Place],
+    cursors: &[KeyframeCursor],
     bone: usize,
     path: RotationPath,
 ) -> Transform {
     let tracks = &set.tracks()[3 * (set.bones() * instance.clip as usize + bone)..][..3];
     let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
-        let (values, interpolation, place) = find(set, track, places);
-        let [x, y, z, _] = vector_at(values, interpolation, place);
+        let (values, interpolation, cursor) = find(set, track, cursors);
+        let [x, y, z, _] = vector_at(values, interpolation, cursor);
         [x, y, z]
     });
-    let (values, interpolation, place) = find(set, tracks[1], places);
-    Transform { translation, rotation: rotation_at(values, interpolation, place, path), scale }
+    let (values, interpolation, cursor) = find(set, tracks[1], cursors);
+    Transform { translation, rotation: rotation_at(values, interpolation, cursor, path), scale }
 }
 
 /// Every bone's transform of every instance with its layers, at the places of [`all_instances`]: what the kernel
@@ -202,28 +206,29 @@ pub fn sample_layers(
     set: &ClipSet,
     base: &[Instance],
     layers: &[Layer],
-    places: &[Place],
+    cursors: &[KeyframeCursor],
     path: RotationPath,
 ) -> Vec<Transform> {
-    let all = sample_set(set, &all_instances(base, layers), places, path);
+    let all = sample_set(set, &all_instances(base, layers), cursors, path);
     let (below, above) = all.split_at(base.len() * set.bones());
     let mut poses = below.to_vec();
     for (layer, over) in layers.iter().zip(above.chunks(below.len())) {
         for (pair, (pose, over)) in poses.iter_mut().zip(over).enumerate() {
-            let share = layer.share(pair / set.bones(), pair % set.bones());
-            if share > 0.0 {
-                *pose = blend(pose, over, share);
+            let weight = layer.weight(pair / set.bones(), pair % set.bones());
+            if weight > 0.0 {
+                *pose = blend(pose, over, weight);
             }
         }
     }
     poses
 }
 
-/// The pose `share` of the way from one to another; rotations on the chord to the nearer of q and −q.
-pub fn blend(below: &Transform, over: &Transform, share: f32) -> Transform {
-    let rest = 1.0 - share;
-    let vector = |below: [f32; 3], over: [f32; 3]| std::array::from_fn(|i| below[i] * rest + over[i] * share);
-    let nearer = if dot(below.rotation, over.rotation) < 0.0 { -share } else { share };
+/// The pose `weight` of the way from one to another; rotations on the chord to the nearer of q and −q.
+pub fn blend(below: &Transform, over: &Transform, weight: f32) -> Transform {
+    let rest = 1.0 - weight;
+    let vector =
+        |below: [f32; 3], over: [f32; 3]| std::array::from_fn(|i| below[i] * rest + over[i] * weight);
+    let nearer = if dot(below.rotation, over.rotation) < 0.0 { -weight } else { weight };
     let rotation = std::array::from_fn(|i| below.rotation[i] * rest + over.rotation[i] * nearer);
     Transform {
         translation: vector(below.translation, over.translation),
@@ -233,13 +238,17 @@ pub fn blend(below: &Transform, over: &Transform, share: f32) -> Transform {
 }
 
 /// A track's values from its first on, how they are interpolated, and where.
-fn find<'a>(set: &'a ClipSet, track: SetTrack, places: &[Place]) -> (&'a [[f32; 4]], Interpolation, Place) {
+fn find<'a>(
+    set: &'a ClipSet,
+    track: SetTrack,
+    cursors: &[KeyframeCursor],
+) -> (&'a [[f32; 4]], Interpolation, KeyframeCursor) {
     let first = track.first_value as usize;
     let code = track.timeline_and_code >> 30;
     match (track.timeline_and_code & CONSTANT, code) {
         // The middle of three.
-        (CONSTANT, 2) => (&set.values()[first - 1..], Interpolation::CubicSpline, Place::default()),
-        (CONSTANT, _) => (&set.values()[first..], Interpolation::Step, Place::default()),
-        (timeline, _) => (&set.values()[first..], Interpolation::of_code(code), places[timeline as usize]),
+        (CONSTANT, 2) => (&set.values()[first - 1..], Interpolation::CubicSpline, KeyframeCursor::default()),
+        (CONSTANT, _) => (&set.values()[first..], Interpolation::Step, KeyframeCursor::default()),
+        (timeline, _) => (&set.values()[first..], Interpolation::of_code(code), cursors[timeline as usize]),
     }
 }

@@ -2,7 +2,7 @@
 
 use relievo::InputError;
 use relievo::measure::{MeshDetail, SkinningDetail};
-use relievo::skinning::reduction::Reduction;
+use relievo::skinning::instance_lod::InstanceLod;
 
 /// Which bones vertices follow.
 pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
@@ -14,11 +14,12 @@ pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
         None if text == "full" => Ok(SkinningDetail::Full),
         None if text == "fade" => Ok(SkinningDetail::Fade),
         Some(("truncate", most)) => {
-            let reduction = Reduction::truncate(most.parse().map_err(|_| refused())?).map_err(|error| {
-                InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
-            })?;
-            let max_influences = reduction.most;
-            let is_full = reduction == Reduction::FULL;
+            let instance_lod =
+                InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(|error| {
+                    InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
+                })?;
+            let max_influences = instance_lod.most;
+            let is_full = instance_lod == InstanceLod::FULL;
             Ok(if is_full { SkinningDetail::Full } else { SkinningDetail::Truncate { max_influences } })
         }
         _ => Err(refused()),

@@ -66,10 +66,10 @@ fn table(points: &[ParetoPoint]) -> String {
     let mut text = "| gate | parameter | cost | rms px | p99 px | max px | jump px | concatenated |\n\
                     |---|---:|---:|---:|---:|---:|---:|---:|\n"
         .to_owned();
-    for ParetoPoint { gate, parameter, cost, concatenated_share, error, jump } in points {
+    for ParetoPoint { gate, parameter, cost, concatenated_fraction, error, jump } in points {
         writeln!(
             text,
-            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_share:.3} |",
+            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_fraction:.3} |",
             gate.as_str(),
             error.rms_pixels,
             error.p99_pixels,

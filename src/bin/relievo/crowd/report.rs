@@ -77,9 +77,9 @@ fn table(report: &AnimationReport) -> String {
     );
     for row in &report.distances {
         let times = &row.nanoseconds_per_bone;
-        let parts = match (times.gate, times.sample, times.concat) {
-            (Some(gate), Some(sample), Some(concat)) => {
-                format!("{gate:.2} + {sample:.2} + {concat:.2}, {:.2}", times.total)
+        let parts = match (times.gate, times.sample, times.local_to_model) {
+            (Some(gate), Some(sample), Some(local_to_model)) => {
+                format!("{gate:.2} + {sample:.2} + {local_to_model:.2}, {:.2}", times.total)
             }
             _ => format!("{:.2}", times.total),
         };
@@ -90,8 +90,8 @@ fn table(report: &AnimationReport) -> String {
              | {max_metres:.4} | {:.3} |",
             row.distance,
             row.mean_omega,
-            100.0 * row.share,
-            100.0 * row.concatenated_share,
+            100.0 * row.fraction,
+            100.0 * row.concatenated_fraction,
             row.full_nanoseconds_per_bone.total,
             row.jump.max_pixels,
         )
@@ -122,11 +122,11 @@ fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
         series("with the gate", &|row| Some(row.nanoseconds_per_bone.total)),
         series("gate", &|row| row.nanoseconds_per_bone.gate),
         series("sample", &|row| row.nanoseconds_per_bone.sample),
-        series("concat", &|row| row.nanoseconds_per_bone.concat),
+        series("local_to_model", &|row| row.nanoseconds_per_bone.local_to_model),
     ];
-    let share = vec![
-        series("interpolated, of moving bones", &|row| Some(row.share)),
-        series("concatenated, of all bones", &|row| Some(row.concatenated_share)),
+    let fraction = vec![
+        series("interpolated, of moving bones", &|row| Some(row.fraction)),
+        series("concatenated, of all bones", &|row| Some(row.concatenated_fraction)),
         series("mean Ω", &|row| Some(row.mean_omega)),
     ];
     let error = vec![
@@ -136,7 +136,7 @@ fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
     ];
     [
         ("cost.png", chart("Cost", "nanoseconds a bone", false, cost)),
-        ("interpolations.png", chart("Work", "share", false, share)),
+        ("interpolations.png", chart("Work", "fraction", false, fraction)),
         ("error.png", chart("Error", "pixels", true, error)),
     ]
 }

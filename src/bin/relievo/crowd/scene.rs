@@ -63,8 +63,8 @@ fn lines(report: &SceneReport) -> String {
                 look.compute_nanoseconds / 1e6,
                 look.draw_nanoseconds / 1e6,
                 look.nanoseconds_per_vertex,
-                100.0 * look.skinned_share,
-                100.0 * look.triangle_share,
+                100.0 * look.skinned_fraction,
+                100.0 * look.triangle_fraction,
                 look.vertex_error.rms_pixels,
                 look.vertex_error.max_pixels,
             )

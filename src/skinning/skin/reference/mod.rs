@@ -1,13 +1,13 @@
-//! Skinning: twin of `kernels/skinning/skin.wgsl`.
+//! Skinning: reference of `kernels/skinning/skin.wgsl`.
 
 pub mod weights;
 
 use crate::asset::influences::{Influence, Influences};
 use crate::asset::transform::Affine;
 use crate::skinning::clusters::{CLUSTER, Clusters};
+use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::palette::reference::{cross, dot, unit_or};
 use crate::skinning::palette::{DualBone, Palette};
-use crate::skinning::reduction::Reduction;
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::vertex::Vertex;
 
@@ -19,9 +19,9 @@ pub fn skin(
     vertices: &[Vertex],
     influences: &Influences,
     palette: &Palette,
-    reduction: Reduction,
+    instance_lod: InstanceLod,
 ) -> Vec<Vertex> {
-    let matrix = |at: usize| blended(palette, &reduced(influences.of(at), reduction));
+    let matrix = |at: usize| blended(palette, &reduced(influences.of(at), instance_lod));
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
 }
 
@@ -35,11 +35,11 @@ pub fn skin_seen(
     vertices: &[Vertex],
     (influences, clusters): (&Influences, &Clusters),
     palette: &Palette,
-    reduction: Reduction,
+    instance_lod: InstanceLod,
 ) {
-    if reduction.most > 0 {
-        let all = skin(vertices, influences, palette, reduction);
-        let places = CLUSTER * clusters.level(reduction.level).clusters as usize;
+    if instance_lod.most > 0 {
+        let all = skin(vertices, influences, palette, instance_lod);
+        let places = CLUSTER * clusters.level(instance_lod.level).clusters as usize;
         for vertex in clusters.order.iter().take(places).map(|vertex| *vertex as usize) {
             skinned[vertex] = all[vertex];
         }

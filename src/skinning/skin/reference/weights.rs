@@ -1,7 +1,7 @@
 //! Which influences count, and how much: the part of the skinning kernel that reduces weights.
 
 use crate::asset::influences::Influence;
-use crate::skinning::reduction::Reduction;
+use crate::skinning::instance_lod::InstanceLod;
 
 /// The influences that are left, the strongest first; their weights sum to 1. `influences` is what
 /// [`Influences::of`](crate::asset::Influences::of) gives: the strongest weight is never read, but what the others
@@ -9,12 +9,12 @@ use crate::skinning::reduction::Reduction;
 ///
 /// # Panics
 /// For a reduction to none: who is not seen has no vertices.
-pub fn reduced(influences: &[Influence], reduction: Reduction) -> Vec<Influence> {
-    assert!(reduction.most > 0, "not seen");
-    let most = influences.len().min(reduction.most as usize);
+pub fn reduced(influences: &[Influence], instance_lod: InstanceLod) -> Vec<Influence> {
+    assert!(instance_lod.most > 0, "not seen");
+    let most = influences.len().min(instance_lod.most as usize);
     let lost = influences[most..].iter().fold(0.0, |sum, influence| sum + influence.weight);
     let scale = 1.0 / (1.0 - lost);
-    let taken = reduction.fade * influences.get(1).map_or(0.0, |second| second.weight);
+    let taken = instance_lod.fade * influences.get(1).map_or(0.0, |second| second.weight);
     let mut left = vec![influences[0]];
     let mut sum = 0.0;
     for influence in &influences[1..most] {
@@ -59,7 +59,7 @@ mod tests {
         for vertex in vertices() {
             let mut before = vertex.len();
             for step in 0..=64 {
-                let left = reduced(&vertex, Reduction::fade(step as f32 / 64.0).expect("in range"));
+                let left = reduced(&vertex, InstanceLod::fade(step as f32 / 64.0).expect("in range"));
                 // A sum of eight rounds seven times, by half an ulp of 1 at most.
                 assert!((sum(&left) - 1.0).abs() <= 7.0 * f64::from(f32::EPSILON) / 2.0, "{left:?}");
                 assert!(left.iter().all(|influence| influence.weight > 0.0), "{left:?}");
@@ -74,20 +74,20 @@ mod tests {
     #[test]
     fn no_fade_is_full_quality_and_full_fade_is_rigid() {
         for vertex in vertices() {
-            let full = reduced(&vertex, Reduction::FULL);
-            assert_eq!(reduced(&vertex, Reduction::fade(0.0).expect("in range")), full);
+            let full = reduced(&vertex, InstanceLod::FULL);
+            assert_eq!(reduced(&vertex, InstanceLod::fade(0.0).expect("in range")), full);
             assert_eq!(full[1..], vertex[1..]);
             assert!((full[0].weight - vertex[0].weight).abs() <= 4.0 * f32::EPSILON);
             let rigid = Influence { weight: 1.0, ..vertex[0] };
-            assert_eq!(reduced(&vertex, Reduction::fade(1.0).expect("in range")), [rigid]);
-            assert_eq!(reduced(&vertex, Reduction::truncate(1).expect("in range")), [rigid]);
+            assert_eq!(reduced(&vertex, InstanceLod::fade(1.0).expect("in range")), [rigid]);
+            assert_eq!(reduced(&vertex, InstanceLod::truncate(1).expect("in range")), [rigid]);
         }
     }
 
     #[test]
     fn weights_never_jump_while_they_fade() {
         for vertex in vertices() {
-            let at = |step: u32| reduced(&vertex, Reduction::fade(step as f32 / 1024.0).expect("in range"));
+            let at = |step: u32| reduced(&vertex, InstanceLod::fade(step as f32 / 1024.0).expect("in range"));
             let second = vertex.get(1).map_or(0.0, |second| second.weight);
             for step in 0..1024 {
                 let (a, b) = (at(step), at(step + 1));
@@ -102,26 +102,26 @@ mod tests {
     #[test]
     fn truncation_keeps_the_strongest() {
         let vertex = vertex(&[0.4, 0.3, 0.2, 0.1]);
-        let left = reduced(&vertex, Reduction::truncate(2).expect("in range"));
+        let left = reduced(&vertex, InstanceLod::truncate(2).expect("in range"));
         assert_eq!(left.len(), 2);
         assert!((left[0].weight - 4.0 / 7.0).abs() < 1e-6 && (left[1].weight - 3.0 / 7.0).abs() < 1e-6);
         assert_eq!(
-            reduced(&vertex, Reduction::truncate(4).expect("in range")),
-            reduced(&vertex, Reduction::FULL)
+            reduced(&vertex, InstanceLod::truncate(4).expect("in range")),
+            reduced(&vertex, InstanceLod::FULL)
         );
     }
 
     #[test]
     fn reductions_are_checked() {
-        let field = |result: Result<Reduction, crate::InputError>| result.expect_err("refused").field;
-        assert_eq!(field(Reduction::fade(1.5)), "fade");
-        assert_eq!(field(Reduction::fade(f32::NAN)), "fade");
-        assert_eq!(field(Reduction::truncate(0)), "truncate");
-        assert_eq!(field(Reduction::truncate(9)), "truncate");
-        assert_eq!(field(Reduction::level(16)), "level");
-        assert_eq!(Reduction::level(15), Ok(Reduction { level: 15, ..Reduction::FULL }));
-        assert_eq!(field(Reduction::at_distance(1.0, [5.0, 5.0])), "near");
-        let fade = |distance| Reduction::at_distance(distance, [10.0, 30.0]).expect("in range").fade;
+        let field = |result: Result<InstanceLod, crate::InputError>| result.expect_err("refused").field;
+        assert_eq!(field(InstanceLod::fade(1.5)), "fade");
+        assert_eq!(field(InstanceLod::fade(f32::NAN)), "fade");
+        assert_eq!(field(InstanceLod::truncate(0)), "truncate");
+        assert_eq!(field(InstanceLod::truncate(9)), "truncate");
+        assert_eq!(field(InstanceLod::level(16)), "level");
+        assert_eq!(InstanceLod::level(15), Ok(InstanceLod { level: 15, ..InstanceLod::FULL }));
+        assert_eq!(field(InstanceLod::at_distance(1.0, [5.0, 5.0])), "near");
+        let fade = |distance| InstanceLod::at_distance(distance, [10.0, 30.0]).expect("in range").fade;
         assert_eq!([fade(0.0), fade(10.0), fade(15.0), fade(30.0), fade(99.0)], [0.0, 0.0, 0.25, 1.0, 1.0]);
     }
 }

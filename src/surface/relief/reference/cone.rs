@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/cone.wgsl`.
+//! Reference of `wgsl/surface/cone.wgsl`.
 
 use super::grid::Grid;
 use super::linear::narrowed;

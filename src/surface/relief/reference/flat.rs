@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/flat.wgsl`.
+//! Reference of `wgsl/surface/flat.wgsl`.
 
 use super::height::{BILINEAR, height};
 use crate::surface::map::HeightMap;

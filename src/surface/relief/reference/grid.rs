@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/grid.wgsl`.
+//! Reference of `wgsl/surface/grid.wgsl`.
 
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::Ray;

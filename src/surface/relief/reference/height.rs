@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/height.wgsl`.
+//! Reference of `wgsl/surface/height.wgsl`.
 
 use crate::surface::map::{Address, HeightMap};
 

@@ -1,8 +1,8 @@
-//! Twin of `wgsl/surface/linear.wgsl`.
+//! Reference of `wgsl/surface/linear.wgsl`.
 
 use super::height::{BILINEAR, height};
 use crate::surface::map::HeightMap;
-use crate::surface::relief::{Hit, MOST_BINARY, MOST_STEPS, March, Outcome, Ray};
+use crate::surface::relief::{Hit, MAX_BINARY, MAX_STEPS, March, Outcome, Ray};
 
 /// Where a linear search stopped.
 struct Bracket {
@@ -16,7 +16,7 @@ struct Bracket {
 fn steps(march: &March, cosine: f32) -> u32 {
     let [low, high] = march.steps.map(|steps| steps as f32);
     let steps = (low + (high - low) * (1.0 - cosine.min(1.0))).ceil();
-    (steps as u32).clamp(1, MOST_STEPS)
+    (steps as u32).clamp(1, MAX_STEPS)
 }
 
 fn search(map: &HeightMap, ray: &Ray, march: &March) -> Bracket {
@@ -52,7 +52,7 @@ pub(crate) fn narrowed(
     [mut above, mut under]: [f32; 2],
     mut samples: u32,
 ) -> Hit {
-    for _ in 0..march.binary_steps.min(MOST_BINARY) {
+    for _ in 0..march.binary_steps.min(MAX_BINARY) {
         let middle = 0.5 * (above + under);
         samples += BILINEAR;
         if 1.0 - middle <= height(map, ray.at(middle), march.address) {
@@ -73,7 +73,7 @@ pub fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     }
     let over = (1.0 - bracket.above - bracket.height_above).max(0.0);
     let below = (bracket.height_under - (1.0 - bracket.under)).max(0.0);
-    let share = if over + below > 1e-12 { over / (over + below).max(1e-12) } else { 1.0 };
-    let parameter = bracket.above + share * (bracket.under - bracket.above);
+    let fraction = if over + below > 1e-12 { over / (over + below).max(1e-12) } else { 1.0 };
+    let parameter = bracket.above + fraction * (bracket.under - bracket.above);
     Hit::of(ray, parameter, bracket.samples, Outcome::Hit)
 }

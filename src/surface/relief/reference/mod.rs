@@ -1,4 +1,4 @@
-//! Twin of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
+//! Reference of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
 
 pub mod cone;
 pub mod flat;

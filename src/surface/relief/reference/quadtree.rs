@@ -1,4 +1,4 @@
-//! Twin of `wgsl/surface/quadtree.wgsl`.
+//! Reference of `wgsl/surface/quadtree.wgsl`.
 
 use super::grid::{Grid, Node};
 use crate::surface::height_pyramid::PyramidLayout;

@@ -1,8 +1,8 @@
-//! Twin of `wgsl/surface/shadow.wgsl`.
+//! Reference of `wgsl/surface/shadow.wgsl`.
 
 use super::height::height;
 use crate::surface::map::HeightMap;
-use crate::surface::relief::{Hit, LEAST_COSINE, MOST_STEPS, March, Ray};
+use crate::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
 /// The light's ray that ends in a point of the surface. `light` is the unit vector towards it in tangent space.
 pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
@@ -38,11 +38,11 @@ pub fn soft_shadow(
     let start = Hit { height: hit.height.max(own), ..*hit };
     let ray = light_ray(&start, light, scale);
     let rise = 1.0 - start.height;
-    let count = steps.clamp(1, MOST_STEPS);
+    let count = steps.clamp(1, MAX_STEPS);
     let mut shade = 0.0;
     for step in 1..=count {
-        let share = step as f32 / (count + 1) as f32;
-        let travelled = share * share;
+        let fraction = step as f32 / (count + 1) as f32;
+        let travelled = fraction * fraction;
         let parameter = rise * (1.0 - travelled);
         let excess = height(map, ray.at(parameter), march.address) - (1.0 - parameter) - BIAS;
         shade = f32::max(shade, excess / (softness * (travelled * rise + 1e-3)));

@@ -2,12 +2,12 @@
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
+use crate::animation::clip_clock::ClipClockPass;
+use crate::animation::clip_clock::reference::clip_clocks;
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
+use crate::animation::keyframe_cursor::reference::cursors;
 use crate::animation::lod::Lod;
-use crate::animation::phase::PhasePass;
-use crate::animation::phase::reference::phases;
-use crate::animation::place::reference::places;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
@@ -17,14 +17,14 @@ use crate::terrain::bench::copy_of;
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = PhasePass::new(gpu)?;
+    let pass = ClipClockPass::new(gpu)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
-        let table = GateTable::of_movers(&scene.order(), &scene.set, &[&scene.clip])?;
-        let gating = Gating::new(gpu, &table, &scene.crowd)?;
-        let found = places(&scene.set, &scene.instances, 0.4);
-        scene.crowd.places.write(gpu, &found)?;
-        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gating)?;
+        let table = GateTable::of_animated_bones(&scene.order(), &scene.set, &[&scene.clip])?;
+        let gate_state = GateState::new(gpu, &table, &scene.crowd)?;
+        let found = cursors(&scene.set, &scene.instances, 0.4);
+        scene.crowd.cursors.write(gpu, &found)?;
+        let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gate_state)?;
         job.set(gpu, 0.4, 0.0)?;
         // 12 words in, 6 out.
         let copied = copy_of(gpu, 9 * count)?;
@@ -32,8 +32,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
-                let found = phases(&scene.set, &scene.instances, &[], &lods, 0.4, 0.0, &mut history);
+            Contender::host(Backend::Reference, || {
+                let found = clip_clocks(&scene.set, &scene.instances, &[], &lods, 0.4, 0.0, &mut history);
                 drop(std::hint::black_box(found));
             }),
         ];

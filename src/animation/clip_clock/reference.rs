@@ -1,20 +1,20 @@
-//! Where instances stand on their clips' common timelines: twin of `kernels/animation/phase.wgsl`.
+//! Where instances stand on their clips' common timelines: reference of `kernels/animation/clip_clock.wgsl`.
 
+use crate::animation::clip_clock::{BLENDED, ClipClock, UpdateReason};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
+use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
-use crate::animation::phase::{BLENDED, Phase, Verdict};
-use crate::animation::place::reference::inside_clip;
-use crate::asset::keyframe::Place;
-use crate::asset::keyframe::place;
+use crate::asset::keyframe::KeyframeCursor;
+use crate::asset::keyframe::keyframe_cursor;
 
 /// The phase of each instance. `layers` are those above the base; bones may be sampled `ahead` seconds ahead; `history` is
 /// kept from frame to frame, and zero at first.
 ///
 /// # Panics
 /// With fewer places, levels or histories than instances.
-pub fn phases(
+pub fn clip_clocks(
     set: &ClipSet,
     instances: &[Instance],
     layers: &[Layer],
@@ -22,36 +22,36 @@ pub fn phases(
     elapsed: f32,
     ahead: f32,
     history: &mut [[u32; 4]],
-) -> Vec<Phase> {
+) -> Vec<ClipClock> {
     let of = |(index, instance): (usize, &Instance)| {
         let clip = &set.clips()[instance.clip as usize];
         let inside = |elapsed: f32| {
             inside_clip(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed)
         };
         let (now, later) = (inside(elapsed), inside(elapsed + ahead));
-        let at = |time: f32| place(set.common_times(clip), time);
-        let place = at(now);
-        let later_place = if ahead == 0.0 { place } else { at(later) };
+        let at = |time: f32| keyframe_cursor(set.common_times(clip), time);
+        let cursor = at(now);
+        let later_cursor = if ahead == 0.0 { cursor } else { at(later) };
         let above = clips_above(layers, index);
         let blended = if above != 0 { BLENDED } else { 0 };
         let known = [(instance.clip + 1) | blended, above, now.to_bits(), later.to_bits()];
         let last = std::mem::replace(&mut history[index], known);
         let flags = lods[index].flags;
-        let verdict = if flags & Lod::HIDDEN != 0 {
+        let reason = if flags & Lod::HIDDEN != 0 {
             history[index] = [0; 4];
-            Verdict::Hidden
+            UpdateReason::Hidden
         } else if flags & Lod::REFRESH != 0 || last[..2] != known[..2] {
-            Verdict::Forced
+            UpdateReason::Forced
         } else if blended != 0 {
-            Verdict::Blended
+            UpdateReason::Blended
         } else {
-            Verdict::Free
+            UpdateReason::Free
         };
-        let fraction = |place: Place| (place.fraction.clamp(0.0, 1.0) * 65536.0) as u32;
-        Phase {
-            ahead_row: clip.first_row + later_place.key,
-            ahead_fraction: fraction(later_place),
-            ..Phase::new(clip.first_row + place.key, fraction(place), verdict, instance.clip)
+        let fraction = |cursor: KeyframeCursor| (cursor.fraction.clamp(0.0, 1.0) * 65536.0) as u32;
+        ClipClock {
+            ahead_row: clip.first_row + later_cursor.key,
+            ahead_fraction: fraction(later_cursor),
+            ..ClipClock::new(clip.first_row + cursor.key, fraction(cursor), reason, instance.clip)
         }
     };
     instances.iter().enumerate().map(of).collect()

@@ -1,4 +1,4 @@
-//! Concatenation into the model's space: twin of `kernels/animation/concat.wgsl`.
+//! Concatenation into the model's space: reference of `kernels/animation/local_to_model.wgsl`.
 
 use crate::animation::order::{CONTINUES, NO_PARENT, Order};
 use crate::asset::skeleton::Skeleton;
@@ -8,22 +8,23 @@ use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 ///
 /// # Panics
 /// With fewer locals than bones.
-pub fn concat(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> {
-    let mut models = vec![AFFINE_IDENTITY; skeleton.len()];
-    concat_into(skeleton, locals, &mut models);
-    models
+pub fn local_to_model(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> {
+    let mut model_matrices = vec![AFFINE_IDENTITY; skeleton.len()];
+    local_to_model_into(skeleton, locals, &mut model_matrices);
+    model_matrices
 }
 
-/// [`concat()`] of one instance after another without allocation: as many locals and models an instance as bones.
+/// [`local_to_model()`] of one instance after another without allocation: as many locals and models an instance as bones.
 ///
 /// # Panics
 /// Where the last instance's locals or models are not whole.
-pub fn concat_into(skeleton: &Skeleton, locals: &[Transform], models: &mut [Affine]) {
+pub fn local_to_model_into(skeleton: &Skeleton, locals: &[Transform], model_matrices: &mut [Affine]) {
     let bones = skeleton.len();
-    for (locals, models) in locals.chunks(bones).zip(models.chunks_mut(bones)) {
+    for (locals, model_matrices) in locals.chunks(bones).zip(model_matrices.chunks_mut(bones)) {
         for (bone, node) in skeleton.bones().iter().enumerate() {
             let local = affine(&locals[bone]);
-            models[bone] = node.parent.map_or(local, |parent| product(&models[parent as usize], &local));
+            model_matrices[bone] =
+                node.parent.map_or(local, |parent| product(&model_matrices[parent as usize], &local));
         }
     }
 }
@@ -54,21 +55,26 @@ pub fn product(a: &Affine, b: &Affine) -> Affine {
     product
 }
 
-/// One instance's transforms in the model's space, of the dirty slots alone: `dirty` holds a bit for each slot, with a
+/// One instance's transforms in the model's space, of the updated slots alone: `updated_bones` holds a bit for each slot, with a
 /// slot's always all below it.
 ///
 /// # Panics
 /// With fewer bits, locals or models than bones.
-pub fn concat_dirty(order: &Order, dirty: &[u32], locals: &[Transform], models: &mut [Affine]) {
+pub fn local_to_model_updated(
+    order: &Order,
+    updated_bones: &[u32],
+    locals: &[Transform],
+    model_matrices: &mut [Affine],
+) {
     for (at, slot) in order.slots.iter().enumerate() {
-        if dirty[at / 32] >> (at % 32) & 1 == 0 {
+        if updated_bones[at / 32] >> (at % 32) & 1 == 0 {
             continue;
         }
         let local = affine(&locals[slot.bone as usize]);
-        models[slot.bone as usize] = match slot.parent {
+        model_matrices[slot.bone as usize] = match slot.parent {
             NO_PARENT => local,
-            CONTINUES => product(&models[order.slots[at - 1].bone as usize], &local),
-            parent => product(&models[parent as usize], &local),
+            CONTINUES => product(&model_matrices[order.slots[at - 1].bone as usize], &local),
+            parent => product(&model_matrices[parent as usize], &local),
         };
     }
 }

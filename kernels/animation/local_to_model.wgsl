@@ -1,34 +1,34 @@
 // Concatenation into the model's space. A thread walks one chain of one instance, the parent's matrix in registers; a
 // dispatch serves the chains of one level, whose parents are done. With WHOLE, a thread walks all chains of its
-// instance. With COMPACTED, only instances of a list are walked, and of them only what is dirty: with a bone always all
+// instance. With COMPACTED, only instances of a list are walked, and of them only what is updated: with a bone always all
 // bones below it.
 
 override WHOLE: bool = false;
 override COMPACTED: bool = false;
 
-struct ConcatParams {
+struct LocalToModelParams {
     instances: u32,
     bones: u32,
-    // Words of dirty bits an instance.
+    // Words of updated bits an instance.
     words: u32,
     first_chain: u32,
     chains: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: ConcatParams;
+@group(0) @binding(0) var<uniform> params: LocalToModelParams;
 // Bone, parent, slots of the subtree.
 @group(0) @binding(1) var<storage, read> slots: array<vec4<u32>>;
 // First slot, number of slots.
 @group(0) @binding(2) var<storage, read> chains: array<vec2<u32>>;
 // A bit for each slot of each instance.
-@group(0) @binding(3) var<storage, read> dirty: array<u32>;
-@group(0) @binding(4) var<storage, read> dirty_instances: array<u32>;
-// Of the first, w: how many instances are dirty.
+@group(0) @binding(3) var<storage, read> updated_bones: array<u32>;
+@group(0) @binding(4) var<storage, read> updated_instances: array<u32>;
+// Of the first, w: how many instances are updated.
 @group(0) @binding(5) var<storage, read> dispatches: array<vec4<u32>>;
 // Translation and scale x; rotation; scale y and z.
 @group(0) @binding(6) var<storage, read> locals: array<vec4<f32>>;
 // Three rows a bone.
-@group(0) @binding(7) var<storage, read_write> models: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> model_matrices: array<vec4<f32>>;
 
 const NO_PARENT = 0xffffffffu;
 const CONTINUES = 0xfffffffeu;
@@ -58,9 +58,9 @@ fn joined(parent: Rows, bone: u32) -> Rows {
         vec3<f32>(q.x * d.z - q.w * d.y, q.y * d.z + q.w * d.x, 1.0 - (q.x * d.x + q.y * d.y)) * scale, first.z);
     let rows = Rows(
         product_row(parent.x, x, y, z), product_row(parent.y, x, y, z), product_row(parent.z, x, y, z));
-    models[bone] = rows.x;
-    models[bone + 1u] = rows.y;
-    models[bone + 2u] = rows.z;
+    model_matrices[bone] = rows.x;
+    model_matrices[bone + 1u] = rows.y;
+    model_matrices[bone + 2u] = rows.z;
     return rows;
 }
 
@@ -70,7 +70,7 @@ fn stored_rows(base: u32, bone: u32) -> Rows {
         return Rows(vec4<f32>(1.0, 0.0, 0.0, 0.0), vec4<f32>(0.0, 1.0, 0.0, 0.0), vec4<f32>(0.0, 0.0, 1.0, 0.0));
     }
     let at = 3u * (base + bone);
-    return Rows(models[at], models[at + 1u], models[at + 2u]);
+    return Rows(model_matrices[at], model_matrices[at + 1u], model_matrices[at + 2u]);
 }
 
 // The bone above a slot.
@@ -82,20 +82,20 @@ fn bone_above(slot: u32) -> u32 {
     return parent;
 }
 
-// The first dirty slot of an instance from `start` on, or at least `end`.
-fn next_dirty(instance: u32, start: u32, end: u32) -> u32 {
+// The first updated slot of an instance from `start` on, or at least `end`.
+fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
     if start >= end {
         return end;
     }
     let first_word = instance * params.words;
     var word = start / 32u;
-    var bits = dirty[first_word + word] & (0xffffffffu << (start % 32u));
+    var bits = updated_bones[first_word + word] & (0xffffffffu << (start % 32u));
     while bits == 0u {
         word++;
         if 32u * word >= end {
             return end;
         }
-        bits = dirty[first_word + word];
+        bits = updated_bones[first_word + word];
     }
     return 32u * word + firstTrailingBit(bits);
 }
@@ -110,7 +110,7 @@ fn walk_whole(instance: u32) {
         var parent = CONTINUES;
         if slot == end {
             if COMPACTED {
-                slot = next_dirty(instance, slot, params.bones);
+                slot = next_updated(instance, slot, params.bones);
             }
             if slot >= params.bones {
                 break;
@@ -133,7 +133,7 @@ fn walk_chain(instance: u32, chain: vec2<u32>) {
     let end = chain.x + chain.y;
     var start = chain.x;
     if COMPACTED {
-        start = next_dirty(instance, start, end);
+        start = next_updated(instance, start, end);
     }
     if start >= end {
         return;
@@ -157,7 +157,7 @@ fn main(
         if place >= dispatches[0].w {
             return;
         }
-        instance = dirty_instances[place];
+        instance = updated_instances[place];
     }
     if instance >= params.instances {
         return;

@@ -2,11 +2,11 @@
 // for a new pose: what gates decide by.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::inside_clip;
-import package::wgsl::animation::gating::{LOD_HIDDEN, LOD_REFRESH, PHASE_BLENDED, PHASE_FORCED, PHASE_FREE, PHASE_HIDDEN, Phase};
+import package::wgsl::animation::gate_state::{LOD_HIDDEN, LOD_REFRESH, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock};
 import package::wgsl::animation::instance::AnimationInstance;
-import package::wgsl::animation::timeline::place;
+import package::wgsl::animation::timeline::keyframe_cursor;
 
-struct PhaseParams {
+struct ClipClockParams {
     instances: u32,
     // Seconds since the instances' starts.
     elapsed: f32,
@@ -16,7 +16,7 @@ struct PhaseParams {
     ahead: f32,
 }
 
-@group(0) @binding(0) var<uniform> phase_params: PhaseParams;
+@group(0) @binding(0) var<uniform> clip_clock_params: ClipClockParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // First time and number of keys.
@@ -24,7 +24,7 @@ struct PhaseParams {
 // Binding 4: the times.
 // Binding 5: the levels of detail.
 // Weights of the layers above the base, layer by layer.
-@group(0) @binding(6) var<storage, read> shares: array<f32>;
+@group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
 // The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; what these layers played; as
 // bits, the time inside the clip, and that ahead.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
@@ -35,9 +35,9 @@ const BLENDED = 0x80000000u;
 // A number of the clips that play above the base; 0 where none does.
 fn clips_above(instance: u32) -> u32 {
     var clips = 0u;
-    for (var layer = 0u; layer < phase_params.layers; layer++) {
-        let is_heard = shares[layer * phase_params.instances + instance] > 0.0;
-        let clip = instances[(layer + 1u) * phase_params.instances + instance].clip;
+    for (var layer = 0u; layer < clip_clock_params.layers; layer++) {
+        let is_heard = layer_weights[layer * clip_clock_params.instances + instance] > 0.0;
+        let clip = instances[(layer + 1u) * clip_clock_params.instances + instance].clip;
         clips = 31u * clips + select(0u, clip + 1u, is_heard);
     }
     return clips;
@@ -49,35 +49,35 @@ fn whole_fraction(bits: u32) -> u32 {
 }
 
 // Its phase, with the flags of its level of detail; its history is kept.
-fn phase_of(index: u32, flags: u32) -> Phase {
+fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let instance = instances[index];
     let clip = clips[instance.clip];
-    let time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * phase_params.elapsed);
+    let time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * clip_clock_params.elapsed);
     let timeline = timelines[clip.first_timeline];
-    let found = place(timeline.x, timeline.y, time);
+    let found = keyframe_cursor(timeline.x, timeline.y, time);
     var later = time;
     var ahead = found;
-    if phase_params.ahead != 0.0 {
-        let seconds = phase_params.elapsed + phase_params.ahead;
+    if clip_clock_params.ahead != 0.0 {
+        let seconds = clip_clock_params.elapsed + clip_clock_params.ahead;
         later = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
-        ahead = place(timeline.x, timeline.y, later);
+        ahead = keyframe_cursor(timeline.x, timeline.y, later);
     }
     let above = clips_above(index);
     let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
     let known = vec4<u32>(base, above, bitcast<u32>(time), bitcast<u32>(later));
     let last = history[index];
-    var verdict = PHASE_FREE;
+    var reason = UPDATE_REASON_FREE;
     if (flags & LOD_HIDDEN) != 0u {
-        verdict = PHASE_HIDDEN;
+        reason = UPDATE_REASON_HIDDEN;
         history[index] = vec4<u32>(0u);
     } else {
         if (flags & LOD_REFRESH) != 0u || last.x != known.x || last.y != known.y {
-            verdict = PHASE_FORCED;
+            reason = UPDATE_REASON_FORCED;
         } else if above != 0u {
-            verdict = PHASE_BLENDED;
+            reason = UPDATE_REASON_BLENDED;
         }
         history[index] = known;
     }
-    let own = (verdict << 20u) | whole_fraction(found.y);
-    return Phase(clip.first_row + found.x, own, instance.clip, clip.first_row + ahead.x, whole_fraction(ahead.y));
+    let own = (reason << 20u) | whole_fraction(found.y);
+    return ClipClock(clip.first_row + found.x, own, instance.clip, clip.first_row + ahead.x, whole_fraction(ahead.y));
 }

@@ -1,15 +1,15 @@
-//! Parity of `kernels/animation/phase.wgsl`.
+//! Parity of `kernels/animation/clip_clock.wgsl`.
 
 use crate::Error;
+use crate::animation::clip_clock::reference::clip_clocks;
+use crate::animation::clip_clock::{ClipClock, ClipClockPass};
 use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 use crate::animation::order::Order;
-use crate::animation::phase::reference::phases;
-use crate::animation::phase::{Phase, PhasePass};
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
@@ -22,7 +22,7 @@ use crate::harness::{Cases, compare};
 /// What the device reports.
 pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = PhasePass::new(gpu)?;
+    let pass = ClipClockPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let mut draw = Draw::new(case as u32 ^ 0xfa5e);
         let (skeleton, set, mut instances) = random_crowd(case as u32, bones, count)?;
@@ -34,10 +34,11 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let crowd = Crowd::layered(gpu, &set, &instances, &layers)?;
         let clips = ClipBuffers::new(gpu, &set)?;
         let clips_of = crate::animation::verify::random_clips(case as u32, &skeleton, 3)?;
-        let table = GateTable::of_movers(&Order::new(&skeleton), &set, &clips_of.iter().collect::<Vec<_>>())?;
-        let mut gating = Gating::new(gpu, &table, &crowd)?;
-        let output = Poisoned::<Phase>::new(gpu, count)?;
-        gating.phases = output.buffer.clone();
+        let table =
+            GateTable::of_animated_bones(&Order::new(&skeleton), &set, &clips_of.iter().collect::<Vec<_>>())?;
+        let mut gate_state = GateState::new(gpu, &table, &crowd)?;
+        let output = Poisoned::<ClipClock>::new(gpu, count)?;
+        gate_state.clip_clocks = output.buffer.clone();
         let mut history = vec![[0; 4]; count];
         for (frame, elapsed) in [0.0, 0.25, 0.5, 300.0, 300.25].into_iter().enumerate() {
             let choose = |draw: &mut Draw| match draw.word() % 8 {
@@ -59,31 +60,31 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 crowd.set_weights(gpu, at + 1, &layer.weights)?;
             }
             crowd.instances.write_at(gpu, 0, &instances)?;
-            gating.lods.write(gpu, &lods)?;
+            gate_state.lods.write(gpu, &lods)?;
             output.poison(gpu)?;
-            let job = pass.prepare(gpu, &clips, &crowd, &gating)?;
+            let job = pass.prepare(gpu, &clips, &crowd, &gate_state)?;
             let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];
             job.set(gpu, elapsed, ahead)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let expected = phases(&set, &instances, &layers, &lods, elapsed, ahead, &mut history);
+            let expected = clip_clocks(&set, &instances, &layers, &lods, elapsed, ahead, &mut history);
             let comparison =
                 output.check(gpu, |actual| compare::exact(&settled(actual, &expected), &expected))?;
             cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
         }
-        let kept = compare::exact(&gating.history.read_blocking(gpu)?, &history);
+        let kept = compare::exact(&gate_state.history.read_blocking(gpu)?, &history);
         cases.add(format!("{bones} bones × {count}, history"), kept);
     }
     Ok(())
 }
 
 /// The phases, those whose fractions are 1 beside the expected ones replaced by them.
-pub(crate) fn settled(actual: &[Phase], expected: &[Phase]) -> Vec<Phase> {
-    let settle = |(actual, expected): (&Phase, &Phase)| {
+pub(crate) fn settled(actual: &[ClipClock], expected: &[ClipClock]) -> Vec<ClipClock> {
+    let settle = |(actual, expected): (&ClipClock, &ClipClock)| {
         let is_near = actual.fraction().abs_diff(expected.fraction()) <= 1
             && actual.ahead_fraction.abs_diff(expected.ahead_fraction) <= 1;
-        let Phase { fraction_and_verdict, ahead_fraction, .. } = *expected;
-        let same = Phase { fraction_and_verdict, ahead_fraction, ..*actual };
-        if is_near && actual.verdict() == expected.verdict() { same } else { *actual }
+        let ClipClock { fraction_and_reason, ahead_fraction, .. } = *expected;
+        let same = ClipClock { fraction_and_reason, ahead_fraction, ..*actual };
+        if is_near && actual.reason() == expected.reason() { same } else { *actual }
     };
     actual.iter().zip(expected).map(settle).collect()
 }

@@ -4,11 +4,11 @@
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
-import package::wgsl::animation::timeline::place;
+import package::wgsl::animation::timeline::keyframe_cursor;
 
 override COMPACTED: bool = false;
 
-struct PlaceParams {
+struct KeyframeCursorParams {
     // Of all layers; and of one.
     entries: u32,
     instances: u32,
@@ -18,15 +18,15 @@ struct PlaceParams {
     elapsed: f32,
 }
 
-@group(0) @binding(0) var<uniform> params: PlaceParams;
+@group(0) @binding(0) var<uniform> params: KeyframeCursorParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // First time and number of keys.
 @group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
 // Binding 4: the times.
 // Key and, as bits, fraction; behind all layers those of the base ahead.
-@group(0) @binding(5) var<storage, read_write> places: array<vec2<u32>>;
-@group(0) @binding(6) var<storage, read> dirty_instances: array<u32>;
+@group(0) @binding(5) var<storage, read_write> cursors: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read> updated_instances: array<u32>;
 // Of the first, w: how many instances are listed.
 @group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
 // Of each instance of the base what gates saw; z: its time inside the clip, as bits; w: that ahead.
@@ -48,7 +48,7 @@ fn main(
         if listed >= dispatches[0].w {
             return;
         }
-        entry = dirty_instances[listed] + (at - listed * layers) * params.instances;
+        entry = updated_instances[listed] + (at - listed * layers) * params.instances;
     }
     let is_ahead = entry >= params.entries;
     if is_ahead && !COMPACTED {
@@ -71,5 +71,5 @@ fn main(
         }
         time = bitcast<f32>(select(seen.z, seen.w, is_ahead));
     }
-    places[entry * params.timelines + timeline_index] = place(timeline.x, timeline.y, time);
+    cursors[entry * params.timelines + timeline_index] = keyframe_cursor(timeline.x, timeline.y, time);
 }

@@ -1,13 +1,13 @@
-//! Parity of `kernels/animation/concat.wgsl`.
+//! Parity of `kernels/animation/local_to_model.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::compact::reference::compact;
 use crate::animation::compact::{CompactPass, Stages};
-use crate::animation::concat::reference::{concat, concat_dirty};
-use crate::animation::concat::{CONCAT_BOUND, ConcatPass, Walk};
 use crate::animation::crowd::{Crowd, packed};
 use crate::animation::gate::reference::Chosen;
+use crate::animation::local_to_model::reference::{local_to_model, local_to_model_updated};
+use crate::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass, Walk};
 use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
@@ -25,7 +25,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (skeleton, ..) = random_crowd(case as u32, bones, 1)?;
         add(cases, case as u32, "random", &skeleton, count)?;
-        add_dirty(cases, case as u32, &skeleton, count)?;
+        add_updated(cases, case as u32, &skeleton, count)?;
     }
     for (name, straight) in [("chain", true), ("star", false)] {
         let (random, ..) = random_crowd(99, 200, 1)?;
@@ -45,15 +45,16 @@ fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count:
     let mut crowd = Crowd::new(gpu, &set, &instances)?;
     let locals = random_locals(case, bones * count)?;
     crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
-    let expected: Vec<Affine> = locals.chunks(bones).flat_map(|locals| concat(skeleton, locals)).collect();
-    let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
+    let expected: Vec<Affine> =
+        locals.chunks(bones).flat_map(|locals| local_to_model(skeleton, locals)).collect();
+    let flat = |model_matrices: &[Affine]| model_matrices.as_flattened().as_flattened().to_vec();
     let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
     let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
-    let bound = CONCAT_BOUND * deepest as f32 * largest;
+    let bound = LOCAL_TO_MODEL_BOUND * deepest as f32 * largest;
     for walk in [Walk::Levels, Walk::Whole] {
         let output = Poisoned::<Affine>::new(gpu, bones * count)?;
         crowd.model_matrices = ModelMatrices::new(&output.buffer);
-        let job = ConcatPass::new(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
+        let job = LocalToModelPass::new(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let comparison =
             output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound))?;
@@ -62,13 +63,14 @@ fn add(cases: &mut Cases<'_>, case: u32, name: &str, skeleton: &Skeleton, count:
     Ok(())
 }
 
-fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize) -> Result<(), Error> {
+fn add_updated(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize) -> Result<(), Error> {
     let gpu = cases.gpu;
     let (bones, order) = (skeleton.len(), Order::new(skeleton));
     let (_, set, instances) = random_crowd(case, bones, count)?;
     let [before, locals] = [case + 100, case].map(|case| random_locals(case, bones * count));
     let (before, locals) = (before?, locals?);
-    let stale: Vec<Affine> = before.chunks(bones).flat_map(|locals| concat(skeleton, locals)).collect();
+    let stale: Vec<Affine> =
+        before.chunks(bones).flat_map(|locals| local_to_model(skeleton, locals)).collect();
     let mut draw = Draw::new(case ^ 0xd127);
     // A third of the instances have none, a third few, a third all but few.
     let mut bits = vec![0; count * order.words()];
@@ -81,18 +83,18 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
     let mut expected = stale.clone();
     let chosen = Chosen { ahead: vec![0; bits.len()], bits };
     let work = compact(&order, &chosen);
-    for ((dirty, locals), models) in
-        work.dirty.chunks(order.words()).zip(locals.chunks(bones)).zip(expected.chunks_mut(bones))
+    for ((updated_bones, locals), model_matrices) in
+        work.updated_bones.chunks(order.words()).zip(locals.chunks(bones)).zip(expected.chunks_mut(bones))
     {
-        concat_dirty(&order, dirty, locals, models);
+        local_to_model_updated(&order, updated_bones, locals, model_matrices);
     }
-    let flat = |models: &[Affine]| models.as_flattened().as_flattened().to_vec();
+    let flat = |model_matrices: &[Affine]| model_matrices.as_flattened().as_flattened().to_vec();
     let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
     let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
     let is_kept = |pair: usize, actual: &[Affine]| {
         let slot =
             order.slots.iter().position(|slot| slot.bone as usize == pair % bones).expect("every bone");
-        let word = work.dirty[pair / bones * order.words() + slot / 32];
+        let word = work.updated_bones[pair / bones * order.words() + slot / 32];
         word >> (slot % 32) & 1 == 1 || actual[pair] == stale[pair]
     };
     for walk in [Walk::Levels, Walk::Whole] {
@@ -104,7 +106,7 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
         let active = Active::new(gpu, &order, &crowd)?;
         active.bits.write(gpu, &chosen.bits)?;
         let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active, Stages::Three)?;
-        let job = ConcatPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
+        let job = LocalToModelPass::new(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
         gpu.run("verify", |encoder| {
             lists.record(encoder);
             job.record(encoder);
@@ -117,10 +119,10 @@ fn add_dirty(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usize
                 None => compare::absolute(
                     &flat(actual),
                     &flat(&expected),
-                    CONCAT_BOUND * deepest as f32 * largest,
+                    LOCAL_TO_MODEL_BOUND * deepest as f32 * largest,
                 ),
             })?;
-        cases.add(format!("dirty, {bones} bones × {count}, {walk:?}"), comparison);
+        cases.add(format!("updated bones, {bones} bones × {count}, {walk:?}"), comparison);
     }
     Ok(())
 }

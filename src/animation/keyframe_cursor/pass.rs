@@ -1,23 +1,23 @@
-//! `kernels/animation/place.wgsl`.
+//! `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::instance::{Instance, check_elapsed};
-use crate::gpu::bindings::animation::place as bindings;
+use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
-use crate::shared::animation::place::PlaceParams;
+use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
 /// Finds where instances stand in their clips.
 #[derive(Debug, Clone)]
-pub struct PlacePass {
+pub struct KeyframeCursorPass {
     all: Kernel,
     compacted: Kernel,
 }
 
-impl PlacePass {
+impl KeyframeCursorPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
@@ -31,9 +31,9 @@ impl PlacePass {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<PlaceJob, Error> {
-        let params = PlaceParams::new(clips, crowd);
-        let uniform = Uniform::new(gpu, "place", &params)?;
+    pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<KeyframeCursorJob, Error> {
+        let params = KeyframeCursorParams::new(clips, crowd);
+        let uniform = Uniform::new(gpu, "keyframe cursor", &params)?;
         let words = Buffer::new(gpu, "nothing", 0)?;
         let (dispatches, history) = (Buffer::new(gpu, "nothing", 1)?, Buffer::new(gpu, "nothing", 1)?);
         let listed = Listed { instances: &words, dispatches: &dispatches, history: &history };
@@ -42,8 +42,8 @@ impl PlacePass {
             workgroups: self.all.spread(gpu, params.entries * params.timelines),
             kernel: self.all.clone(),
         };
-        let work = Work::All(Job::new(gpu, "animation/place", vec![step])?);
-        Ok(PlaceJob { params, uniform, work })
+        let work = Work::All(Job::new(gpu, "animation/keyframe_cursor", vec![step])?);
+        Ok(KeyframeCursorJob { params, uniform, work })
     }
 
     /// Prepares the places of instances with an active bone alone, at the times that the gate saw: after
@@ -56,22 +56,26 @@ impl PlacePass {
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gating: &Gating,
+        gate_state: &GateState,
         active: &Active,
-    ) -> Result<PlaceJob, Error> {
-        let params = PlaceParams::new(clips, crowd);
-        let uniform = Uniform::new(gpu, "place", &params)?;
-        let listed =
-            Listed { instances: &active.instances, dispatches: &active.dispatches, history: &gating.history };
+    ) -> Result<KeyframeCursorJob, Error> {
+        let params = KeyframeCursorParams::new(clips, crowd);
+        let uniform = Uniform::new(gpu, "keyframe cursor", &params)?;
+        let listed = Listed {
+            instances: &active.instances,
+            dispatches: &active.dispatches,
+            history: &gate_state.history,
+        };
         let group = bind(&self.compacted, gpu, &uniform, clips, crowd, &listed)?;
         let offset = 16 * (active.dispatches.len() as u64 - 1);
         let arguments = active.dispatches.raw();
-        let job = IndirectJob::new("animation/place", &self.compacted, arguments, vec![(group, offset)]);
-        Ok(PlaceJob { params, uniform, work: Work::Active(job) })
+        let job =
+            IndirectJob::new("animation/keyframe_cursor", &self.compacted, arguments, vec![(group, offset)]);
+        Ok(KeyframeCursorJob { params, uniform, work: Work::Active(job) })
     }
 }
 
-impl PlaceParams {
+impl KeyframeCursorParams {
     fn new(clips: &ClipBuffers, crowd: &Crowd) -> Self {
         Self {
             entries: crowd.instances.len() as u32,
@@ -92,7 +96,7 @@ struct Listed<'a> {
 fn bind(
     kernel: &Kernel,
     gpu: &Gpu,
-    uniform: &Uniform<PlaceParams>,
+    uniform: &Uniform<KeyframeCursorParams>,
     clips: &ClipBuffers,
     crowd: &Crowd,
     listed: &Listed<'_>,
@@ -103,8 +107,8 @@ fn bind(
         clips: clips.clips.slice(),
         timelines: clips.timelines.slice().cast(),
         times: clips.times.slice(),
-        places: crowd.places.slice().cast(),
-        dirty_instances: listed.instances.slice(),
+        cursors: crowd.cursors.slice().cast(),
+        updated_instances: listed.instances.slice(),
         dispatches: listed.dispatches.slice(),
         history: listed.history.slice(),
     };
@@ -119,26 +123,26 @@ enum Work {
 
 /// Prepared places: set the time, then record.
 #[derive(Debug, Clone)]
-pub struct PlaceJob {
-    params: PlaceParams,
-    uniform: Uniform<PlaceParams>,
+pub struct KeyframeCursorJob {
+    params: KeyframeCursorParams,
+    uniform: Uniform<KeyframeCursorParams>,
     work: Work,
 }
 
-impl PlaceJob {
+impl KeyframeCursorJob {
     /// Chooses the time of the next submission: seconds since the instances' starts. Let starts follow the clock every
     /// few minutes: `f32` seconds grow coarse.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
-        Ok(self.uniform.write(gpu, &PlaceParams { elapsed, ..self.params })?)
+        Ok(self.uniform.write(gpu, &KeyframeCursorParams { elapsed, ..self.params })?)
     }
 
     /// Records the search.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch(&mut compute_pass(encoder, "animation/place"));
+        self.dispatch(&mut compute_pass(encoder, "animation/keyframe_cursor"));
     }
 
     /// Adds the search to a compute pass that is being recorded.

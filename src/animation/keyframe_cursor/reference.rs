@@ -1,12 +1,12 @@
-//! Where instances stand in their clips: twin of `kernels/animation/place.wgsl`.
+//! Where instances stand in their clips: reference of `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
-use crate::asset::keyframe::{Place, place};
+use crate::asset::keyframe::{KeyframeCursor, keyframe_cursor};
 
 /// After so many turns, `f32` knows no place in a clip.
-const MOST_TURNS: f32 = 16_777_216.0;
+const MAX_TURNS: f32 = 16_777_216.0;
 
 /// Seconds since the clip's start, inside the clip; its start, where a loop's time is so large that it is nowhere. In the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more
 /// exact where times are large.
@@ -18,7 +18,7 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
         return time.max(0.0).min(duration);
     }
     // NaN is not below.
-    let is_somewhere = time.abs() < MOST_TURNS * duration;
+    let is_somewhere = time.abs() < MAX_TURNS * duration;
     if !is_somewhere {
         return 0.0;
     }
@@ -34,25 +34,26 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
 
 /// The place of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] an instance. Where the clip
 /// has fewer, the rest is left as it is by the kernel, and at the start here.
-pub fn places(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<Place> {
-    let mut places = vec![Place::default(); instances.len() * set.timelines_a_clip()];
-    places_into(set, instances, elapsed, &mut places);
-    places
+pub fn cursors(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<KeyframeCursor> {
+    let mut cursors = vec![KeyframeCursor::default(); instances.len() * set.timelines_a_clip()];
+    cursors_into(set, instances, elapsed, &mut cursors);
+    cursors
 }
 
-/// [`places`] without allocation, for one frame after another.
+/// [`cursors`] without allocation, for one frame after another.
 ///
 /// # Panics
 /// For an instance of no clip of the set.
-pub fn places_into(set: &ClipSet, instances: &[Instance], elapsed: f32, places: &mut [Place]) {
-    for (instance, places) in instances.iter().zip(places.chunks_mut(set.timelines_a_clip())) {
+pub fn cursors_into(set: &ClipSet, instances: &[Instance], elapsed: f32, cursors: &mut [KeyframeCursor]) {
+    for (instance, cursors) in instances.iter().zip(cursors.chunks_mut(set.timelines_a_clip())) {
         let clip = &set.clips()[instance.clip as usize];
         let time = inside_clip(instance.wrap(), clip.duration, instance.start + instance.rate * elapsed);
         let timelines = &set.timelines()[clip.first_timeline as usize..][..clip.timelines as usize];
-        let (used, rest) = places.split_at_mut(timelines.len());
+        let (used, rest) = cursors.split_at_mut(timelines.len());
         for (timeline, found) in timelines.iter().zip(used) {
-            *found = place(&set.times()[timeline.first_time as usize..][..timeline.keys as usize], time);
+            *found =
+                keyframe_cursor(&set.times()[timeline.first_time as usize..][..timeline.keys as usize], time);
         }
-        rest.fill(Place::default());
+        rest.fill(KeyframeCursor::default());
     }
 }

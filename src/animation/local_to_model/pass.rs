@@ -1,12 +1,12 @@
-//! `kernels/animation/concat.wgsl`.
+//! `kernels/animation/local_to_model.wgsl`.
 
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::order::{Order, Slot};
 use crate::asset::skeleton::Skeleton;
-use crate::gpu::bindings::animation::concat as bindings;
+use crate::gpu::bindings::animation::local_to_model as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
-use crate::shared::animation::concat::ConcatParams;
+use crate::shared::animation::local_to_model::LocalToModelParams;
 use crate::{Error, InputError};
 
 /// How threads share the work.
@@ -28,19 +28,19 @@ impl Walk {
 
 /// Concatenates local transforms.
 #[derive(Debug, Clone)]
-pub struct ConcatPass {
+pub struct LocalToModelPass {
     all: Kernel,
     compacted: Kernel,
     walk: Walk,
 }
 
 /// A prepared concatenation: a dispatch for each level of chains.
-pub type ConcatJob = Job;
+pub type LocalToModelJob = Job;
 
-/// A prepared concatenation of what is dirty.
-pub type ConcatActiveJob = IndirectJob;
+/// A prepared concatenation of what is updated.
+pub type LocalToModelActiveJob = IndirectJob;
 
-impl ConcatPass {
+impl LocalToModelPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl ConcatPass {
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<ConcatJob, Error> {
+    pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<LocalToModelJob, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
         let nothing = Nothing::new(gpu)?;
         let instances = crowd.len() as u32;
@@ -71,10 +71,10 @@ impl ConcatPass {
             })
         };
         let steps = self.levels(&binder.order).into_iter().map(|level| step(&level));
-        Ok(Job::new(gpu, "animation/concat", steps.collect::<Result<_, GpuError>>()?)?)
+        Ok(Job::new(gpu, "animation/local_to_model", steps.collect::<Result<_, GpuError>>()?)?)
     }
 
-    /// Prepares the matrices of what is dirty alone; the others stay.
+    /// Prepares the matrices of what is updated alone; the others stay.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton, and for another than the active bones were listed of;
@@ -85,18 +85,21 @@ impl ConcatPass {
         skeleton: &Skeleton,
         crowd: &Crowd,
         active: &Active,
-    ) -> Result<ConcatActiveJob, Error> {
+    ) -> Result<LocalToModelActiveJob, Error> {
         active.pairs.check_crowd(crowd)?;
         let binder = Binder::new(gpu, skeleton, crowd)?;
-        let lists =
-            Lists { dirty: &active.dirty, instances: &active.instances, dispatches: &active.dispatches };
+        let lists = Lists {
+            updated_bones: &active.updated_bones,
+            instances: &active.instances,
+            dispatches: &active.dispatches,
+        };
         let group = |(dispatch, level): (u64, &[u32; 2])| {
             Ok((binder.bind(gpu, &self.compacted, level, &lists)?, 16 * dispatch))
         };
         let first_dispatch = u64::from(self.walk == Walk::Levels);
         let levels = self.levels(&binder.order);
         let groups = (first_dispatch..).zip(&levels).map(group).collect::<Result<_, GpuError>>()?;
-        Ok(IndirectJob::new("animation/concat", &self.compacted, active.dispatches.raw(), groups))
+        Ok(IndirectJob::new("animation/local_to_model", &self.compacted, active.dispatches.raw(), groups))
     }
 
     /// First and last chain of each dispatch.
@@ -110,7 +113,7 @@ impl ConcatPass {
 
 /// Which instances and slots are walked.
 struct Lists<'a> {
-    dirty: &'a Buffer<u32>,
+    updated_bones: &'a Buffer<u32>,
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
 }
@@ -127,7 +130,7 @@ impl Nothing {
     }
 
     fn lists(&self) -> Lists<'_> {
-        Lists { dirty: &self.words, instances: &self.words, dispatches: &self.dispatches }
+        Lists { updated_bones: &self.words, instances: &self.words, dispatches: &self.dispatches }
     }
 }
 
@@ -153,23 +156,23 @@ impl<'a> Binder<'a> {
 
     fn bind(&self, gpu: &Gpu, kernel: &Kernel, level: &[u32], lists: &Lists<'_>) -> Result<Group, GpuError> {
         let crowd = self.crowd;
-        let params = ConcatParams {
+        let params = LocalToModelParams {
             instances: crowd.len() as u32,
             bones: crowd.bones as u32,
             words: self.order.words() as u32,
             first_chain: level[0],
             chains: level[1] - level[0],
         };
-        let uniform = Uniform::new(gpu, "concat", &params)?;
+        let uniform = Uniform::new(gpu, "local_to_model", &params)?;
         let group = bindings::Group {
             params: &uniform,
             slots: self.slots.slice().cast(),
             chains: self.chains.slice().cast(),
-            dirty: lists.dirty.slice(),
-            dirty_instances: lists.instances.slice(),
+            updated_bones: lists.updated_bones.slice(),
+            updated_instances: lists.instances.slice(),
             dispatches: lists.dispatches.slice(),
             locals: crowd.locals.slice().cast(),
-            models: crowd.model_matrices.buffer().slice().cast(),
+            model_matrices: crowd.model_matrices.buffer().slice().cast(),
         };
         group.bind(gpu, kernel)
     }

@@ -1,8 +1,8 @@
 // Where instances stand on the common timeline of their clip, in whole numbers, and whether anything but
 // the time asks for a new pose: what gates decide by. A thread looks at one instance.
 import package::wgsl::animation::gated::lods::lods;
-import package::wgsl::animation::gated::phases::phases;
-import package::wgsl::animation::phase::{phase_of, phase_params};
+import package::wgsl::animation::gated::clip_clocks::clip_clocks;
+import package::wgsl::animation::clip_clock::{clip_clock_of, clip_clock_params};
 
 @compute @workgroup_size(64)
 fn main(
@@ -11,7 +11,7 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + lane;
-    if index < phase_params.instances {
-        phases[index] = phase_of(index, lods[index].flags);
+    if index < clip_clock_params.instances {
+        clip_clocks[index] = clip_clock_of(index, lods[index].flags);
     }
 }

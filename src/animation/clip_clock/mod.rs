@@ -4,8 +4,8 @@
 //! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
 //! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
 
-pub use crate::shared::animation::gating::Phase;
-pub use crate::shared::animation::phase::BLENDED;
+pub use crate::shared::animation::clip_clock::BLENDED;
+pub use crate::shared::animation::gate_state::ClipClock;
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -16,12 +16,12 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{PhaseJob, PhasePass};
+pub use pass::{ClipClockJob, ClipClockPass};
 
 /// What asks for a pose besides the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Verdict {
+pub enum UpdateReason {
     /// Nothing: the gate decides.
     Free = 0,
     /// Nobody sees it: nothing is sampled.
@@ -32,18 +32,18 @@ pub enum Verdict {
     Blended = 3,
 }
 
-impl Verdict {
+impl UpdateReason {
     /// Whether gates that decide by motion sample everything.
     pub fn forces_motion(self) -> bool {
         matches!(self, Self::Forced | Self::Blended)
     }
 }
 
-impl Phase {
+impl ClipClock {
     /// A phase from its parts; nothing may be sampled ahead.
-    pub fn new(row: u32, fraction: u32, verdict: Verdict, clip: u32) -> Self {
-        let fraction_and_verdict = (verdict as u32) << 20 | fraction;
-        Self { row, fraction_and_verdict, clip, ahead_row: row, ahead_fraction: fraction }
+    pub fn new(row: u32, fraction: u32, reason: UpdateReason, clip: u32) -> Self {
+        let fraction_and_reason = (reason as u32) << 20 | fraction;
+        Self { row, fraction_and_reason, clip, ahead_row: row, ahead_fraction: fraction }
     }
 
     /// Whether bones may be sampled ahead.
@@ -53,16 +53,16 @@ impl Phase {
 
     /// The way to the next row, 0 to 65536.
     pub fn fraction(&self) -> u32 {
-        self.fraction_and_verdict & 0xf_ffff
+        self.fraction_and_reason & 0xf_ffff
     }
 
     /// What asks for a pose besides the time.
-    pub fn verdict(&self) -> Verdict {
-        match self.fraction_and_verdict >> 20 {
-            0 => Verdict::Free,
-            1 => Verdict::Hidden,
-            2 => Verdict::Forced,
-            _ => Verdict::Blended,
+    pub fn reason(&self) -> UpdateReason {
+        match self.fraction_and_reason >> 20 {
+            0 => UpdateReason::Free,
+            1 => UpdateReason::Hidden,
+            2 => UpdateReason::Forced,
+            _ => UpdateReason::Blended,
         }
     }
 }

@@ -1,20 +1,20 @@
-//! `kernels/animation/phase.wgsl`.
+//! `kernels/animation/clip_clock.wgsl`.
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::gating::Gating;
+use crate::animation::gate_state::GateState;
 use crate::animation::instance::{check_elapsed, check_seconds};
-use crate::gpu::bindings::animation::phase as bindings;
+use crate::gpu::bindings::animation::clip_clock as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::animation::phase::PhaseParams;
+use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
 /// Finds phases.
 #[derive(Debug, Clone)]
-pub struct PhasePass {
+pub struct ClipClockPass {
     kernel: Kernel,
 }
 
-impl PhasePass {
+impl ClipClockPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
@@ -32,73 +32,73 @@ impl PhasePass {
         gpu: &Gpu,
         clips: &ClipBuffers,
         crowd: &Crowd,
-        gating: &Gating,
-    ) -> Result<PhaseJob, Error> {
-        let time = PhaseTime::new(gpu, clips, crowd, gating)?;
+        gate_state: &GateState,
+    ) -> Result<ClipClockJob, Error> {
+        let time = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
         let group = bindings::Group {
-            phase_params: &time.uniform,
+            clip_clock_params: &time.uniform,
             instances: crowd.instances.slice(),
             clips: clips.clips.slice(),
             timelines: clips.timelines.slice().cast(),
             times: clips.times.slice(),
-            lods: gating.lods.slice(),
-            shares: crowd.shares.slice(),
-            history: gating.history.slice(),
-            phases: gating.phases.slice(),
+            lods: gate_state.lods.slice(),
+            layer_weights: crowd.layer_weights.slice(),
+            history: gate_state.history.slice(),
+            clip_clocks: gate_state.clip_clocks.slice(),
         };
         let step = Step {
             groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, time.params.instances),
             kernel: self.kernel.clone(),
         };
-        Ok(PhaseJob { time, job: Job::new(gpu, "animation/phase", vec![step])? })
+        Ok(ClipClockJob { time, job: Job::new(gpu, "animation/clip_clock", vec![step])? })
     }
 }
 
 /// The time of the next submission.
 #[derive(Debug, Clone)]
-pub(crate) struct PhaseTime {
-    params: PhaseParams,
-    pub(crate) uniform: Uniform<PhaseParams>,
+pub(crate) struct ClipClockTime {
+    params: ClipClockParams,
+    pub(crate) uniform: Uniform<ClipClockParams>,
 }
 
-impl PhaseTime {
-    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, gating: &Gating) -> Result<Self, Error> {
-        let clips_len = gating.movers.len() / (gating.words as usize + 1);
+impl ClipClockTime {
+    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, gate_state: &GateState) -> Result<Self, Error> {
+        let clips_len = gate_state.animated_bones.len() / (gate_state.words as usize + 1);
         if clips_len != clips.clips.len() {
             let bound = format!("must be {}, those of the set", clips.clips.len());
             return Err(InputError::new("table.clips", clips_len, bound).into());
         }
-        let params = PhaseParams {
-            instances: gating.lods.len() as u32,
+        let params = ClipClockParams {
+            instances: gate_state.lods.len() as u32,
             elapsed: 0.0,
             layers: crowd.layers as u32 - 1,
             ahead: 0.0,
         };
-        Ok(Self { params, uniform: Uniform::new(gpu, "phase", &params)? })
+        Ok(Self { params, uniform: Uniform::new(gpu, "clip_clock", &params)? })
     }
 
-    /// As [`PhaseJob::set`].
+    /// As [`ClipClockJob::set`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         check_seconds("frame.ahead", ahead)?;
-        Ok(self.uniform.write(gpu, &PhaseParams { elapsed, ahead, ..self.params })?)
+        Ok(self.uniform.write(gpu, &ClipClockParams { elapsed, ahead, ..self.params })?)
     }
 }
 
 /// Prepared phases: set the time, then record.
 #[derive(Debug, Clone)]
-pub struct PhaseJob {
-    time: PhaseTime,
+pub struct ClipClockJob {
+    time: ClipClockTime,
     job: Job,
 }
 
-impl PhaseJob {
-    /// Chooses the time of the next submission, as for [`super::super::place::PlaceJob::set`], and by how many seconds bones
+impl ClipClockJob {
+    /// Chooses the time of the next submission, as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`], and by how many seconds bones
     /// may be sampled ahead of it, as [`Frame::ahead`](crate::animation::gate::Frame::ahead).
     ///
     /// # Errors
-    /// [`InputError`] for seconds beyond ±[`MOST_SECONDS`](crate::animation::instance::MOST_SECONDS); [`GpuError`].
+    /// [`InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         self.time.set(gpu, elapsed, ahead)
     }

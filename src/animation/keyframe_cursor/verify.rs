@@ -1,19 +1,19 @@
-//! Parity of `kernels/animation/place.wgsl`.
+//! Parity of `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::GateTable;
-use crate::animation::gating::Gating;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
+use crate::animation::keyframe_cursor::reference::{cursors, inside_clip};
+use crate::animation::keyframe_cursor::{KEYFRAME_CURSOR_BOUND, KeyframeCursorPass};
 use crate::animation::layers::{Layer, all_instances};
 use crate::animation::order::Order;
-use crate::animation::place::reference::{inside_clip, places};
-use crate::animation::place::{PLACE_BOUND, PlacePass};
 use crate::animation::verify::edges::{ELAPSED, edges};
 use crate::animation::verify::{SIZES, random_clips, random_crowd, random_instances};
-use crate::asset::keyframe::Place;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
@@ -25,27 +25,27 @@ use crate::harness::{Cases, compare};
 /// What the device reports.
 pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = PlacePass::new(gpu)?;
+    let pass = KeyframeCursorPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
         let clips = ClipBuffers::new(gpu, &set)?;
         for elapsed in [0.0, 1.375, -3.0] {
             let mut crowd = Crowd::new(gpu, &set, &instances)?;
-            let rooms = crowd.places.len();
-            let output = Poisoned::<Place>::new(gpu, rooms)?;
-            crowd.places = output.buffer.clone();
+            let rooms = crowd.cursors.len();
+            let output = Poisoned::<KeyframeCursor>::new(gpu, rooms)?;
+            crowd.cursors = output.buffer.clone();
             let job = pass.prepare(gpu, &clips, &crowd)?;
             job.set(gpu, elapsed)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let mut expected = places(&set, &instances, elapsed);
+            let mut expected = cursors(&set, &instances, elapsed);
             let used = expected.len();
             // Nothing is looked up ahead.
-            expected.resize(rooms, Place::default());
+            expected.resize(rooms, KeyframeCursor::default());
             let room = set.timelines_a_clip();
             let is_used = |at: usize| {
                 at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
             };
-            let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
+            let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used))?;
             cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
         }
     }
@@ -56,20 +56,20 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 /// Instances of a list, with their layers, at the times that gates saw, and where they will stand ahead; the places of
 /// others stay untouched.
-fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (skeleton, set, base) = random_crowd(case as u32, bones, count)?;
         let layer = Layer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
         let layers = vec![layer; case % 3];
         let mut crowd = Crowd::layered(gpu, &set, &base, &layers)?;
-        let rooms = crowd.places.len();
-        let output = Poisoned::<Place>::new(gpu, rooms)?;
-        crowd.places = output.buffer.clone();
+        let rooms = crowd.cursors.len();
+        let output = Poisoned::<KeyframeCursor>::new(gpu, rooms)?;
+        crowd.cursors = output.buffer.clone();
         let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
         let model_clips = random_clips(case as u32, &skeleton, 3)?;
-        let table = GateTable::of_movers(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
-        let gating = Gating::new(gpu, &table, &crowd)?;
+        let table = GateTable::of_animated_bones(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
+        let gate_state = GateState::new(gpu, &table, &crowd)?;
         let active = Active::new(gpu, &order, &crowd)?;
         // Every third, and what the gate saw is not what the clock says.
         let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
@@ -89,18 +89,18 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
             .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
             .collect();
         let history = seen.iter().zip(&ahead).map(|(now, later)| [1, 0, now.to_bits(), later.to_bits()]);
-        gating.history.write(gpu, &history.collect::<Vec<_>>())?;
-        let job = pass.prepare_active(gpu, &clips, &crowd, &gating, &active)?;
+        gate_state.history.write(gpu, &history.collect::<Vec<_>>())?;
+        let job = pass.prepare_active(gpu, &clips, &crowd, &gate_state, &active)?;
         job.set(gpu, 0.5)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let all = all_instances(&base, &layers);
-        let mut expected = places(&set, &all, 0.5);
+        let mut expected = cursors(&set, &all, 0.5);
         let first_ahead = expected.len();
-        expected.resize(rooms, Place::default());
+        expected.resize(rooms, KeyframeCursor::default());
         for instance in listed.iter().map(|at| *at as usize) {
             for (first, time) in [(0, seen[instance]), (first_ahead, ahead[instance])] {
                 let seen = Instance::new(base[instance].clip, Wrap::Clamp, time, 0.0);
-                expected[first + instance * room..][..room].copy_from_slice(&places(&set, &[seen], 0.0));
+                expected[first + instance * room..][..room].copy_from_slice(&cursors(&set, &[seen], 0.0));
             }
         }
         let is_used = |at: usize| {
@@ -111,29 +111,33 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
             is_listed && at % room < set.clips()[playing.clip as usize].timelines as usize
         };
         let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
-        let comparison = output.check(gpu, |actual| compare_places(actual, &expected, is_used))?;
+        let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used))?;
         cases.add(name, comparison);
     }
     Ok(())
 }
 
 /// Places that are used, and poison elsewhere.
-fn compare_places(actual: &[Place], expected: &[Place], is_used: impl Fn(usize) -> bool) -> Comparison {
+fn compare_cursors(
+    actual: &[KeyframeCursor],
+    expected: &[KeyframeCursor],
+    is_used: impl Fn(usize) -> bool,
+) -> Comparison {
     // Untouched rooms compare as −1.
-    let phase = |place: &Place| match place.key == POISON {
-        true if place.fraction.to_bits() == POISON => -1.0,
-        _ => place.key as f32 + place.fraction,
+    let clip_clock = |cursor: &KeyframeCursor| match cursor.key == POISON {
+        true if cursor.fraction.to_bits() == POISON => -1.0,
+        _ => cursor.key as f32 + cursor.fraction,
     };
     let expected: Vec<f32> = (expected.iter().enumerate())
-        .map(|(at, place)| if is_used(at) { phase(place) } else { -1.0 })
+        .map(|(at, cursor)| if is_used(at) { clip_clock(cursor) } else { -1.0 })
         .collect();
-    let actual: Vec<f32> = actual.iter().map(phase).collect();
-    compare::absolute(&actual, &expected, PLACE_BOUND)
+    let actual: Vec<f32> = actual.iter().map(clip_clock).collect();
+    compare::absolute(&actual, &expected, KEYFRAME_CURSOR_BOUND)
 }
 
 /// Times that loops cannot tell, up to infinity, are the clip's start; a clamped one is its end. The bounds of instances
 /// are far below: the device's buffer says otherwise.
-fn nowhere(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let (gpu, edges) = (cases.gpu, edges()?);
     let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
     let play = |wrap: Wrap| far.map(|(start, rate)| Instance::new(0, wrap, start, rate));
@@ -152,30 +156,32 @@ fn nowhere(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
         (Wrap::Clamp, true) if instance.rate > 0.0 => at_end,
         _ => at_start,
     };
-    let known = places(&edges.set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
-    let twins = places(&edges.set, &instances, 1e9);
-    let phases = |places: &[Place]| places.iter().map(|place| place.key as f32 + place.fraction).collect();
-    let [actual, twins, known]: [Vec<f32>; 3] =
-        [&crowd.places.read_blocking(gpu)?[..twins.len()], &twins, &known].map(phases);
-    let (actual, known) = ([actual, twins].concat(), known.repeat(2));
-    cases.add("nowhere in the clip", compare::absolute(&actual, &known, PLACE_BOUND));
+    let known = cursors(&edges.set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
+    let references = cursors(&edges.set, &instances, 1e9);
+    let clip_clocks = |cursors: &[KeyframeCursor]| {
+        cursors.iter().map(|cursor| cursor.key as f32 + cursor.fraction).collect()
+    };
+    let [actual, references, known]: [Vec<f32>; 3] =
+        [&crowd.cursors.read_blocking(gpu)?[..references.len()], &references, &known].map(clip_clocks);
+    let (actual, known) = ([actual, references].concat(), known.repeat(2));
+    cases.add("nowhere in the clip", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
     Ok(())
 }
 
-/// Places that are known without a twin.
-fn at_edges(cases: &mut Cases<'_>, pass: &PlacePass) -> Result<(), Error> {
+/// Places that are known without a reference.
+fn at_edges(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let (gpu, edges) = (cases.gpu, edges()?);
     let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &edges.instances)?);
     let job = pass.prepare(gpu, &clips, &crowd)?;
     job.set(gpu, ELAPSED)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
-    let found = crowd.places.read_blocking(gpu)?;
-    let phase = |place: &Place| place.key as f32 + place.fraction;
+    let found = crowd.cursors.read_blocking(gpu)?;
+    let clip_clock = |cursor: &KeyframeCursor| cursor.key as f32 + cursor.fraction;
     let (mut actual, mut expected) = (Vec::new(), Vec::new());
-    for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.places()) {
-        actual.extend(found[..known.len()].iter().map(phase));
-        expected.extend(known.iter().map(phase));
+    for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.cursors()) {
+        actual.extend(found[..known.len()].iter().map(clip_clock));
+        expected.extend(known.iter().map(clip_clock));
     }
-    cases.add("edges", compare::absolute(&actual, &expected, PLACE_BOUND));
+    cases.add("edges", compare::absolute(&actual, &expected, KEYFRAME_CURSOR_BOUND));
     Ok(())
 }

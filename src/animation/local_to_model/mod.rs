@@ -17,9 +17,9 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{ConcatActiveJob, ConcatJob, ConcatPass, Walk};
+pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass, Walk};
 
-/// How far a component may lie from the twin's, on any device: times the bones of the longest chain, times the largest
+/// How far a component may lie from the reference's, on any device: times the bones of the longest chain, times the largest
 /// component (at least 1). A local matrix carries 10ε of its scale (ε = 2⁻²⁴, each operation to either neighbour 2ε), a
 /// row of the product 8ε of the sum of its terms, at most √3 of the largest component: 32ε a bone, rounded up.
-pub const CONCAT_BOUND: f32 = 2e-6;
+pub const LOCAL_TO_MODEL_BOUND: f32 = 2e-6;

@@ -5,25 +5,25 @@ use super::gate_table::{GateTable, Kind, check_path};
 use super::lod::Lod;
 use crate::asset::keyframe::RotationPath;
 use crate::gpu::{Buffer, Gpu};
-use crate::shared::animation::gating::Phase;
+use crate::shared::animation::gate_state::ClipClock;
 use crate::{Error, InputError};
 
 /// What gates know of a crowd. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
-pub struct Gating {
+pub struct GateState {
     /// One an instance; written by the host, full detail at first.
     pub lods: Buffer<Lod>,
-    /// Written by [`crate::animation::phase::PhasePass`].
-    pub phases: Buffer<Phase>,
+    /// Written by [`crate::animation::clip_clock::ClipClockPass`].
+    pub clip_clocks: Buffer<ClipClock>,
     /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
     /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
     pub history: Buffer<[u32; 4]>,
     /// For each slot of each instance, the sum of motion when it was sampled last.
     pub sampled: Buffer<u32>,
     /// For each slot of each instance, what it leaves of the allowed way, where that is needed later.
-    pub(crate) kept: Buffer<u32>,
+    pub(crate) remaining: Buffer<u32>,
     /// The table of movers.
-    pub(crate) movers: Buffer<u32>,
+    pub(crate) animated_bones: Buffer<u32>,
     /// The table's rows.
     pub(crate) table: Buffer<[u32; 2]>,
     pub(crate) words: u32,
@@ -33,7 +33,7 @@ pub struct Gating {
     path: Option<RotationPath>,
 }
 
-impl Gating {
+impl GateState {
     /// Uploads a table and makes room for a crowd.
     ///
     /// # Errors
@@ -46,11 +46,15 @@ impl Gating {
         let instances = crowd.len();
         Ok(Self {
             lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
-            phases: Buffer::new(gpu, "phases", instances)?,
+            clip_clocks: Buffer::new(gpu, "clip_clocks", instances)?,
             history: Buffer::new(gpu, "history", instances)?,
             sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
-            kept: Buffer::new(gpu, "kept", if table.kind() == Kind::Bounds { crowd.pairs() } else { 0 })?,
-            movers: Buffer::from_slice(gpu, "movers", table.movers())?,
+            remaining: Buffer::new(
+                gpu,
+                "remaining",
+                if table.kind() == Kind::Bounds { crowd.pairs() } else { 0 },
+            )?,
+            animated_bones: Buffer::from_slice(gpu, "animated_bones", table.animated_bones())?,
             table: Buffer::from_slice(gpu, "gate table", table.rows())?,
             words: table.words() as u32,
             stride: table.stride() as u32,

@@ -4,11 +4,11 @@ use glam::Vec3;
 
 use super::pose::poses_of;
 use crate::animation::bounds::reference::bounds;
-use crate::animation::concat::reference::concat;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample;
 use crate::asset::Model;
 use crate::asset::keyframe::RotationPath;
-use crate::asset::mesh::reaches;
+use crate::asset::mesh::bone_radii;
 
 /// Moments of each clip that are looked at, at least and at most: an hour at 60 a second.
 const MOMENTS: [usize; 2] = [32, 216_001];
@@ -16,15 +16,15 @@ const MOMENTS: [usize; 2] = [32, 216_001];
 /// A ball in the model's space around all meshes at rest and in every clip, larger by a twentieth for what lies between
 /// the moments that are looked at: 60 a second and at least 32 of a clip; of clips of more than an hour 216,001, which
 /// then lie further apart. For [`LodView`](super::lod::LodView). Of vertices it knows how far they reach from their bones
-/// alone, so it may be half again as large as it had to be; morph targets count as [`reaches`] says.
+/// alone, so it may be half again as large as it had to be; morph targets count as [`bone_radii`] says.
 ///
 /// # Panics
-/// As [`reaches`].
-pub fn ball_in_clips(model: &Model) -> (Vec3, f32) {
+/// As [`bone_radii`].
+pub fn bounding_sphere_in_clips(model: &Model) -> (Vec3, f32) {
     let skeleton = &model.skeleton;
-    let reaches = reaches(skeleton.len(), &model.skins, &model.meshes);
+    let bone_radii = bone_radii(skeleton.len(), &model.skins, &model.meshes);
     let followed = followed(model);
-    let weighted: Vec<usize> = (0..reaches.len()).filter(|bone| followed[*bone]).collect();
+    let weighted: Vec<usize> = (0..bone_radii.len()).filter(|bone| followed[*bone]).collect();
     let of_clips = model.clips.iter().flat_map(|clip| {
         let [least, most] = MOMENTS;
         let moments = poses_of(clip).unwrap_or(most).max(least);
@@ -32,11 +32,11 @@ pub fn ball_in_clips(model: &Model) -> (Vec3, f32) {
         (0..moments).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
     });
     let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
-    let reaches: Vec<f32> = weighted.iter().map(|bone| reaches[*bone]).collect();
+    let bone_radii: Vec<f32> = weighted.iter().map(|bone| bone_radii[*bone]).collect();
     for locals in std::iter::once(skeleton.rest()).chain(of_clips) {
-        let models = concat(skeleton, &locals);
+        let models = local_to_model(skeleton, &locals);
         let models: Vec<_> = weighted.iter().map(|bone| models[*bone]).collect();
-        if let Some(found) = (!reaches.is_empty()).then(|| bounds(&models, &reaches)[0]) {
+        if let Some(found) = (!bone_radii.is_empty()).then(|| bounds(&models, &bone_radii)[0]) {
             low = low.min(Vec3::from_slice(&found.low));
             high = high.max(Vec3::from_slice(&found.high));
         }
@@ -64,38 +64,38 @@ mod tests {
     use super::*;
     use crate::asset::Clip;
     use crate::asset::clip::{BoneKeys, Interpolation, Keys};
+    use crate::skinning::instance_lod::InstanceLod;
     use crate::skinning::morph::reference::morph;
     use crate::skinning::palette::reference::palette_for;
-    use crate::skinning::reduction::Reduction;
     use crate::skinning::skin::reference::skin;
     use crate::skinning::vertex::Blend;
 
     #[test]
     fn the_ball_holds_every_vertex_and_not_much_more() {
         let model = crate::samples::creature().expect("valid");
-        let (center, radius) = ball_in_clips(&model);
+        let (center, radius) = bounding_sphere_in_clips(&model);
         let mesh = &model.meshes[0];
         let mut farthest = 0.0_f32;
         for clip in &model.clips {
             for moment in 0..45 {
                 let locals = sample(clip, clip.duration() * moment as f32 / 44.0, RotationPath::Slerp);
-                let models = concat(&model.skeleton, &locals);
+                let models = local_to_model(&model.skeleton, &locals);
                 let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
-                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, Reduction::FULL);
+                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
                 let away = vertices.iter().map(|vertex| Vec3::from(vertex.position).distance(center));
                 farthest = away.fold(farthest, f32::max);
             }
         }
         assert!((farthest..1.6 * farthest).contains(&radius), "{radius} for {farthest}");
         let bare = Model { meshes: vec![], ..model };
-        assert_eq!(ball_in_clips(&bare), (Vec3::ZERO, 0.0));
+        assert_eq!(bounding_sphere_in_clips(&bare), (Vec3::ZERO, 0.0));
     }
 
     /// A jump of a tenth of a second in a minute and a half.
     #[test]
     fn the_ball_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");
-        let still = ball_in_clips(&Model { clips: vec![], ..model.clone() }).1;
+        let still = bounding_sphere_in_clips(&Model { clips: vec![], ..model.clone() }).1;
         let mut keys = vec![BoneKeys::default(); model.skeleton.len()];
         let at = |y: f32| [0.0, y, 0.0, 0.0];
         keys[0].translation = Some(Keys {
@@ -104,7 +104,7 @@ mod tests {
             interpolation: Interpolation::Linear,
         });
         model.clips = vec![Clip::new("jump", &model.skeleton, &keys, 90.0).expect("valid")];
-        let radius = ball_in_clips(&model).1;
+        let radius = bounding_sphere_in_clips(&model).1;
         assert!(radius > still + 3.5, "{radius}, {still} without a clip");
     }
 }

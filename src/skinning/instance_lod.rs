@@ -1,14 +1,14 @@
 //! Which influences count, and which vertices (A section 8.4).
 
 use crate::InputError;
-use crate::asset::influences::MOST_INFLUENCES;
-use crate::asset::mesh::MOST_LEVELS;
+use crate::asset::influences::MAX_INFLUENCES;
+use crate::asset::mesh::MAX_LEVELS;
 
 /// Which influences count, and which vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
-pub struct Reduction {
+pub struct InstanceLod {
     /// The λ of `fade`, 0 to 1.
     pub fade: f32,
     /// The k of `truncate`, at least 1; 0 of instances that are not seen, which are not skinned.
@@ -19,9 +19,9 @@ pub struct Reduction {
     pub level: u32,
 }
 
-impl Reduction {
+impl InstanceLod {
     /// Every influence of every vertex.
-    pub const FULL: Self = Self { fade: 0.0, most: MOST_INFLUENCES as u32, level: 0 };
+    pub const FULL: Self = Self { fade: 0.0, most: MAX_INFLUENCES as u32, level: 0 };
 
     /// Of instances that are not seen: nothing is skinned.
     pub const UNSEEN: Self = Self { fade: 0.0, most: 0, level: 0 };
@@ -29,10 +29,10 @@ impl Reduction {
     /// The strongest influences.
     ///
     /// # Errors
-    /// [`InputError`] unless `most` is in 1 to [`MOST_INFLUENCES`].
+    /// [`InputError`] unless `most` is in 1 to [`MAX_INFLUENCES`].
     pub fn truncate(most: u32) -> Result<Self, InputError> {
-        let reduction = Self { most, ..Self::FULL };
-        reduction.validate().map(|()| reduction)
+        let instance_lod = Self { most, ..Self::FULL };
+        instance_lod.validate().map(|()| instance_lod)
     }
 
     /// From full quality at 0 to rigid at 1.
@@ -40,17 +40,17 @@ impl Reduction {
     /// # Errors
     /// [`InputError`] unless `fade` is in 0 to 1.
     pub fn fade(fade: f32) -> Result<Self, InputError> {
-        let reduction = Self { fade, ..Self::FULL };
-        reduction.validate().map(|()| reduction)
+        let instance_lod = Self { fade, ..Self::FULL };
+        instance_lod.validate().map(|()| instance_lod)
     }
 
     /// Every influence of the vertices of a level.
     ///
     /// # Errors
-    /// [`InputError`] unless `level` is below [`MOST_LEVELS`].
+    /// [`InputError`] unless `level` is below [`MAX_LEVELS`].
     pub fn level(level: u32) -> Result<Self, InputError> {
-        let reduction = Self { level, ..Self::FULL };
-        reduction.validate().map(|()| reduction)
+        let instance_lod = Self { level, ..Self::FULL };
+        instance_lod.validate().map(|()| instance_lod)
     }
 
     /// Full quality up to `near`, rigid from `far` on, fading in between.
@@ -81,11 +81,11 @@ impl Reduction {
         if !(0.0..=1.0).contains(&self.fade) {
             return Err(InputError::new("fade", self.fade, "must be in 0..=1"));
         }
-        if !(1..=MOST_INFLUENCES as u32).contains(&self.most) {
-            return Err(InputError::new("truncate", self.most, format!("must be in 1..={MOST_INFLUENCES}")));
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.most) {
+            return Err(InputError::new("truncate", self.most, format!("must be in 1..={MAX_INFLUENCES}")));
         }
-        if self.level as usize >= MOST_LEVELS {
-            return Err(InputError::new("level", self.level, format!("must be below {MOST_LEVELS}")));
+        if self.level as usize >= MAX_LEVELS {
+            return Err(InputError::new("level", self.level, format!("must be below {MAX_LEVELS}")));
         }
         Ok(())
     }

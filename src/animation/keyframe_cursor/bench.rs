@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, ELAPSED, Scene};
-use crate::animation::place::PlacePass;
-use crate::animation::place::reference::places_into;
-use crate::asset::keyframe::Place;
+use crate::animation::keyframe_cursor::KeyframeCursorPass;
+use crate::animation::keyframe_cursor::reference::cursors_into;
+use crate::asset::keyframe::KeyframeCursor;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
@@ -16,19 +16,19 @@ use crate::terrain::bench::copy_of;
 /// What the device reports.
 pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = PlacePass::new(gpu)?;
+    let pass = KeyframeCursorPass::new(gpu)?;
     for count in CROWDS {
         let scene = Scene::new(gpu, count)?;
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
         job.set(gpu, ELAPSED)?;
         // An instance and four times in, a place out: 10 words.
         let copied = copy_of(gpu, 5 * count)?;
-        let mut places = vec![Place::default(); count];
+        let mut cursors = vec![KeyframeCursor::default(); count];
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
             Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Twin, || {
-                places_into(&scene.set, &scene.instances, ELAPSED, black_box(&mut places));
+            Contender::host(Backend::Reference, || {
+                cursors_into(&scene.set, &scene.instances, ELAPSED, black_box(&mut cursors));
             }),
         ];
         bench.case(format!("{count} instances"), (count, "instance"), 40 * count as u64, contenders)?;

@@ -13,10 +13,10 @@ pub mod reference;
 pub mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{PlaceJob, PlacePass};
+pub use pass::{KeyframeCursorJob, KeyframeCursorPass};
 
-/// How far key + fraction may lie from the twin's for times up to 64 s, keys at least 1/64 s apart, on any device.
+/// How far key + fraction may lie from the reference's for times up to 64 s, keys at least 1/64 s apart, on any device.
 ///
 /// `start + rate·elapsed` may be fused, the wrapped time `t − ⌊t/d⌋·d` likewise: 3ε of 64 s, in stretches of 1/64 s
 /// with ε = 2⁻²⁴ 7.4e-4; the fraction's division adds 2.5ε.
-pub const PLACE_BOUND: f32 = 1e-3;
+pub const KEYFRAME_CURSOR_BOUND: f32 = 1e-3;

@@ -1,5 +1,5 @@
 // How an instance is skinned.
-struct Reduction {
+struct InstanceLod {
     // 0 is full quality, 1 rigid.
     fade: f32,
     // The most influences; 0 where it is not seen, and not skinned.

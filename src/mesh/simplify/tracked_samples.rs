@@ -8,9 +8,9 @@ use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
 /// Places of the mesh, each with a triangle that it is within a distance of in every pose.
-pub struct Attached {
+pub struct TrackedSamples {
     /// Of each triangle: points that are gone, and behind all points numbers of middles.
-    gone: Vec<Vec<u32>>,
+    collapsed: Vec<Vec<u32>>,
     middles: Middles,
     /// The most that a place may be off, squared.
     most: f32,
@@ -34,26 +34,26 @@ struct Middles {
     triangles: Vec<[u32; 3]>,
 }
 
-impl Attached {
+impl TrackedSamples {
     pub fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
-        let mut gone = vec![Vec::new(); triangles];
+        let mut collapsed = vec![Vec::new(); triangles];
         let mut middles = Middles { places: Vec::new(), triangles: Vec::new() };
         for point in 0..points.len() as u32 {
-            for spoke in topology.spokes(point) {
-                let corners = [point, spoke.next.point, spoke.last.point];
+            for ring in topology.one_ring(point) {
+                let corners = [point, ring.next.point, ring.last.point];
                 // The other triangle of an edge has it the other way round, unless it is a border's.
-                let is_border = || !topology.spokes(point).any(|other| other.last.point == corners[1]);
+                let is_border = || !topology.one_ring(point).any(|other| other.last.point == corners[1]);
                 let is_first = corners.iter().all(|other| point <= *other);
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
                 for ends in edge.into_iter().chain(is_first.then_some(&corners[..])) {
-                    gone[spoke.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
+                    collapsed[ring.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
                     middles.places.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
                     middles.triangles.push(corners);
                 }
             }
         }
         let (found, triangles, below) = (Vec::new(), Vec::new(), Vec::new());
-        Self { gone, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
+        Self { collapsed, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
     }
 
     /// Chooses the most that a place may be off from now on.
@@ -70,21 +70,22 @@ impl Attached {
         self.below.clear();
         for (around, other) in [(point, neighbor), (neighbor, point)] {
             self.changed = self.triangles.len();
-            for spoke in topology.spokes(around) {
-                let ends = [spoke.next.point, spoke.last.point];
+            for ring in topology.one_ring(around) {
+                let ends = [ring.next.point, ring.last.point];
                 if !ends.contains(&other) {
-                    self.triangles.push((spoke.triangle, [neighbor, ends[0], ends[1]]));
+                    self.triangles.push((ring.triangle, [neighbor, ends[0], ends[1]]));
                 }
-                let middles = self.gone[spoke.triangle as usize]
+                let middles = self.collapsed[ring.triangle as usize]
                     .iter()
-                    .filter_map(|gone| (*gone as usize).checked_sub(points.len()));
+                    .filter_map(|collapsed| (*collapsed as usize).checked_sub(points.len()));
                 self.below.extend(middles.map(|middle| self.middles.triangles[middle]));
             }
         }
-        let gone = topology.around(point).iter().flat_map(|triangle| &self.gone[*triangle as usize]);
-        for gone in std::iter::once(&point).chain(gone) {
-            let Some(triangle) = self.nearest(points, *gone) else { return false };
-            self.found.push((*gone, triangle));
+        let collapsed =
+            topology.around(point).iter().flat_map(|triangle| &self.collapsed[*triangle as usize]);
+        for collapsed in std::iter::once(&point).chain(collapsed) {
+            let Some(triangle) = self.nearest(points, *collapsed) else { return false };
+            self.found.push((*collapsed, triangle));
         }
         let is_near = self.triangles[..self.changed].iter().all(|(_, [to, next, last])| {
             let sides: [&[u32]; 3] = [&[*to, *next], &[*last, *to], &[*to, *next, *last]];
@@ -105,15 +106,15 @@ impl Attached {
     }
 
     /// The triangle whose largest distance in any pose is least, if it is not too large.
-    fn nearest(&self, points: &Points, gone: u32) -> Option<u32> {
+    fn nearest(&self, points: &Points, collapsed: u32) -> Option<u32> {
         let place = |point: u32, pose: usize| -> Vec3 { points.place(point, pose).as_vec3() };
         let mut best = None;
         let mut least = self.most.next_up();
         for (triangle, corners) in &self.triangles {
             let mut most = 0.0_f32;
             for pose in 0..points.poses() {
-                let wanted = match (gone as usize).checked_sub(points.len()) {
-                    None => place(gone, pose),
+                let wanted = match (collapsed as usize).checked_sub(points.len()) {
+                    None => place(collapsed, pose),
                     Some(at) => self.middles.places[at * points.poses() + pose],
                 };
                 let found = nearest_on_triangle(wanted, corners.map(|corner| place(corner, pose)));
@@ -136,10 +137,10 @@ impl Attached {
             self.keeps_near(topology, points, point, neighbor);
         }
         for triangle in topology.around(point) {
-            self.gone[*triangle as usize].clear();
+            self.collapsed[*triangle as usize].clear();
         }
-        for (gone, triangle) in self.found.drain(..) {
-            self.gone[triangle as usize].push(gone);
+        for (collapsed, triangle) in self.found.drain(..) {
+            self.collapsed[triangle as usize].push(collapsed);
         }
     }
 }

@@ -1,0 +1,4 @@
+import package::wgsl::animation::gate_state::ClipClock;
+
+// One an instance.
+@group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
