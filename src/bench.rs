@@ -1,5 +1,5 @@
-//! Benchmarks: every kernel beside its reference and a copy of the same bytes, in one run on the adapter at hand
-//! (`relievo bench`). Figures are ratios: absolute times mean little across machines.
+//! Benchmarks: every kernel against its CPU reference and a copy of the same bytes, in one run on the current
+//! adapter (`relievo bench`). Results are ratios, since absolute times mean little across machines.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::{Error, InputError};
 use crate::harness::{Bench, Row, selected};
 use crate::{animation, baseline, skinning, surface, terrain};
 
-/// A kernel's benchmark cases.
+/// The benchmark cases of a kernel.
 #[derive(Clone, Copy)]
 pub struct Stem {
     /// The kernel's path below `kernels/`, without extension.
@@ -18,7 +18,7 @@ pub struct Stem {
     pub run: fn(&mut Bench<'_>) -> Result<(), Error>,
 }
 
-/// Every kernel with its benchmark cases.
+/// The benchmark cases of every kernel.
 pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::bench::cases },
     Stem { name: "baseline/gather", run: baseline::gather::bench::cases },
@@ -52,26 +52,26 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/morph", run: skinning::morph::bench::cases },
     Stem { name: "skinning/select", run: skinning::select::bench::cases },
     Stem { name: "skinning/skin", run: skinning::skin::bench::cases },
-    // Draws pictures: last, for the sake of lavapipe's clock (see its cases).
+    // It draws pictures, so it comes last: afterwards lavapipe's timestamps are too short (see its cases).
     Stem { name: "surface/relief", run: surface::relief::bench::cases },
 ];
 
-/// A run's figures.
+/// The results of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
     /// The adapter.
     pub device: String,
     /// Its driver.
     pub driver: String,
-    /// The commit that was built, where known.
+    /// The commit of the build, if known.
     pub commit: String,
-    /// Threads of `reference-parallel`.
+    /// Number of threads of `reference-parallel`.
     pub threads: usize,
-    /// The figures.
+    /// The results.
     pub rows: Vec<Row>,
 }
 
-/// What a kernel's benchmark would measure: its rows, set up but not measured.
+/// Sets up a kernel's benchmark without measuring, and returns its rows.
 ///
 /// # Errors
 /// What the device reports.
@@ -82,10 +82,10 @@ pub fn unmeasured(gpu: &Gpu, stem: &Stem) -> Result<Vec<Row>, Error> {
     Ok(bench.into_rows())
 }
 
-/// Runs the benchmarks of every selected kernel; `progress` hears of each row.
+/// Runs the benchmarks of every selected kernel, and calls `progress` with each row.
 ///
 /// # Errors
-/// [`InputError`] when nothing is selected; what the device reports.
+/// [`InputError`] when nothing is selected; errors of the device.
 pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&Row)) -> Result<Summary, Error> {
     let chosen: Vec<_> = STEMS.iter().filter(|stem| selected(stem.name, only)).collect();
     if chosen.is_empty() {

@@ -1,9 +1,9 @@
-//! Counter-based random words: reference of `wgsl/hash.wgsl`.
+//! Counter-based random words: the CPU reference of `wgsl/hash.wgsl`.
 
-/// Draws a lane: the compiler turns these into vectors.
+/// Number of lanes that are drawn together, so that the compiler can vectorize the loops.
 pub const LANES: usize = 8;
 
-/// Threefry-2x32 with 20 rounds (Salmon, Moraes, Dror and Shaw, SC 2011) for eight counters at once.
+/// Threefry-2x32 with 20 rounds (Salmon et al. 2011, `docs/sources.md`), for eight counters at once.
 #[inline(always)]
 pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; LANES], [u32; LANES]) {
     const EVEN: [u32; 4] = [13, 15, 26, 6];
@@ -31,7 +31,7 @@ pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; L
 mod tests {
     use super::*;
 
-    /// Known answers of the Random123 distribution, as quoted in the specification.
+    /// Known answers of the Random123 distribution.
     #[test]
     fn known_answers() {
         let cases = [

@@ -1,4 +1,5 @@
-//! Structs and constants that kernels and host share. Written by `build.rs` from the composed WGSL, a module a file.
+//! Structs and constants that kernels and host share. `build.rs` writes them from the composed WGSL, one module
+//! per file.
 #![allow(dead_code, reason = "generated for every kernel alike")]
 
 include!(concat!(env!("OUT_DIR"), "/shared.rs"));

@@ -21,7 +21,7 @@ mod tests {
     #[test]
     fn bytes_come_back() {
         assert!((0..=255).all(|value| byte(linear(value)) == value));
-        // Half the light is 188, not 128: IEC 61966-2-1's curve.
+        // Half the light is 188, not 128, by the transfer curve of IEC 61966-2-1.
         assert_eq!([0.0, 0.5, 1.0, -1.0, 2.0].map(byte), [0, 188, 255, 0, 255]);
         assert!((linear(128) - 0.215_86).abs() < 1e-5);
     }

@@ -1,5 +1,5 @@
-//! Parity: every kernel against its reference, on the adapter at hand. Part of the product, so that a user with a
-//! strange driver finds out (`relievo verify`).
+//! Parity: every kernel against its CPU reference, on the current adapter (`relievo verify`). This is part of
+//! the product, so that users can find out whether their driver computes correctly.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::harness::compare::Comparison;
 use crate::harness::{CaseResult, Cases, Skipped, selected};
 use crate::{animation, baseline, skinning, surface, terrain};
 
-/// A kernel's parity cases.
+/// The parity cases of a kernel.
 #[derive(Clone, Copy)]
 pub struct Stem {
     /// The kernel's path below `kernels/`, without extension.
@@ -18,7 +18,7 @@ pub struct Stem {
     pub run: fn(&mut Cases<'_>) -> Result<(), Error>,
 }
 
-/// Every kernel with its parity cases.
+/// The parity cases of every kernel.
 pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::verify::cases },
     Stem { name: "baseline/gather", run: baseline::gather::verify::cases },
@@ -55,7 +55,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/skin", run: skinning::skin::verify::cases },
 ];
 
-/// Every case's result on one adapter.
+/// The results of all cases on one adapter.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// The adapter.
@@ -64,16 +64,16 @@ pub struct Report {
     pub version: &'static str,
     /// Whether every case holds.
     pub holds: bool,
-    /// The cases.
+    /// The results, case by case.
     pub cases: Vec<CaseResult>,
-    /// Cases that this device cannot run.
+    /// The cases that this device cannot run.
     pub skipped: Vec<Skipped>,
 }
 
-/// Runs the cases of every selected kernel; `progress` hears of each.
+/// Runs the cases of every selected kernel, and calls `progress` with each result.
 ///
 /// # Errors
-/// [`crate::InputError`] when nothing is selected; what the device reports.
+/// [`crate::InputError`] when nothing is selected; errors of the device.
 pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&CaseResult)) -> Result<Report, Error> {
     let chosen: Vec<_> = STEMS.iter().filter(|stem| selected(stem.name, only)).collect();
     if chosen.is_empty() {
@@ -88,7 +88,7 @@ pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&CaseResult))
     run_stems(gpu, chosen, progress)
 }
 
-/// Runs the cases of these kernels. One without any does not hold: nothing was proven.
+/// Runs the cases of the given kernels. A kernel without results does not hold, since nothing was proven.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,13 +1,14 @@
-// Counter-based random words: Threefry-2x32 with 20 rounds (Salmon, Moraes, Dror and Shaw, "Parallel
-// random numbers: as easy as 1, 2, 3", SC 2011). Any point can be drawn on its own, in any order.
+// Counter-based random words: Threefry-2x32 with 20 rounds (Salmon et al. 2011, docs/sources.md). The word of
+// any counter can be drawn on its own, in any order.
 
-// Four draws at once, for counters (x[i], y[i]). The lanes are independent, and all 64 bits of a lane uniform.
+// The results of four draws, for counters (x[i], y[i]). The lanes are independent, and all 64 bits of a lane
+// are uniform.
 struct Words {
     first: vec4<u32>,
     second: vec4<u32>,
 }
 
-// Each lane rotated by 1 to 31 bits.
+// Rotates each lane by 1 to 31 bits.
 fn rotate_left(value: vec4<u32>, bits: u32) -> vec4<u32> {
     return (value << vec4<u32>(bits)) | (value >> vec4<u32>(32u - bits));
 }
@@ -28,12 +29,12 @@ fn odd_rounds(words: Words) -> Words {
     return mix_round(mix_round(mix_round(mix_round(words, 17u), 29u), 16u), 24u);
 }
 
-// Two words of the key, added between rounds.
+// Adds two words of the key, between rounds.
 fn inject_key(words: Words, first: u32, second: u32) -> Words {
     return Words(words.first + vec4<u32>(first), words.second + vec4<u32>(second));
 }
 
-// The words of a key, at counters (x[i], y[i]): any values.
+// The random words of a key at the counters (x[i], y[i]), which may have any values.
 fn threefry2x32(key: vec2<u32>, x: vec4<u32>, y: vec4<u32>) -> Words {
     let parity = 0x1bd11bdau ^ key.x ^ key.y;
     var words = inject_key(Words(x, y), key.x, key.y);

@@ -1,4 +1,4 @@
-// Copies 16 bytes a thread: what moving the same bytes costs, to measure other kernels against.
+// Copies 16 bytes per thread: the cost of moving the same bytes, against which other kernels are measured.
 
 struct CopyParams {
     vectors: u32,

@@ -1,26 +1,27 @@
-// Moves what sampling moves and computes nothing: a thread reads the two keys around a place of three tracks of a bone,
-// shared by instances as a clip's are, and writes a local transform's words, each the exclusive or of its two.
+// Moves the bytes that sampling moves, without its arithmetic. For each bone a thread reads the two keys around
+// the current place on three tracks, which instances share as they share a clip's, and writes the words of a
+// local transform: each is the exclusive or of its two keys.
 import package::wgsl::animation::instance::AnimationInstance;
 
-// Whether tracks are looked up as sampling looks them up, or lie evenly: the keys alone.
+// Whether tracks are looked up as sampling does, or are evenly spaced, so that only the keys are read.
 override TABLES: bool = true;
 
 struct GatherParams {
-    // Bones of all instances.
+    // Number of bones of all instances together.
     pairs: u32,
     bones: u32,
-    // Of each track.
+    // Keys per track.
     keys: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: GatherParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three a bone and clip: timeline, first value.
+// Three entries per bone and clip: the timeline and the index of the first value.
 @group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
-// One an instance: key and, as bits, fraction.
+// One entry per instance: the key and, as bits, the fraction.
 @group(0) @binding(3) var<storage, read> cursors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> values: array<vec4<u32>>;
-// Three a pair.
+// Three entries per pair of instance and bone.
 @group(0) @binding(5) var<storage, read_write> gathered: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
@@ -37,7 +38,7 @@ fn main(
     let bone = pair - instance * params.bones;
     let cursor = cursors[instance];
     var first = vec3<u32>(0u, 1u, 2u) + 3u * bone;
-    // All words that are read count.
+    // The loaded words are combined so that no load is optimized away.
     var unused = 0u;
     if TABLES {
         let track = 3u * (instances[instance].clip * params.bones + bone);

@@ -1,6 +1,6 @@
-// Loads texels and adds them up: the cost of texel loads by themselves. Each thread walks a line over the texture.
+// Loads texels and adds them up: the cost of texel loads alone. Each thread walks along a row of the texture.
 struct LoadsParams {
-    // Threads along x and y, and texels that each loads.
+    // Threads along x and y, and texels that each thread loads.
     threads: vec2<u32>,
     loads: u32,
 }

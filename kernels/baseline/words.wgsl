@@ -3,7 +3,7 @@ import package::wgsl::hash::threefry2x32;
 
 struct WordsParams {
     key: vec2<u32>,
-    // Vectors of four words, and how many make a row of one y.
+    // Number of vectors of four words, and of vectors per row (one y).
     vectors: u32,
     vectors_per_row: u32,
 }

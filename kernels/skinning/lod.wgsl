@@ -1,33 +1,33 @@
-// Which instances are seen, how far their influences fade, and with which level of detail. A thread decides for one
-// instance.
+// Culling and level of detail of instances: which are seen, how far their influences fade, and which level of
+// detail each has. A thread decides for one instance.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
 struct LodParams {
-    // Of the view's volume: unit normals inwards, and distances.
+    // Planes of the view volume: unit normals that point inwards, and distances.
     planes: array<vec4<f32>, 6>,
-    // The eye, and from where on fading begins.
+    // The position of the eye; w: the distance at which fading begins.
     eye: vec4<f32>,
-    // A unit vector and 1, or 0 where the view is parallel.
+    // The unit vector ahead, with w = 1; w = 0 for a parallel view.
     ahead: vec4<f32>,
-    // A ball around the model in all of its clips: middle and radius.
+    // A bounding sphere of the model in all of its clips: centre and radius.
     bounding_sphere: vec4<f32>,
-    // From where on vertices are rigid.
+    // The distance from which on vertices are rigid.
     far: f32,
-    // Steps of the fade.
+    // Number of steps of the fade.
     steps: f32,
     instances: u32,
-    // The most influences.
+    // The largest number of influences.
     most: u32,
-    // From where on levels 1, 2 … are used, not descending; how many.
+    // The distances from which on levels 1, 2 … are used, not descending, and the number of these levels.
     distances: array<vec4<f32>, 4>,
     coarser: u32,
-    // From one level's list of instances to the next one's.
+    // Words from one level's list of instances to the next.
     stride: u32,
-    // −1 where the view mirrors, else 1.
+    // −1 if the view mirrors, else 1.
     side: f32,
 }
 
-// Of an indirect draw.
+// The arguments of an indexed indirect draw.
 struct Draw {
     indices: u32,
     instances: atomic<u32>,
@@ -36,43 +36,44 @@ struct Draw {
     first_instance: u32,
 }
 
-// Of a level: the draw of its list, and that of the mirrored ones in it, which goes through the list up to the last of
-// these.
+// The draws of one level: that of its whole list, and that of the mirrored instances, which runs through the
+// list up to the last of these.
 struct Arguments {
     listed: Draw,
     mirrored: Draw,
 }
 
 @group(0) @binding(0) var<uniform> params: LodParams;
-// Three rows an instance: from the model's space into the world.
+// Three rows per instance: the transform from the model's space into the world.
 @group(0) @binding(1) var<storage, read> placements: array<vec4<f32>>;
-// With no influences of those that are not seen.
+// The decisions; instances that are not seen have 0 influences.
 @group(0) @binding(2) var<storage, read_write> instance_lods: array<InstanceLod>;
-// The instances that are seen, level by level.
+// Indices of the instances that are seen, level by level.
 @group(0) @binding(3) var<storage, read_write> drawn: array<u32>;
-// One a level.
+// One entry per level.
 @group(0) @binding(4) var<storage, read_write> arguments: array<Arguments>;
 
-// At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
-// or of their squares' sum.
+// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of
+// the products of columns (Gershgorin), or of the sum of their squares, whichever is less.
 fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
     let squares = x * x + y * y + z * z;
-    // First with second, second with third, third with first.
+    // Products of the first and second column, the second and third, and the third and first.
     let mixed = abs(x * x.yzx + y * y.yzx + z * z.yzx);
     let sums = squares + mixed + mixed.zxy;
     return sqrt(min(max(max(sums.x, sums.y), sums.z), squares.x + squares.y + squares.z));
 }
 
-// The least normal f32, 2^-126, exactly: what is less may be flushed to zero.
+// The smallest normal f32, 2^-126, exactly; devices may flush smaller values to zero.
 const LEAST_NORMAL = 1.1754943508222875e-38;
 
-// Whether an instance of these rows may be a mirror image, a view of side 1 or −1 considered: what is nearly flat may be
-// either, and whoever draws it decides.
+// Whether an instance with these rows may appear mirrored in a view of side 1 or −1. A nearly singular
+// matrix may count as either, and the draw call decides.
 fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
     return side * dot(x, cross(y, z)) < 1e-5 * (length(x) * length(y) * length(z));
 }
 
-// How far away a place counts, which lies so from the eye: as far as it is, straight ahead; less to the side.
+// The distance at which a point counts, given its offset from the eye: its distance if it is straight ahead,
+// less to the side.
 fn projected_distance_of(towards: vec3<f32>) -> f32 {
     let distance = length(towards);
     let depth = max(dot(params.ahead.xyz, towards), 0.0);

@@ -1,5 +1,6 @@
-// Morph targets: vertices with the weighted deltas of their targets added, before skinning. A workgroup morphs a cluster
-// of 64 vertices of one instance that is seen, at its level of detail: every one, or with COMPACTED those of a list.
+// Morph targets: adds the weighted deltas of the targets to vertices, before skinning. A workgroup morphs a
+// cluster of 64 vertices of one instance that is seen, at its level of detail: every such cluster, or with
+// COMPACTED those of a list.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
 override COMPACTED: bool = false;
@@ -8,26 +9,26 @@ struct MorphParams {
     vertices: u32,
     targets: u32,
     instances: u32,
-    // Clusters times instances.
+    // Number of clusters times number of instances.
     pairs: u32,
-    // Clusters of each level of detail.
+    // Number of clusters at each level of detail.
     levels: array<vec4<u32>, 4>,
 }
 
 @group(0) @binding(0) var<uniform> params: MorphParams;
-// Five a vertex.
+// Five pairs per vertex.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Where each vertex's deltas begin; one more than there are vertices.
+// Where the deltas of each vertex begin; one more entry than there are vertices.
 @group(0) @binding(2) var<storage, read> offsets: array<u32>;
-// Three a delta: position and, as bits, the target; normal; tangent.
+// Three vectors per delta: position and, as bits, the target; normal; tangent.
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
-// Of each instance's targets.
+// The weights of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
-// One an instance.
+// One per instance.
 @group(0) @binding(5) var<storage, read> instance_lods: array<InstanceLod>;
-// cluster * instances + instance, of those to be skinned.
+// cluster * instances + instance, for each pair to be skinned.
 @group(0) @binding(6) var<storage, read> pairs: array<u32>;
-// Workgroups of the dispatch, and how many pairs.
+// Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(7) var<storage, read> dispatched: vec4<u32>;
 @group(0) @binding(8) var<storage, read_write> morphed: array<vec2<f32>>;
 

@@ -1,5 +1,6 @@
-// Weights of morph targets where instances stand in their clips (glTF 2.0, section 3.11): before skinning/select. A thread
-// finds one target's weight of one instance; instances that are not seen keep theirs.
+// Weights of morph targets at each instance's time in its clip (glTF 2.0, section 3.11). The kernel runs before
+// skinning/select. A thread computes one target's weight of one instance; instances that are not seen keep
+// their weights.
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::{keyframe_cursor, times};
@@ -7,30 +8,29 @@ import package::wgsl::skinning::instance_lod::InstanceLod;
 
 struct MorphWeightsParams {
     targets: u32,
-    // Targets of all instances.
+    // Number of targets of all instances together.
     pairs: u32,
-    // Seconds since the instances' starts.
+    // Seconds since the starts of the instances.
     elapsed: f32,
 }
 
-// A clip's keys.
+// The keys of a clip.
 struct WeightEntry {
     duration: f32,
     first_time: u32,
     keys: u32,
     first_value: u32,
-    // 0 step, 1 linear, 2 cubic spline: in-tangents, values and out-tangents.
+    // 0 for step, 1 for linear, 2 for cubic spline, which has in-tangents, values and out-tangents.
     interpolation: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: MorphWeightsParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// One a clip.
+// One per clip.
 @group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
-// One an instance.
+// One per instance.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
-// Binding 4: the times.
-// A value a target, key by key.
+// Binding 4 holds the key times. Values lie key by key, one per target.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
 @group(0) @binding(6) var<storage, read_write> weights: array<f32>;
 
@@ -38,7 +38,7 @@ const LINEAR = 1u;
 const SPLINE = 2u;
 
 fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
-    // In-tangents, values and out-tangents of a key, then those of the next.
+    // The in-tangents, values and out-tangents of a key, followed by those of the next.
     let at = first + 3u * key * params.targets;
     let start = values[at + params.targets];
     let leaving = values[at + 2u * params.targets];
@@ -71,7 +71,7 @@ fn main(
     let found = keyframe_cursor(entry.first_time, entry.keys, time);
     let t = bitcast<f32>(found.y);
     let first = entry.first_value + pair - index * params.targets;
-    // A fraction is 0 at the last key.
+    // At the last key the fraction is 0.
     let is_between = t > 0.0;
     var weight = 0.0;
     if entry.interpolation == SPLINE {

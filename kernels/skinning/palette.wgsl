@@ -1,28 +1,28 @@
-// Palettes: what takes vertices from where they were bound to the model's space, for each instance and bone of a skin.
-// With DUAL taken apart into a stretch and a rigid motion after it. A thread makes one bone's; none of instances that
-// are not seen.
+// Palettes: for each instance and bone of a skin, the matrix that takes vertices from the space of binding into
+// the model's space. With DUAL the matrix is decomposed into a stretch and a rigid motion after it. A thread
+// computes one bone; instances that are not seen are skipped.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
 override DUAL: bool = false;
 
 struct PaletteParams {
-    // Bones of the skin, and of the skeleton.
+    // Number of bones of the skin, and of the skeleton.
     bones: u32,
     all_bones: u32,
-    // Bones of the skin times instances.
+    // Number of bones of the skin times number of instances.
     pairs: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: PaletteParams;
-// The skin's bones.
+// Indices of the skin's bones.
 @group(0) @binding(1) var<storage, read> bones: array<u32>;
-// Three rows a bone of the skin.
+// Three rows per bone of the skin.
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
-// Three rows a bone of the skeleton and instance.
+// Three rows per bone of the skeleton and instance.
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
-// One an instance.
+// One per instance.
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// Three rows, or with DUAL rotation, dual part, diagonal and what is above it.
+// Three rows per bone; with DUAL the rotation, the dual part, the diagonal, and the elements above it.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
 fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
@@ -32,7 +32,7 @@ fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4
 
 fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
-    // What is smaller than this, devices may flush to zero.
+    // Devices may flush values smaller than this to zero.
     if size < 1e-30 {
         return other;
     }
@@ -40,14 +40,14 @@ fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     return scaled * inverseSqrt(dot(scaled, scaled));
 }
 
-// Duff et al. 2017.
+// A unit vector at a right angle to a unit vector (Duff et al. 2017).
 fn upright(v: vec3<f32>) -> vec3<f32> {
     let side = select(1.0, -1.0, v.z < 0.0);
     let a = -1.0 / (side + v.z);
     return vec3<f32>(1.0 + side * v.x * v.x * a, side * v.x * v.y * a, -side * v.x);
 }
 
-// Of whichever sign, from a rotation's columns.
+// The quaternion, of either sign, of a rotation given by its columns.
 fn quaternion(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec4<f32> {
     let squares = vec4<f32>(
         1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z, 1.0 + x.x + y.y + z.z);
@@ -73,7 +73,7 @@ fn write_dual(at: u32, rows: array<vec4<f32>, 3>) {
     let b = vec3<f32>(rows[0].y, rows[1].y, rows[2].y);
     let c = vec3<f32>(rows[0].z, rows[1].z, rows[2].z);
     let t = vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
-    // What has no direction gets one that leaves the others alone.
+    // A column without direction is replaced by one that leaves the others unchanged.
     let x = unit_or(a, vec3<f32>(1.0, 0.0, 0.0));
     let along = dot(x, b);
     let y = unit_or(b - along * x, upright(x));

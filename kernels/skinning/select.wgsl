@@ -1,13 +1,14 @@
-// Which clusters of which instances are skinned, of those that are seen, at their level of detail: those with a bone
-// that moved, those of instances whose influences count otherwise, those beyond the level of the frame before, and with
-// morph targets those of instances whose weights changed. A thread decides for one cluster. With FINISH, a thread takes
-// note of one instance's reduction and weights, and the first one writes the arguments of the dispatch.
+// Selects the clusters that are skinned, among those of instances that are seen, at their level of detail:
+// clusters with an updated bone, clusters of instances whose influences changed, clusters beyond the level of
+// the frame before, and, with morph targets, clusters of instances whose weights changed. A thread decides for
+// one cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame, and
+// the first thread writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
 override FINISH: bool = false;
 
-// Words of an instance in `skinned`, before its weights.
+// Words per instance in `skinned`, before its weights.
 const SKINNED_WORDS = 4u;
 
 struct SelectParams {
@@ -15,16 +16,16 @@ struct SelectParams {
     clusters: u32,
     // Words of a set of bones.
     words: u32,
-    // The most workgroups along x.
+    // The largest number of workgroups along x.
     most: u32,
     vertices: u32,
-    // Morph targets.
+    // Number of morph targets.
     targets: u32,
-    // Clusters of each level of detail.
+    // Number of clusters at each level of detail.
     levels: array<vec4<u32>, 4>,
 }
 
-// Workgroups of the dispatch, how many pairs, and how many were counted so far.
+// Workgroups of the dispatch, the number of pairs, and the counter of pairs found so far.
 struct Dispatched {
     x: u32,
     y: u32,
@@ -34,20 +35,20 @@ struct Dispatched {
 }
 
 @group(0) @binding(0) var<uniform> params: SelectParams;
-// The bones of each cluster, a bit a bone.
+// The bones of each cluster, one bit per bone.
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
-// The bones of each instance that moved, likewise.
+// The updated bones of each instance, one bit per bone.
 @group(0) @binding(2) var<storage, read> updated_bones: array<u32>;
-// One an instance.
+// One per instance.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
-// Of each instance's targets.
+// The weights of each instance's targets, as bits.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
-// Where each vertex's deltas begin; one more than there are vertices.
+// Where the deltas of each vertex begin; one more entry than there are vertices.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
-// Of each instance in the frame before: its reduction, for how many frames it has been seen (2 for more), and the
-// weights.
+// The state of each instance after the frame before: its InstanceLod, the number of frames for which it has
+// been seen (2 for more), and its weights.
 @group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
-// cluster * instances + instance, of those to be skinned.
+// cluster * instances + instance, for each pair to be skinned.
 @group(0) @binding(7) var<storage, read_write> pairs: array<u32>;
 @group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 
@@ -78,7 +79,7 @@ fn finish(index: u32) {
     }
 }
 
-// Whether targets move a vertex of the cluster, and one of the instance's weights changed.
+// Whether morph targets move a vertex of the cluster and one of the instance's weights has changed.
 fn is_morphed_anew(cluster: u32, instance: u32, last: u32) -> bool {
     let first = 64u * cluster;
     if offsets[first] == offsets[min(first + 64u, params.vertices)] {

@@ -1,47 +1,48 @@
-// Skinning (A section 8.4): vertices where their bones take them, with as many influences as each instance's reduction
-// leaves; none of those that are not seen, nor beyond their level of detail. A workgroup skins a cluster of 64 vertices
-// of one instance: every one, or with COMPACTED those of a list. Instances run faster than clusters, so that a cluster's
-// vertices stay in the cache.
+// Skinning (A section 8.4): transforms vertices by their bones, with as many influences as each instance's
+// InstanceLod leaves. Instances that are not seen, and vertices beyond an instance's level of detail, are
+// skipped. A workgroup skins a cluster of 64 vertices of one instance: every such cluster, or with COMPACTED
+// those of a list. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 import package::wgsl::skinning::rows::{Rows, rows_of_dual};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
 override COMPACTED: bool = false;
-// Dual quaternions in place of matrices.
+// Whether the palette holds dual quaternions and not matrices.
 override DUAL: bool = false;
-// Vertices of each instance in place of the mesh's.
+// Whether each instance has vertices of its own (morphed) and does not use the mesh's.
 override MORPHED: bool = false;
 
 struct SkinParams {
     vertices: u32,
-    // Of the mesh, times instances.
+    // Number of clusters of the mesh times number of instances.
     pairs: u32,
-    // Of the skin.
+    // Number of bones of the skin.
     bones: u32,
-    // In the output; in the others they count from `first_instance`.
+    // Number of instances in the output; in the other buffers they start at `first_instance`.
     instances: u32,
     first_instance: u32,
-    // Clusters of each level of detail.
+    // Number of clusters at each level of detail.
     levels: array<vec4<u32>, 4>,
 }
 
 @group(0) @binding(0) var<uniform> params: SkinParams;
-// Five a vertex: position, normal, tangent and handedness.
+// Five pairs per vertex: position, normal, tangent and handedness.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Two a cluster: where its influences begin, and how many a vertex. There, in columns of 64: two bones a word; the
-// weights of all but the strongest, falling.
+// Two words per cluster: where its influences begin, and the largest number per vertex. The influences lie
+// there in columns of 64 words: first the bones, two per word, then the weights of all but the strongest, in
+// falling order.
 @group(0) @binding(2) var<storage, read> influences: array<u32>;
-// Three rows a bone and instance, or with DUAL four.
+// Three rows per bone and instance, or with DUAL four vectors.
 @group(0) @binding(3) var<storage, read> palette: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// cluster * instances + instance, of those to be skinned.
+// cluster * instances + instance, for each pair to be skinned.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
-// Workgroups of the dispatch, and how many pairs.
+// Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
-// As `vertices`, instance by instance.
+// Skinned vertices in the layout of `vertices`, instance by instance.
 @group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
 
-// A sum of bones: rows of matrices, or rotation, dual part, diagonal and what is above it.
+// A weighted sum of bones: rows of matrices, or rotation, dual part, diagonal and the elements above it.
 struct Sum {
     a: vec4<f32>,
     b: vec4<f32>,
@@ -49,7 +50,8 @@ struct Sum {
     d: vec4<f32>,
 }
 
-// A bone more; `side` is its weight, negative where its quaternion is on the other side of the strongest one's.
+// Adds a bone. `side` is its weight, negated if its quaternion lies in the other hemisphere than the strongest
+// bone's.
 fn added(sum: Sum, at: u32, weight: f32, side: f32) -> Sum {
     if DUAL {
         return Sum(
@@ -67,7 +69,7 @@ fn matrix_of(sum: Sum) -> Rows {
     return Rows(sum.a, sum.b, sum.c);
 }
 
-// The matrix of a vertex: its column of the cluster's influences begins at `column`.
+// The blended matrix of a vertex, whose column in the cluster's influences begins at `column`.
 fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) -> Rows {
     let stride = select(3u, 4u, DUAL);
     var bones = influences[column];
@@ -114,7 +116,7 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
 
 fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
-    // What is smaller than this, devices may flush to zero.
+    // Devices may flush values smaller than this to zero.
     let scaled = vector / max(size, 1e-30);
     return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < 1e-30);
 }

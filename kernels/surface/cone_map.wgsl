@@ -1,22 +1,24 @@
-// Cone maps of a batch of height maps, from their pyramids. A thread makes the cone of one bilinear cell: upright,
-// on the cell's highest corner, as wide as it can be so that a ray inside it crosses the surface at most once.
+// Cone maps of a batch of height maps, computed from their pyramids. A thread computes the cone of one bilinear
+// cell: upright, on the cell's highest corner, and as wide as it can be while a ray inside it crosses the
+// surface at most once.
 //
-// A ray that crosses twice leaves the surface somewhere, and leaves it where the surface falls ahead of it faster
-// than the ray. So the cone has to stay above every cell where a ray from this cell can leave the surface, and may
-// cut those that rise all along its way (`rises`). Bounds hold for every point of both cells: distances are least
-// ones, heights highest ones. Nodes are searched nearest first, and skipped when they cannot narrow the cone;
-// those that look small from here count whole, which makes the search O(log N) a cell.
+// A ray that crosses the surface twice leaves it somewhere in between, at a place where the surface ahead falls
+// faster than the ray. The cone must therefore stay above every cell where a ray from this cell can leave the
+// surface, and may cut through cells in which the surface rises along every such ray (`rises`). The bounds hold
+// for every point of both cells: they use smallest distances and largest heights. Nodes are searched nearest
+// first and skipped when they cannot narrow the cone. Nodes that look small from the cell are treated as a
+// whole, so that the search takes O(log N) per cell.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
 
-// Distance over size from which a node counts whole.
+// The ratio of distance to size from which a node is treated as a whole.
 override OPENING: f32 = 2.0;
 
 struct ConeParams {
-    // Texels and cells of a map.
+    // Texels and cells of a map along x and y.
     size: vec2<u32>,
     cells: vec2<u32>,
-    // Nodes a row, and rows, of one map's pyramid; cones a row of the output.
+    // Nodes per row and number of rows of one map's pyramid, and cones per row of the output.
     pitch: u32,
     rows: u32,
     cone_pitch: u32,
@@ -26,10 +28,10 @@ struct ConeParams {
 @group(0) @binding(0) var<uniform> params: ConeParams;
 @group(0) @binding(1) var<storage, read> heights: array<f32>;
 @group(0) @binding(2) var<storage, read> pyramids: array<f32>;
-// Highest corner, and the cone's radius in cells at height 1 above it.
+// Highest corner, and the radius of the cone in cells at height 1 above it.
 @group(0) @binding(3) var<storage, read_write> cones: array<vec2<f32>>;
 
-// More than any search takes.
+// A limit that no search reaches.
 const MAX_VISITS: u32 = 65536u;
 
 fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
@@ -48,16 +50,17 @@ fn texel(map: u32, at: vec2<i32>) -> f32 {
     return heights[(map * params.size.y + u32(inside.y)) * params.size.x + u32(inside.x)];
 }
 
-// The widest radius that stays above the corners of a leaf, `offset` cells away: over a cell the bilinear patch
-// less a plane is largest at a corner, and the distance is at least the one along the line to the cell's centre.
+// The largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. Over a
+// cell, the difference of the bilinear patch and a plane is largest at a corner, and the distance is at least
+// the one along the line to the cell's centre.
 fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     let away = vec2<f32>(abs(offset));
     let centre = max(away - 0.5, vec2<f32>(0.0));
     let direction = centre / max(length(centre), 0.5);
-    // From the nearest edge of the own cell to the near and the far edge of the leaf.
+    // Distances from the nearest edge of the own cell to the near and the far edge of the leaf.
     let near = max(away - 1.0, vec2<f32>(0.0)) * direction;
     let far = away * direction;
-    // Corners by sign: what lies on the near side depends on where the leaf is.
+    // The corners are selected by sign, since which side is near depends on where the leaf is.
     let x = select(vec2<f32>(near.x, far.x), vec2<f32>(far.x, near.x), offset.x < 0);
     let y = select(vec2<f32>(near.y, far.y), vec2<f32>(far.y, near.y), offset.y < 0);
     let distances = vec4<f32>(x.x + y.x, x.y + y.x, x.x + y.y, x.y + y.y);
@@ -67,11 +70,11 @@ fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     return min(min(allowed.x, allowed.y), min(allowed.z, allowed.w));
 }
 
-// Whether the surface rises all along a leaf on every way from the own cell: no ray leaves it there.
+// Whether the surface rises all along a leaf on every path from the own cell, so that no ray leaves it there.
 fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
     let along_x = vec2<f32>(corners.y - corners.x, corners.w - corners.z);
     let along_y = vec2<f32>(corners.z - corners.x, corners.w - corners.y);
-    // Ways lie within one cell of the offset; the least of a bilinear form is at a corner.
+    // Path directions lie within one cell of the offset; a bilinear form has its minimum at a corner.
     let low = vec2<f32>(offset - 1);
     let high = vec2<f32>(offset + 1);
     let x = min(min(along_x.x * low.x, along_x.x * high.x), min(along_x.y * low.x, along_x.y * high.x));
@@ -79,16 +82,16 @@ fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
     return x + y >= 0.0;
 }
 
-// Narrows `radius` by the nodes of one image of the tile; `cell` is counted from that image.
+// Narrows `radius` by the nodes of one periodic image of the tile; `cell` is counted from that image.
 fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     let cells = vec2<i32>(params.cells);
     let top = surface_levels(params.cells) - 1u;
-    // The rim of a clamped map reaches to infinity, and ways from there have any direction.
+    // The outermost cells of a clamped map extend to infinity, and paths from there have any direction.
     let is_rim = params.address != SURFACE_WRAP && (any(cell <= vec2<i32>(0)) || any(cell >= cells - 1));
     var narrowest = radius;
     var level = top;
     var node = vec2<i32>(0);
-    // Which child of its parent the node is, in the order of the search: two bits a level.
+    // For each level, which child of its parent the node is in the order of the search; two bits per level.
     var orders = 0u;
     for (var visit = 0u; visit < MAX_VISITS; visit++) {
         let low = node << vec2<u32>(level);
@@ -97,7 +100,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
             let high = min(low + (vec2<i32>(1) << vec2<u32>(level)), cells);
             let gap = vec2<f32>(max(max(low - cell - 1, cell - high), vec2<i32>(0)));
             let rise = highest(map, level, node) - own;
-            // Squares, since most nodes need no root.
+            // Squared distances, since most nodes need no square root.
             let distance = dot(gap, gap);
             let reach = narrowest * rise;
             if rise > 0.0 && distance < reach * reach {
@@ -122,7 +125,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
             node = nearest_child(node, cell, level);
             continue;
         }
-        // The next child of the parent, or, behind its last, of its parent's parent, and so on.
+        // The next child of the parent; after the last child, the next child of the parent's parent, and so on.
         let last_children = countTrailingZeros(~(orders >> (2u * level))) >> 1u;
         node = node >> vec2<u32>(last_children);
         level += last_children;
@@ -137,7 +140,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     return narrowest;
 }
 
-// The child, at `level`, of `parent` that is nearest to a cell.
+// The child of `parent`, at `level`, that is nearest to a cell.
 fn nearest_child(parent: vec2<i32>, cell: vec2<i32>, level: u32) -> vec2<i32> {
     let middle = (2 * parent + 1) << vec2<u32>(level);
     return 2 * parent + select(vec2<i32>(0), vec2<i32>(1), cell >= middle);
@@ -150,7 +153,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let cell = vec2<i32>(id.xy);
     let own = highest(id.z, 0u, cell);
-    // Wider would reach images of the tile that are not searched.
+    // A larger radius would reach images of the tile that are not searched.
     var radius = f32(min(params.cells.x, params.cells.y));
     let images = select(1u, 9u, params.address == SURFACE_WRAP);
     for (var image = 0u; image < images; image++) {
@@ -159,7 +162,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let offset = vec2<i32>(number.x % 3 - 1, number.y / 3 - 1) * vec2<i32>(params.cells);
         radius = narrowed(id.z, cell - offset, own, radius);
     }
-    // Less than what rounding adds to the quotients above.
+    // Subtracts more than the rounding of the quotients above can add.
     let cone = vec2<f32>(own, radius * (1.0 - 1e-6));
     cones[(id.z * params.cells.y + id.y) * params.cone_pitch + id.x] = cone;
 }

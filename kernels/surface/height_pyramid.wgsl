@@ -1,33 +1,36 @@
-// Max-mip pyramids of a batch of height maps (B section 2.3.4). A leaf is the highest corner of a bilinear cell, a
-// node the highest of its four children. FROM_HEIGHTS makes levels 0, 1 and 2; without it, levels `level` + 1 and
-// `level` + 2 are made from `level`. A thread makes one node of the highest of them, and its descendants.
+// Max-mip pyramids of a batch of height maps (B section 2.3.4). A leaf is the highest corner of a bilinear
+// cell, and a node the highest of its four children. With FROM_HEIGHTS the kernel computes levels 0, 1 and 2;
+// without it, levels `level` + 1 and `level` + 2 from `level`. A thread computes one node of the highest of
+// these levels, and its descendants.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::surface_atlas_at;
 
 override FROM_HEIGHTS: bool = true;
-// Rows of heights that start at multiples of four, with wrap addressing: whole vectors are loaded.
+// Whether rows of heights start at multiples of four, with wrap addressing, so that whole vectors can be
+// loaded.
 override IS_ALIGNED: bool = false;
 
 struct PyramidParams {
-    // Texels and cells of a map.
+    // Texels and cells of a map along x and y.
     size: vec2<u32>,
     cells: vec2<u32>,
-    // Nodes a row of the plane, and rows, of one map's pyramid.
+    // Nodes per row and number of rows of the plane of one map's pyramid.
     pitch: u32,
     rows: u32,
     address: u32,
-    // Levels of a pyramid, and the one that is read.
+    // Number of levels of a pyramid, and the level that is read.
     levels: u32,
     level: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: PyramidParams;
-// Four heights of a row where IS_ALIGNED; else just four in a row.
+// Four consecutive heights; they belong to one row where IS_ALIGNED is set.
 @group(0) @binding(1) var<storage, read> heights: array<vec4<f32>>;
-// Not in vectors: neighbouring threads store nodes side by side, and storing a component may store all of its vector.
+// Scalars and not vectors, because neighbouring threads store adjacent nodes, and storing one component may
+// store the whole vector.
 @group(0) @binding(2) var<storage, read_write> pyramids: array<f32>;
 
-// Lower than any height: what lies outside a level.
+// Stands for nodes outside a level; lower than any height.
 const NOTHING: f32 = -1.0;
 
 fn nodes(level: u32) -> vec2<u32> {
@@ -39,8 +42,8 @@ fn place(map: u32, level: u32, at: vec2<u32>) -> u32 {
     return (map * params.rows + texel.y) * params.pitch + texel.x;
 }
 
-// The row or column of texels before a cell, up to four beyond the last. Maps smaller than that read a texel of
-// their own for cells that do not count.
+// The row or column of texels before a cell, up to four beyond the last. In maps smaller than that, cells that
+// do not count read some texel of the map.
 fn texel(cell: u32, size: u32) -> u32 {
     if params.address == SURFACE_WRAP {
         let wrapped = select(cell, cell - size, cell >= size);
@@ -54,12 +57,12 @@ fn height(row: u32, cell: u32) -> f32 {
     return heights[index >> 2u][index & 3u];
 }
 
-// A row of texels before four cells and the one behind them.
+// A row of texels: those before four cells, and the one after them.
 fn texel_row(map: u32, y: u32) -> u32 {
     return (map * params.size.y + texel(y, params.size.y)) * params.size.x;
 }
 
-// The highest of neighbours in a row of texels: `last` is the fifth.
+// The maxima of neighbouring texels in a row; `last` is the fifth texel.
 fn highest_pairs(row: u32, x: u32, last: f32) -> vec4<f32> {
     var four: vec4<f32>;
     if IS_ALIGNED {
@@ -70,12 +73,12 @@ fn highest_pairs(row: u32, x: u32, last: f32) -> vec4<f32> {
     return max(four, vec4<f32>(four.yzw, last));
 }
 
-// Four rows of four leaves.
+// Four rows of four leaves each.
 fn leaves(map: u32, at: vec2<u32>) -> mat4x4<f32> {
     let rows = vec4<u32>(
         texel_row(map, at.y), texel_row(map, at.y + 1u), texel_row(map, at.y + 2u), texel_row(map, at.y + 3u));
     let below = texel_row(map, at.y + 4u);
-    // The first loads of every row come together, so that a processor waits for memory once.
+    // All rows issue their first loads together, so that a processor waits for memory once.
     let x = at.x + 4u;
     let lasts = vec4<f32>(height(rows.x, x), height(rows.y, x), height(rows.z, x), height(rows.w, x));
     let fifth = highest_pairs(below, at.x, height(below, x));
@@ -86,7 +89,7 @@ fn leaves(map: u32, at: vec2<u32>) -> mat4x4<f32> {
     return mat4x4<f32>(max(first, second), max(second, third), max(third, fourth), max(fourth, fifth));
 }
 
-// Four nodes as they count: those outside their level do not.
+// Four nodes, with those outside their level replaced by NOTHING.
 fn inside(four: vec4<f32>, at: vec2<u32>, count: vec2<u32>) -> vec4<f32> {
     let columns = vec4<u32>(at.x) + vec4<u32>(0u, 1u, 2u, 3u) < vec4<u32>(count.x);
     return select(vec4<f32>(NOTHING), four, columns & vec4<bool>(at.y < count.y));
@@ -96,7 +99,7 @@ fn load_row(index: u32) -> vec4<f32> {
     return vec4<f32>(pyramids[index], pyramids[index + 1u], pyramids[index + 2u], pyramids[index + 3u]);
 }
 
-// Rows are padded to a multiple of four.
+// Stores four nodes; rows are padded to a multiple of four.
 fn store_row(index: u32, four: vec4<f32>) {
     pyramids[index] = four.x;
     pyramids[index + 1u] = four.y;
@@ -109,7 +112,7 @@ fn parents(above: vec4<f32>, below: vec4<f32>) -> vec2<f32> {
     return vec2<f32>(max(pair.x, pair.y), max(pair.z, pair.w));
 }
 
-// Two nodes of a row of a higher level, the first of even index.
+// Stores two nodes in a row of a higher level; the index of the first is even.
 fn store_pair(map: u32, level: u32, at: vec2<u32>, pair: vec2<f32>) {
     let count = nodes(level);
     if level >= params.levels || at.y >= count.y {
@@ -122,8 +125,9 @@ fn store_pair(map: u32, level: u32, at: vec2<u32>, pair: vec2<f32>) {
     }
 }
 
-// A map's threads, row after row: a row has as many as the next power of two. Neighbours read neighbours, and
-// workgroups walk along rows, since processors fetch ahead what is read in order.
+// The threads of a map cover its rows one after another, with a power of two of threads per row. Neighbouring
+// threads read neighbouring texels, and workgroups run along rows, since processors prefetch what is read in
+// order.
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,

@@ -1,4 +1,4 @@
-// Runs one method on a list of rays: the functions that fragment passes import, as numbers.
+// Runs one method, by the functions that fragment passes import, on a list of rays, and stores the hits.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::trace::surface_trace;
 

@@ -1,4 +1,5 @@
-// Shades a list of points as fragment passes do: hard and soft self-shadow, and the depth of the relief, as numbers.
+// Shades a list of points as fragment passes do, and stores the results: hard and soft self-shadow, and the
+// depth of the relief.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::trace::surface_trace;
 import package::wgsl::surface::shade::{surface_depth, surface_distance, surface_towards};
@@ -8,9 +9,9 @@ override METHOD: u32 = 0u;
 
 struct ShadeView {
     clip_from_world: mat4x4<f32>,
-    // The eye (w = 1), or the direction towards it (w = 0).
+    // The position of the eye (w = 1), or the direction towards it (w = 0).
     eye: vec4<f32>,
-    // Soft shadow: steps, and the excess over distance at which shadow is full.
+    // For soft shadow: number of steps, and the ratio of excess height to distance at which shadow is full.
     shadow_steps: u32,
     softness: f32,
 }
@@ -18,19 +19,19 @@ struct ShadeView {
 struct ShadePoint {
     // Unit vector towards the light in tangent space; w: depth of the relief in uv units.
     light: vec4<f32>,
-    // Where the eye's ray meets the polygon, in world space; w: world units a uv unit.
+    // The point where the eye's ray meets the polygon, in world space; w: world units per uv unit.
     position: vec4<f32>,
-    // The eye's ray, and what it hit.
+    // The eye's ray, and its hit.
     ray: SurfaceRay,
     hit: SurfaceHit,
 }
 
 struct Shade {
-    // 1 where the light's own ray ends in the point, else 0.
+    // 1 if the light's ray ends in the point, else 0.
     hard: f32,
-    // 0 in full shadow to 1 in full light.
+    // Light, 0 in full shadow to 1 in full light.
     soft: f32,
-    // 0 (near) to 1 (far).
+    // Depth, 0 (near) to 1 (far).
     depth: f32,
 }
 

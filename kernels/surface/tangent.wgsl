@@ -1,5 +1,5 @@
 // Tangent frames at the vertices of a triangle mesh (B section 4.2). Each vertex gathers the tangents of its
-// triangles in ascending order: no atomics, and the same sum in every run.
+// triangles in ascending order, so that no atomics are needed and the sum is the same in every run.
 
 struct TangentParams {
     vertices: u32,
@@ -7,16 +7,16 @@ struct TangentParams {
 
 @group(0) @binding(0) var<uniform> params: TangentParams;
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
-// Bits: a shader may take floats to be finite, and normals need not be.
+// Normals as bits: they need not be finite, and a shader may assume that floats are.
 @group(0) @binding(2) var<storage, read> normals: array<u32>;
 @group(0) @binding(3) var<storage, read> texture_coordinates: array<f32>;
 @group(0) @binding(4) var<storage, read> indices: array<u32>;
-// Where each vertex's corners begin, and the corners: positions in `indices`.
+// Where the corners of each vertex begin, and the corners, which are positions in `indices`.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
 @group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
-// 2^-100: what is smaller has no direction. Also as bits, and those of 2^100.
+// 2^-100, below which a vector has no direction; also as bits, with those of 2^100.
 const LEAST = 7.888609052210118e-31;
 const LEAST_BITS = 0x0d800000u;
 const LARGEST_BITS = 0x71800000u;
@@ -46,7 +46,7 @@ fn unit(vector: vec3<f32>) -> vec3<f32> {
     return vector * inverseSqrt(dot(vector, vector));
 }
 
-// What the triangle with this corner adds at the corner's vertex.
+// The contribution of the triangle that has this corner to the corner's vertex.
 fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     let nothing = Contribution(vec3<f32>(0.0), 0.0, 0.0);
     let first = corner - corner % 3u;
@@ -79,7 +79,7 @@ fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     return Contribution(unit(along) * signed_weight, weight, signed_weight * dot(normal, unit(face)));
 }
 
-// The first vector of the basis of Duff et al. 2017, from a unit normal.
+// The first vector of the basis of Duff et al. 2017 for a unit normal.
 fn fallback(normal: vec3<f32>, negative_z: bool) -> vec3<f32> {
     let side = select(1.0, -1.0, negative_z);
     let a = -1.0 / (side + normal.z);
@@ -110,7 +110,7 @@ fn frame(vertex: u32) -> vec4<f32> {
         return vec4<f32>(fallback(normal, (bits.z >> 31u) == 1u), 1.0);
     }
     let tangent = unit(flat);
-    // Where little was left of the sum, its rounding is large: once more.
+    // Repeats the projection: if little was left of the sum, its rounding error is large.
     let orthogonal = unit(tangent - normal * dot(normal, tangent));
     return vec4<f32>(orthogonal, select(1.0, -1.0, handedness < -least));
 }

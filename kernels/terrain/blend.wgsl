@@ -1,5 +1,5 @@
-// The top-down colour map of patches: zone weights (B equations 3.6 and 3.7) and relief shading, one sRGB
-// pixel a sample. Reads windows that reach one sample beyond the patch.
+// The top-down colour map of patches: zone weights (B equations 3.6 and 3.7) and hill-shading, one sRGB pixel
+// per sample. The kernel reads windows that extend one sample beyond the patch.
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 import package::wgsl::terrain::light::{Light, lit};
@@ -21,7 +21,7 @@ struct MapZone {
 @group(0) @binding(0) var<uniform> params: MapParams;
 @group(0) @binding(1) var<storage, read> windows: array<i32>;
 @group(0) @binding(2) var<storage, read> zones: array<MapZone>;
-// RGBA, 8 bits each, red lowest.
+// RGBA, 8 bits each, red in the lowest byte.
 @group(0) @binding(3) var<storage, read_write> pixels: array<u32>;
 
 @compute @workgroup_size(64)

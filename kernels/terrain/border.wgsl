@@ -1,22 +1,24 @@
-// B's transition area (section 3.3.1): samples within `width` of a border move towards the patch that
-// already exists on its other side. Left and right first, then above and below on the result.
+// B's transition area (section 3.3.1): samples within `width` of a border move towards the patch that already
+// exists on its other side. The left and right borders are handled first, then the upper and lower ones on
+// their result.
 
-// Whether the neighbours lie in `others`, a buffer of patches apart from `heights`.
+// Whether the neighbours lie in `others`, a separate buffer of patches, and not in `heights`.
 override OTHERS: bool = false;
 
 struct BorderParams {
     size: u32,
     width: u32,
     points: u32,
-    // The first of this dispatch's entries in `order` and `neighbours`.
+    // Index of the first entry of this dispatch in `order` and `neighbours`.
     start: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: BorderParams;
 @group(0) @binding(1) var<storage, read_write> heights: array<i32>;
-// Left, right, above and below of each entry's patch; 0xffffffff where there is none to move towards.
+// The neighbours to the left, to the right, above and below each entry's patch; 0xffffffff where there is none
+// to move towards.
 @group(0) @binding(2) var<storage, read> neighbours: array<vec4<u32>>;
-// Patches, dispatch by dispatch: those of one do not depend on each other.
+// Indices of patches, dispatch by dispatch. The patches of one dispatch do not depend on each other.
 @group(0) @binding(3) var<storage, read> order: array<u32>;
 @group(0) @binding(4) var<storage, read> others: array<i32>;
 
@@ -42,7 +44,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     heights[index] = height;
 }
 
-// The neighbour's height at distance 0, ours at distance `width`.
+// Blends linearly from the neighbour's height at distance 0 to the patch's own at distance `width`.
 fn towards(ours: i32, neighbour: u32, distance: u32, index: u32) -> i32 {
     if neighbour == NONE || distance >= params.width {
         return ours;
@@ -50,7 +52,7 @@ fn towards(ours: i32, neighbour: u32, distance: u32, index: u32) -> i32 {
     let theirs = sample_of(neighbour * params.points + index);
     let width = i32(params.width);
     let difference = ours - theirs;
-    // Division rounds towards zero; the quotient here rounds down.
+    // Division rounds towards zero; the quotient must round down.
     var quotient = difference / width;
     var remainder = difference - quotient * width;
     if remainder < 0 {

@@ -1,10 +1,10 @@
-// A point further than the threshold from the mean of its four neighbours is replaced by it (B figure 5.10);
-// injected points are left alone. Crops each window by one sample on every side.
+// Replaces every point that is further than the threshold from the mean of its four neighbours by that mean (B
+// figure 5.10). Injected points are left alone. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, has_feature};
 
 struct DespikeParams {
-    // Every injected point of the windows.
+    // The index of the injected points of the windows.
     features: FeatureGrid,
     in_width: u32,
     threshold: i32,
@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = id.xy + vec2<u32>(1u);
     let centre = (id.z * params.in_width + at.y) * params.in_width + at.x;
     let height = windows[centre];
-    // Four lanes of one value: the exact mean is written once, for vectors.
+    // All four lanes have the same value: the exact mean is written for vectors only.
     let mean = mean_of_four(
         vec4<i32>(windows[centre - 1u]), vec4<i32>(windows[centre + 1u]),
         vec4<i32>(windows[centre - params.in_width]), vec4<i32>(windows[centre + params.in_width])).x;

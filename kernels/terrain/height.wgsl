@@ -1,25 +1,26 @@
-// One level of diamond-square subdivision for a batch of windows onto the plane (B section 3.3.1), or two.
+// One level of diamond-square subdivision, or two, for a batch of windows onto the plane (B section 3.3.1).
 //
 // A thread owns 4 x CELL_ROWS coarse cells. It streams the coarse rows through registers and computes the
-// diamonds on its rim again, so that threads need no barrier and a level is one dispatch. With two levels the
-// rows between them stream through registers too: they are neither stored nor loaded.
+// diamonds on the rim of its cells a second time, so that threads need no barrier and a level is one dispatch.
+// With two levels per dispatch, the rows of the level in between stream through registers too and are neither
+// stored nor loaded.
 import package::wgsl::hash::threefry2x32;
 import package::wgsl::terrain::fixed::{HEIGHT_LIMIT, mean_of_sums};
 import package::wgsl::terrain::offset::height_offset;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_at, feature_bits, injected_lanes};
 
-// Rows of coarse cells a thread: many for a software adapter, few for hardware.
+// Rows of coarse cells per thread: many for a software adapter, few for hardware.
 override CELL_ROWS: u32 = 4u;
-// Levels a dispatch: 1, or 2 where no features are injected.
+// Levels per dispatch: 1, or 2 where no features are injected.
 override LEVELS: u32 = 1u;
-// Whether the coarse level is the base lattice, which is drawn here instead of loaded.
+// Whether the coarse level is the base lattice, which is computed here and not loaded.
 override FIRST: bool = false;
-// OFFSET_*
+// One of the constants OFFSET_*.
 override DISTRIBUTION: u32 = 0u;
 
 struct Level {
     key: vec2<u32>,
-    // Points along an edge of a window, and points a window.
+    // Points along an edge of a window, and points per window.
     fine_width: u32,
     fine_points: u32,
     coarse_width: u32,
@@ -27,11 +28,11 @@ struct Level {
     // World coordinates between neighbouring fine samples.
     fine_spacing: u32,
     fine_range: u32,
-    // Of the level between coarse and fine, where there are two.
+    // The range of offsets of the level between coarse and fine, if there is one.
     middle_range: u32,
     base_range: u32,
     blocks_per_row: u32,
-    // Threads a window, and windows.
+    // Threads per window, and number of windows.
     blocks: u32,
     windows: u32,
     @align(16) fine_features: FeatureGrid,
@@ -39,25 +40,25 @@ struct Level {
 }
 
 @group(0) @binding(0) var<uniform> level: Level;
-// World coordinates of each window's first fine sample, in units of fine_spacing.
+// World coordinates of the first fine sample of each window, in units of fine_spacing.
 @group(0) @binding(1) var<storage, read> origins: array<vec2<i32>>;
 @group(0) @binding(2) var<storage, read> coarse: array<i32>;
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
-// Columns -1 .. 4 of the coarse row at four cells.
+// Columns -1 to 4 of a coarse row, for four cells.
 struct CoarseRow {
     left: i32,
     inner: vec4<i32>,
     right: i32,
 }
 
-// The centres of cells -1 .. 3 between two coarse rows.
+// The centres of cells -1 to 3 between two coarse rows.
 struct DiamondRow {
     left: i32,
     inner: vec4<i32>,
 }
 
-// World coordinates of the fine columns of four cells: those of coarse points, and those between.
+// World coordinates of the fine columns of four cells: those of coarse points, and those between them.
 struct Columns {
     even: vec4<u32>,
     odd: vec4<u32>,
@@ -66,9 +67,9 @@ struct Columns {
 // A window at one level.
 struct Place {
     window: u32,
-    // World coordinates of its first sample, in units of spacing.
+    // World coordinates of the window's first sample at this level, in units of spacing.
     origin: vec2<i32>,
-    // The sample at coarse point (0, 0) lies one or two before the window.
+    // How far before the window the sample at coarse point (0, 0) lies: one or two samples.
     shift: vec2<i32>,
     spacing: u32,
     range: u32,
@@ -90,7 +91,8 @@ fn main(
     let block = vec2<i32>(vec2<u32>(in_window % level.blocks_per_row, in_window / level.blocks_per_row));
     let window = index / level.blocks;
     let place = place_of(window, origins[window], level.fine_spacing, level.fine_range);
-    // A thread's first cell starts at the coarse point that is, or lies next before, its first sample.
+    // A thread's first cell starts at the coarse point that coincides with its first sample, or else precedes
+    // it.
     let first = block * vec2<i32>(4, i32(CELL_ROWS));
     if LEVELS == 1u {
         subdivide(place, first + place.shift - vec2<i32>(1));
@@ -154,7 +156,7 @@ fn inner_diamonds(
     return drawn(place, columns.odd, fine_at(place, cell) + vec2<i32>(1), mean_of_sums(sums, beside));
 }
 
-// The samples right of the coarse points of a row.
+// The samples to the right of the coarse points of a row.
 fn squares_beside(
     place: Place, columns: Columns, cell: vec2<i32>, here: CoarseRow, upper: vec4<i32>, lower: vec4<i32>,
 ) -> vec4<i32> {
@@ -172,8 +174,9 @@ fn squares_below(
     return drawn(place, columns.even, at, mean_of_sums(here.inner + below.inner, before + lower.inner));
 }
 
-// Writes the two fine rows of four cells between two coarse rows. What is known goes out first, between draws:
-// processors wait for a row's first store, and do so in the shade of arithmetic.
+// Writes the two fine rows of four cells between two coarse rows. Samples that are known already are stored
+// first, between the draws of random words: the processor waits for the first store of a row, and does so while
+// it computes.
 fn write_rows(
     place: Place, columns: Columns, cell: vec2<i32>, here: CoarseRow, below: CoarseRow,
     upper: vec4<i32>, lower: DiamondRow, odd_features: u32,
@@ -188,19 +191,19 @@ fn write_rows(
     store_four(place, at + vec2<i32>(0, 1), squares.under);
 }
 
-// The heights themselves: none is less. lavapipe stores lane by lane, and would add up what is only stored once
-// for each lane there; it does not take a maximum apart.
+// Returns the heights unchanged, since none is less than the constant. lavapipe stores lane by lane and would
+// repeat the arithmetic of a value that is only stored for each lane; it does not split a maximum.
 fn held(heights: vec4<i32>) -> vec4<i32> {
     return max(heights, vec4<i32>(-HEIGHT_LIMIT));
 }
 
-// Columns -1 .. 5 of a coarse row.
+// Columns -1 to 5 of a coarse row.
 struct WideRow {
     four: CoarseRow,
     beyond: i32,
 }
 
-// Columns -1 .. 8 of a middle row.
+// Columns -1 to 8 of a middle row.
 struct MiddleRow {
     left: i32,
     first: vec4<i32>,
@@ -208,21 +211,23 @@ struct MiddleRow {
     right: i32,
 }
 
-// The middle row at a coarse row and the one below it, whose odd columns are the coarse cells' centres.
+// Two middle rows: the one at a coarse row, and the one below it, whose odd columns are the centres of the
+// coarse cells.
 struct MiddleRows {
     even: MiddleRow,
     odd: MiddleRow,
     centres: DiamondRow,
 }
 
-// The centres of middle cells -1 .. 7.
+// The centres of the middle cells -1 to 7.
 struct FineDiamonds {
     first: DiamondRow,
     second: vec4<i32>,
 }
 
-// A middle row is complete when the coarse row below it is known, and a fine row when the middle row below it is:
-// a thread writes the fine rows from the middle row above its first cell to the one at its last.
+// Makes two levels. A middle row is complete when the coarse row below it is known, and a fine row when the
+// middle row below it is. A thread therefore writes the fine rows from the middle row above its first cell to
+// the one at its last.
 fn subdivide_twice(place: Place, middle: Place, cell: vec2<i32>) {
     let columns = columns_of(middle, cell.x);
     var at = cell - vec2<i32>(0, 1);
@@ -273,7 +278,8 @@ fn middle_rows(
     place: Place, columns: Columns, cell: vec2<i32>, here: WideRow, below: WideRow, above: DiamondRow,
 ) -> MiddleRows {
     let inner = inner_diamonds(place, columns, cell, here.four, below.four);
-    // The rim, in one draw: the centres of cells -1 and 4, column -1 of the even row and column 8 of the odd.
+    // The rim takes one draw: the centres of cells -1 and 4, column -1 of the even row, and column 8 of the odd
+    // row.
     let y = world_y(place, fine_at(place, cell));
     let step = vec4<u32>(place.spacing);
     let rim = offsets(
@@ -318,7 +324,7 @@ fn fine_diamonds(
         inner_diamonds(place, second, cell + vec2<i32>(4, 0), second_four(above), second_four(below)));
 }
 
-// Adds the random offset to four means at fine samples `at`, `at` + (2, 0), … whose world coordinates are x.
+// Adds random offsets to four means at the fine samples `at`, `at` + (2, 0), …, whose world coordinates are x.
 fn drawn(place: Place, x: vec4<u32>, at: vec2<i32>, means: vec4<i32>) -> vec4<i32> {
     return means + offsets(place, x, world_y(place, at));
 }
@@ -342,13 +348,13 @@ fn coarse_row(place: Place, cell: vec2<i32>) -> CoarseRow {
     return CoarseRow(loaded(place, cell - vec2<i32>(1, 0)), inner, loaded(place, cell + vec2<i32>(4, 0)));
 }
 
-// Points outside the window feed only samples outside it: any value will do.
+// Points outside the window feed only samples outside it, so any value will do.
 fn loaded(place: Place, cell: vec2<i32>) -> i32 {
     let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(i32(level.coarse_width) - 1)));
     return coarse[place.window * level.coarse_points + at.y * level.coarse_width + at.x];
 }
 
-// Four points of the base lattice from coarse point `cell` on.
+// Four points of the base lattice, starting at coarse point `cell`.
 fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
     let words = threefry2x32(level.key, columns_of(place, cell.x).even, world_y(place, fine_at(place, cell)));
     let heights = height_offset(DISTRIBUTION, level.base_range, words);
@@ -364,8 +370,8 @@ fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
     return result;
 }
 
-// Which samples below a row of coarse points have features, from the one left of the first on: the centres of cells
-// -1 .. 3, and those between them.
+// Which samples below a row of coarse points have features, starting with the one to the left of the first: the
+// centres of cells -1 to 3, and the samples between them.
 fn odd_features(place: Place, cell: vec2<i32>) -> u32 {
     if FEATURES == FEATURES_NONE {
         return 0u;
@@ -379,7 +385,8 @@ fn injected_diamonds(place: Place, cell: vec2<i32>, odd_features: u32, computed:
     }
     var result = computed;
     let at = fine_at(place, cell) + vec2<i32>(-1, 1);
-    // One loop for all: each costs lavapipe a turn, also where there is nothing to inject.
+    // One loop serves all: every further loop costs lavapipe an iteration, even where there is nothing to
+    // inject.
     for (var rest = odd_features & 0x155u; rest != 0u; rest &= rest - 1u) {
         let column = i32(countTrailingZeros(rest));
         let feature = feature_at(level.fine_features, place.window, at + vec2<i32>(column, 0));
@@ -389,7 +396,7 @@ fn injected_diamonds(place: Place, cell: vec2<i32>, odd_features: u32, computed:
     return result;
 }
 
-// The samples right of four coarse points, and those below.
+// The samples to the right of four coarse points, and those below them.
 struct Squares {
     beside: vec4<i32>,
     under: vec4<i32>,
@@ -400,7 +407,7 @@ fn injected_squares(place: Place, at: vec2<i32>, odd_features: u32, computed: Sq
         return computed;
     }
     var result = computed;
-    // Odd columns lie in the coarse points' row, even ones in the row below.
+    // Odd columns lie in the row of the coarse points, even columns in the row below.
     let even_features = feature_bits(level.fine_features, place.window, at);
     for (var rest = (even_features & 0xaau) | ((odd_features >> 1u) & 0x55u); rest != 0u; rest &= rest - 1u) {
         let column = i32(countTrailingZeros(rest));
@@ -416,7 +423,7 @@ fn injected_squares(place: Place, at: vec2<i32>, odd_features: u32, computed: Sq
 // Stores every other sample of a row.
 fn store_four(place: Place, at: vec2<i32>, heights: vec4<i32>) {
     let row = place.window * level.fine_points + u32(at.y) * level.fine_width;
-    // A row outside the window has no columns.
+    // A row outside the window has no columns to store.
     let width = select(0u, level.fine_width, u32(at.y) < level.fine_width);
     let x = vec4<u32>(vec4<i32>(at.x) + 2 * LANES);
     store(row, width, x.x, heights.x);

@@ -2,7 +2,7 @@
 
 struct MorphParams {
     points: u32,
-    // 0 to 65536
+    // The time, 0 to 65536.
     time: u32,
 }
 
@@ -22,7 +22,7 @@ fn main(
         return;
     }
     let difference = target_heights[index] - start_heights[index];
-    // The 48-bit product, halves apart.
+    // The 48-bit product, computed from the two halves of the difference.
     let high = (difference >> 16u) * i32(params.time);
     let low = (u32(difference) & 0xffffu) * params.time;
     heights[index] = start_heights[index] + high + i32(low >> 16u);

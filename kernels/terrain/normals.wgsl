@@ -1,4 +1,4 @@
-// Central differences (exact) and unit normals of windows, which are cropped by one sample on every side.
+// Central differences (exact) and unit normals of windows. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::slope::slope_normal;
 
 struct NormalsParams {
@@ -10,7 +10,7 @@ struct NormalsParams {
 @group(0) @binding(0) var<uniform> params: NormalsParams;
 @group(0) @binding(1) var<storage, read> windows: array<i32>;
 @group(0) @binding(2) var<storage, read_write> gradients: array<vec2<i32>>;
-// Three components a point: usable as a vertex buffer.
+// Three components per point, so that the buffer can serve as a vertex buffer.
 @group(0) @binding(3) var<storage, read_write> normals: array<f32>;
 
 @compute @workgroup_size(64)

@@ -1,5 +1,5 @@
-// Windows around the patches of a batch, gathered from the patches themselves and their neighbours. A dispatch for
-// each buffer of patches writes the samples that come from there.
+// Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is
+// one dispatch for each buffer of patches; it writes the samples that come from that buffer.
 
 struct PadParams {
     size: u32,
@@ -8,8 +8,8 @@ struct PadParams {
 
 @group(0) @binding(0) var<uniform> params: PadParams;
 @group(0) @binding(1) var<storage, read> patches: array<i32>;
-// Nine indices a patch: those around and at it, row by row; 0xffffffff where there is none, 0xfffffffe for one that
-// lies in another buffer.
+// Nine indices per patch: the patches at and around it, row by row; 0xffffffff where there is none, 0xfffffffe
+// for one that lies in another buffer.
 @group(0) @binding(2) var<storage, read> around: array<u32>;
 @group(0) @binding(3) var<storage, read_write> windows: array<i32>;
 
@@ -34,12 +34,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         patches[patch_index * params.size * params.size + local.y * params.size + local.x];
 }
 
-// The tile whose patch has the sample.
+// The tile (column, row) whose patch provides the sample.
 fn source_of(window: u32, at: vec2<i32>) -> vec2<i32> {
     let last = i32(params.size) - 1;
     let tile = vec2<i32>(1) + select(vec2<i32>(0), vec2<i32>(1), at > vec2<i32>(last))
         - select(vec2<i32>(0), vec2<i32>(1), at < vec2<i32>(0));
-    // The tile itself, then the ones beside it in x, in y, and the patch: what is missing is clamped.
+    // Try the tile itself, then its neighbours in x and in y, and last the patch itself; a missing tile is
+    // replaced by clamping.
     var source = vec2<i32>(tile.x, tile.y);
     if around_at(window, source) == NONE {
         source = vec2<i32>(tile.x, 1);

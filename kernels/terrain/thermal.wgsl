@@ -1,6 +1,6 @@
-// One iteration of thermal erosion: between each pair of 4-neighbours an eighth of what exceeds the stable
-// difference slides downhill, all pairs from the same old field. Crops each window by one sample on every
-// side.
+// One iteration of thermal erosion: between each pair of 4-neighbours, an eighth of the difference beyond the
+// stable one slides downhill. All pairs read the same old field. Each window loses its outermost ring of
+// samples.
 
 struct ThermalParams {
     in_width: u32,

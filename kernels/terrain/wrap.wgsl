@@ -1,34 +1,35 @@
-// One level of diamond-square subdivision for a batch of patches by themselves (B section 3.3.1, with its
-// wrapping neighbours). A thread owns one coarse point: it and the samples right of, below and diagonally
-// below it. It computes the three diamonds it needs again.
+// One level of diamond-square subdivision for a batch of patches that are generated alone and whose neighbours
+// wrap around (B section 3.3.1). A thread owns one coarse point and writes four samples: the point itself, and
+// those to the right of it, below it and diagonally below it. Threads compute the three diamonds that they
+// share a second time.
 import package::wgsl::hash::threefry2x32;
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::offset::height_offset;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, injected};
 
-// OFFSET_*
+// One of the constants OFFSET_*.
 override DISTRIBUTION: u32 = 0u;
-// Whether the coarse level is the four corners.
+// Whether the coarse level consists of the four corners.
 override FIRST: bool = false;
 
 struct WrapLevel {
-    // Corner heights (0, 0), (1, 0), (0, 1), (1, 1).
+    // Heights of the corners (0, 0), (1, 0), (0, 1), (1, 1).
     corners: vec4<i32>,
     fine_features: FeatureGrid,
     base_features: FeatureGrid,
     key: vec2<u32>,
-    // Samples along an edge of the patch, and in it, at the fine and the coarse level.
+    // Samples along an edge of a patch at the fine and at the coarse level.
     fine_width: u32,
     coarse_width: u32,
     fine_spacing: u32,
     range: u32,
-    // Row and plane strides of the buffers.
+    // Samples per patch at the fine and at the coarse level.
     fine_points: u32,
     coarse_points: u32,
 }
 
 @group(0) @binding(0) var<uniform> level: WrapLevel;
-// World coordinates of each patch's first sample.
+// World coordinates of the first sample of each patch.
 @group(0) @binding(1) var<storage, read> origins: array<vec2<i32>>;
 @group(0) @binding(2) var<storage, read> coarse: array<i32>;
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
@@ -41,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let patch_index = id.z;
     let cell = vec2<i32>(id.xy);
     let cells = i32(level.coarse_width) - 1;
-    // The cell before the first is the last, and the other way around.
+    // The cell before the first one is the last one, and the other way around.
     let own = cell % cells;
     let before = (cell + vec2<i32>(cells - 1)) % cells;
     let here = coarse_point(patch_index, cell);

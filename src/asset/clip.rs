@@ -1,25 +1,28 @@
-//! Clips: what moves bones. Each bone has up to three tracks, translation, rotation and scale, each with key times
-//! of its own; interpolation between keys is glTF's (2.0, appendix C).
+//! Clips: the animation of a skeleton's bones. Each bone has up to three tracks, translation, rotation and
+//! scale, each with key times of its own. Interpolation between keys is that of glTF 2.0, appendix C.
 //!
 //! # Layout
 //!
-//! A clip is three flat arrays, fit for storage buffers as they are:
+//! A clip consists of three flat arrays, which can be copied to storage buffers as they are:
 //!
-//! - `tracks`: three [`Track`]s a bone, translation, rotation, scale; 16 bytes each.
+//! - `tracks`: three [`Track`]s per bone, translation, rotation, scale; 16 bytes each.
 //! - `times`: `f32` seconds, ascending within a track. Tracks with equal times share them.
-//! - `values`: `vec4<f32>`s: a translation or scale with 0 behind it, or a quaternion x, y, z, w. Cubic splines
-//!   have three a key: in-tangent, value, out-tangent, the tangents times the seconds of the stretch that they bend.
+//! - `values`: `vec4<f32>`s: a translation or scale followed by 0, or a quaternion x, y, z, w. Cubic splines
+//!   have three per key: in-tangent, value, out-tangent. Tangents are multiplied by the seconds of the segment
+//!   that they bend.
 //!
-//! So a key takes 16 bytes, 48 in a cubic spline, and 4 more where its time is not shared. A bone without keys has
-//! a track of 0 keys whose one value is the bone's rest pose.
+//! A key thus takes 16 bytes, 48 in a cubic spline, and 4 more where its time is not shared. A bone without
+//! keys has tracks of 0 keys, each with one value: the bone's rest pose.
 //!
-//! # What is decided where glTF is silent
+//! # Decisions where glTF leaves room
 //!
-//! - Times that repeat are a jump: the last key of that time counts from then on. Times that descend are refused.
-//! - Quaternions are stored with length 1; one shorter than [`SHORTEST`](super::transform::SHORTEST) is refused.
-//!   Keys of linear rotation have the sign that is nearer to the key before, so that the path between neighbours is
-//!   the short one without looking. The tangents of cubic splines fit their values' signs: both stay as they are.
-//! - Times below 2⁻¹⁰⁰ s count as 0: devices may flush smaller differences to zero.
+//! - Equal successive times are a jump: from that time on, the last key of that time counts. Descending times
+//!   are refused.
+//! - Quaternions are stored with length 1; one shorter than [`SHORTEST`](super::transform::SHORTEST) is
+//!   refused. Keys of linear rotation are stored with the sign that is closer to the previous key, so that the
+//!   path between neighbouring keys is the shortest without a test. Cubic splines keep the signs of both values
+//!   and tangents, since these belong together.
+//! - Times below 2⁻¹⁰⁰ s count as 0, because devices may flush smaller differences to zero.
 
 mod replaced;
 
@@ -27,26 +30,27 @@ use super::skeleton::Skeleton;
 use super::transform::{finite, unit};
 use crate::InputError;
 
-/// The largest key time in seconds: some 12 days.
+/// The largest key time, in seconds: about 12 days.
 pub const LONGEST: f32 = 1_048_576.0;
 
-/// Smaller times are 0.
+/// Smaller key times count as 0; seconds.
 const LEAST_TIME: f32 = 7.888_609e-31;
 
-/// How values between keys are found.
+/// How values between keys are interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Interpolation {
-    /// The key before.
+    /// The value of the previous key.
     Step = 0,
-    /// On the straight line; rotations on the shortest arc.
+    /// Linear interpolation; for rotations, along the shortest arc.
     Linear = 1,
-    /// A Hermite spline with tangents at each key, in units a second; rotations are normalized after it.
+    /// A cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized
+    /// afterwards.
     CubicSpline = 2,
 }
 
 impl Interpolation {
-    /// What a track's number stands for.
+    /// The interpolation that a track's `code` stands for.
     pub fn of_code(code: u32) -> Self {
         match code {
             0 => Self::Step,
@@ -56,24 +60,26 @@ impl Interpolation {
     }
 }
 
-/// The keys of one track, before they are laid out.
+/// The keys of one track, as an importer gives them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keys {
-    /// Seconds, not descending.
+    /// Key times in seconds, not descending.
     pub times: Vec<f32>,
-    /// One a key; in cubic splines three: in-tangent, value, out-tangent. Translations and scales have 0 last.
+    /// One value per key; in cubic splines three: in-tangent, value, out-tangent. The fourth component of
+    /// translations and scales is 0.
     pub values: Vec<[f32; 4]>,
-    /// How values between keys are found.
+    /// How values between keys are interpolated.
     pub interpolation: Interpolation,
 }
 
 impl Keys {
-    /// Checks times and values of translations, scales or, if `is_rotation`, quaternions; `paths` come before the
-    /// fields of times and values.
+    /// Checks times and values of translations, scales or, if `is_rotation`, quaternions. `times` and `values`
+    /// are the paths of these fields in errors.
     ///
     /// # Errors
-    /// [`InputError`] for no keys, times that descend, are negative, too large or not finite, other than one value a
-    /// key (three in splines), and values that are not finite or rotations without a direction.
+    /// [`InputError`] for no keys; for times that descend, are negative, too large or not finite; for a number
+    /// of values that is not one per key (three in splines); for values that are not finite; and for rotations
+    /// without a direction.
     pub(crate) fn validate(&self, [times, values]: [&str; 2], is_rotation: bool) -> Result<(), InputError> {
         check_times(times, &self.times)?;
         let each = self.values_a_key();
@@ -95,10 +101,10 @@ impl Keys {
         if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
     }
 
-    /// Valid keys as they are stored.
+    /// The keys in the form in which a clip stores them; the keys must be valid.
     ///
     /// # Errors
-    /// [`InputError`] for tangents that leave `f32` when they are multiplied by their seconds.
+    /// [`InputError`] for tangents that exceed `f32` when they are multiplied by their seconds.
     fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
         let mut keys = self.clone();
         keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
@@ -121,7 +127,7 @@ impl Keys {
     }
 }
 
-/// Refuses no times, and such as descend or are out of range.
+/// Refuses an empty list of times, and times that descend or are out of range.
 pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     if times.is_empty() {
         return Err(InputError::new(format!("{path}.len"), 0, "must be at least 1"));
@@ -146,7 +152,7 @@ pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     }
 }
 
-/// Gives each quaternion the sign that is nearer to the one before.
+/// Gives each quaternion the sign that is closer to the previous one.
 fn take_short_ways(values: &mut [[f32; 4]]) {
     for at in 1..values.len() {
         let (before, here) = (values[at - 1], values[at]);
@@ -157,7 +163,8 @@ fn take_short_ways(values: &mut [[f32; 4]]) {
     }
 }
 
-/// Multiplies tangents by the seconds between their key and the one on their side: what a spline needs of them.
+/// Multiplies tangents by the seconds between their key and the adjacent key on their side, as the spline's
+/// formula needs them.
 fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         for at in [3 * key + 2, 3 * key + 3] {
@@ -166,56 +173,56 @@ fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     }
 }
 
-/// What moves one bone. Without keys it keeps its rest pose.
+/// The keys of one bone. A part without keys keeps its rest pose.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BoneKeys {
-    /// Metres, in the parent's space.
+    /// Translation in metres, in the parent's space.
     pub translation: Option<Keys>,
-    /// Quaternions (x, y, z, w), of any length but 0.
+    /// Rotation as quaternions (x, y, z, w), of any length but 0.
     pub rotation: Option<Keys>,
-    /// Factors along the bone's axes.
+    /// Scale factors along the bone's axes.
     pub scale: Option<Keys>,
 }
 
-/// Which part of a transform a track moves.
+/// The part of a transform that a track animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Part {
-    /// The first of a bone's tracks.
+    /// The first track of a bone.
     Translation = 0,
-    /// The second.
+    /// The second track.
     Rotation = 1,
-    /// The third.
+    /// The third track.
     Scale = 2,
 }
 
 impl Part {
-    /// In the order of a bone's tracks.
+    /// All parts, in the order of a bone's tracks.
     pub const ALL: [Self; 3] = [Self::Translation, Self::Rotation, Self::Scale];
 }
 
-/// Where a track's keys lie.
+/// Where the keys of a track lie in the clip's arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Track {
-    /// Its first key's time, in `times`.
+    /// Index of its first key's time in `times`.
     pub first_time: u32,
-    /// Its first value, in `values`.
+    /// Index of its first value in `values`.
     pub first_value: u32,
-    /// How many keys. 0: the one value is the rest pose.
+    /// Number of keys. 0 means that the single value is the rest pose.
     pub keys: u32,
-    /// 0 step, 1 linear, 2 cubic spline: see [`Track::interpolation`].
+    /// 0 for step, 1 for linear, 2 for cubic spline; see [`Track::interpolation`].
     pub code: u32,
 }
 
 impl Track {
-    /// How values between keys are found.
+    /// How values between keys are interpolated.
     pub fn interpolation(&self) -> Interpolation {
         Interpolation::of_code(self.code)
     }
 }
 
-/// A clip of one skeleton, laid out flat.
+/// A clip of one skeleton, in flat arrays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clip {
     name: String,
@@ -226,13 +233,13 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// A clip of `skeleton`, one [`BoneKeys`] a bone. It lasts as long as its last key, or `duration` if that is
-    /// longer.
+    /// A clip of `skeleton`, with one [`BoneKeys`] per bone. Its duration is the time of its last key, or
+    /// `duration` (seconds) if that is longer.
     ///
     /// # Errors
-    /// [`InputError`] that names the bone's field, with its index: other than one a bone, no keys in a track, times
-    /// that descend or leave 0..=[`LONGEST`], values that do not fit the times or are not finite, rotations without
-    /// a direction.
+    /// [`InputError`] that names the bone's field, with its index: for a list that is not one entry per bone,
+    /// no keys in a track, times that descend or leave 0..=[`LONGEST`], values that do not match the times or
+    /// are not finite, and rotations without a direction.
     pub fn new(
         name: impl Into<String>,
         skeleton: &Skeleton,
@@ -269,30 +276,30 @@ impl Clip {
         layout.finish(name.into(), duration)
     }
 
-    /// A clip without keys, 0 seconds long: every bone stays at rest. For models that have no clip.
+    /// A clip without keys and of 0 seconds: every bone stays at rest. It serves models that have no clip.
     ///
     /// # Errors
-    /// [`InputError`] for a skeleton of so many bones that values do not fit a buffer.
+    /// [`InputError`] for a skeleton with so many bones that the values exceed a buffer.
     pub fn at_rest(name: impl Into<String>, skeleton: &Skeleton) -> Result<Self, InputError> {
         Self::new(name, skeleton, &vec![BoneKeys::default(); skeleton.len()], 0.0)
     }
 
-    /// As the file has it; names need not differ.
+    /// The clip's name in the file; names need not be unique.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Seconds; 0 where all keys lie at time 0.
+    /// Duration in seconds; 0 if all keys lie at time 0.
     pub fn duration(&self) -> f32 {
         self.duration
     }
 
-    /// How many bones it moves, or leaves at rest.
+    /// Number of bones, including those that stay at rest.
     pub fn bones(&self) -> usize {
         self.tracks.len() / 3
     }
 
-    /// Three a bone: translation, rotation, scale.
+    /// Three tracks per bone: translation, rotation, scale.
     pub fn tracks(&self) -> &[Track] {
         &self.tracks
     }
@@ -312,7 +319,7 @@ impl Clip {
         &self.tracks[3 * bone + part as usize]
     }
 
-    /// The key times of one track; none where it is at rest.
+    /// The key times of one track, in seconds; empty for a track at rest.
     pub fn times_of(&self, track: &Track) -> &[f32] {
         &self.times[track.first_time as usize..][..track.keys as usize]
     }
@@ -323,19 +330,19 @@ impl Clip {
         self.values[track.first_value as usize + at]
     }
 
-    /// Bytes of the three arrays.
+    /// Size of the three arrays in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.tracks) + size_of_val(&*self.times) + size_of_val(&*self.values)
     }
 }
 
-/// A clip that grows.
+/// A clip under construction.
 #[derive(Default)]
 struct Layout {
     tracks: Vec<Track>,
     times: Vec<f32>,
     values: Vec<[f32; 4]>,
-    // Where times lie that a track has already.
+    // Where lists of times lie that some track already has.
     known: std::collections::HashMap<Vec<u32>, usize>,
     last: f32,
 }
@@ -360,7 +367,7 @@ impl Layout {
     }
 
     fn finish(self, name: String, duration: f32) -> Result<Clip, InputError> {
-        // Shaders count bytes of values in u32.
+        // Shaders count the bytes of values in u32.
         if self.values.len() > (1 << 28) - 1 {
             return Err(InputError::new("clip.values.len", self.values.len(), "must be below 2^28"));
         }

@@ -1,8 +1,8 @@
-//! Triangles as indices of vertices.
+//! Checks of triangle indices.
 
 use crate::InputError;
 
-/// Refuses indices that are not three a triangle, and of no vertex.
+/// Refuses a number of indices that is not a multiple of three, and indices of vertices that do not exist.
 pub(crate) fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
     if !indices.len().is_multiple_of(3) {
         return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));

@@ -1,23 +1,24 @@
-//! What vertices follow: up to eight bones each, the strongest first; and with distance fewer (A section 8.4).
+//! Influences: the bones that each vertex follows, up to eight, the strongest first. Fewer can be used at a
+//! distance (A section 8.4):
 //!
-//! - `truncate(k)` keeps the k strongest, divided by their sum. It pops where k changes.
-//! - `fade(λ)` takes λ times the second strongest weight from every weight but the strongest, which gets what is left
-//!   over. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest vanish first, and those that
-//!   have vanished are not fetched.
+//! - `truncate(k)` keeps the k strongest and divides them by their sum. Vertices jump where k changes.
+//! - `fade(λ)` subtracts λ times the second strongest weight from every weight but the strongest, which
+//!   receives the rest. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest
+//!   influences vanish first, and shaders do not fetch those that have vanished.
 
 use crate::InputError;
 
-/// The most bones that a vertex follows.
+/// The most bones that a vertex can follow.
 pub const MAX_INFLUENCES: usize = 8;
 
-/// A bone, and how much a vertex follows it.
+/// A bone, and the weight with which a vertex follows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Influence {
-    /// The bone's place in the skin's list.
+    /// The bone's index in the skin's list.
     pub bone: u32,
-    /// Above 0; those of a vertex sum to 1.
+    /// The weight, above 0; the weights of a vertex sum to 1.
     pub weight: f32,
 }
 
@@ -29,12 +30,14 @@ pub struct Influences {
 }
 
 impl Influences {
-    /// The influences of vertices, each given as bones and weights in any order: those of one bone are added up,
-    /// weights of 0 left out, the others sorted, the largest first (equal ones by bone), and divided by their sum.
+    /// The influences of vertices, each given as bones and weights in any order. Weights of one bone are added,
+    /// weights of 0 are left out, the rest is sorted, the largest first (equal ones by bone), and divided by
+    /// its sum.
     ///
     /// # Errors
-    /// [`InputError`] for weights that are negative or not finite, a vertex without weights or with more than
-    /// [`MAX_INFLUENCES`], and weighted bones that are not below `bones`. `path` comes before the vertex's number.
+    /// [`InputError`] for weights that are negative or not finite, for a vertex without weights or with more
+    /// than [`MAX_INFLUENCES`], and for weighted bones that are not below `bones`. In errors, `path` precedes
+    /// the vertex's number.
     pub fn new(
         path: &str,
         bones: usize,
@@ -55,23 +58,23 @@ impl Influences {
         Ok(influences)
     }
 
-    /// One more vertex, which follows what this one does.
+    /// Appends a vertex with the influences of an existing one.
     pub(crate) fn repeat(&mut self, vertex: usize) {
         self.all.extend_from_within(self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize);
         self.offsets.push(self.all.len() as u32);
     }
 
-    /// What a vertex follows, the strongest first.
+    /// The influences of a vertex, the strongest first.
     pub fn of(&self, vertex: usize) -> &[Influence] {
         &self.all[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
     }
 
-    /// Vertices.
+    /// Number of vertices.
     pub fn vertices(&self) -> usize {
         self.offsets.len() - 1
     }
 
-    /// The most influences of a vertex.
+    /// The largest number of influences of any vertex.
     pub fn most(&self) -> usize {
         self.offsets.windows(2).map(|ends| (ends[1] - ends[0]) as usize).max().unwrap_or(0)
     }
@@ -84,7 +87,7 @@ impl Influences {
 
 type Fault = (String, String);
 
-/// Adds up, drops and sorts.
+/// Adds the weights of equal bones, drops weights of 0 and sorts.
 fn order(given: &mut Vec<Influence>) -> Result<(), Fault> {
     if let Some(wrong) = given.iter().find(|influence| !(0.0..f32::INFINITY).contains(&influence.weight)) {
         return Err((wrong.weight.to_string(), "must be finite, and not negative".to_owned()));
@@ -131,11 +134,11 @@ mod tests {
     fn the_strongest_come_first_and_sum_to_one() {
         assert_eq!(influences(&[(3, 0.25), (1, 0.0), (2, 0.75)]), Ok(vec![(2, 0.75), (3, 0.25)]));
         assert_eq!(influences(&[(3, 2.0), (1, 2.0), (8, 4.0)]), Ok(vec![(8, 0.5), (1, 0.25), (3, 0.25)]));
-        // Named twice.
+        // A bone that is named twice.
         assert_eq!(influences(&[(3, 0.5), (1, 0.25), (3, 0.25)]), Ok(vec![(3, 0.75), (1, 0.25)]));
         assert_eq!(influences(&[(3, f32::MAX), (3, f32::MAX)]), Ok(vec![(3, 1.0)]));
         assert_eq!(influences(&[(3, f32::MIN_POSITIVE)]), Ok(vec![(3, 1.0)]));
-        // A joint without weight may be any.
+        // The bone of a weight of 0 may have any number.
         assert_eq!(influences(&[(3, 1.0), (99, 0.0)]), Ok(vec![(3, 1.0)]));
     }
 

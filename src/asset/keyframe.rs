@@ -1,17 +1,18 @@
-//! Where a moment lies among the times of keys.
+//! Finds the position of a time among the times of keys.
 
-/// A place between two keys of a timeline.
+/// A position between two keys of a timeline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct KeyframeCursor {
-    /// The key before.
+    /// The key before the time.
     pub key: u32,
-    /// The way to the key after it, 0 to below 1. 0 outside the keys.
+    /// The fraction of the way from that key to the next, 0 to below 1; 0 before the first key and after the
+    /// last.
     pub fraction: f32,
 }
 
-/// Where a time lies among key times. The last of equal times counts.
+/// The position of a time among key times, both in seconds. Of equal key times the last counts.
 pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     let last = times.len().saturating_sub(1);
     if last == 0 || time < times[0] {
@@ -20,7 +21,7 @@ pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     if time >= times[last] {
         return KeyframeCursor { key: last as u32, fraction: 0.0 };
     }
-    // Most clips are sampled evenly: a guess hits.
+    // Most clips have evenly spaced keys, so that a first guess is usually right.
     let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
     let mut key = (evenly as usize).min(last - 1);
     if times[key] > time || times[key + 1] <= time {
@@ -38,13 +39,13 @@ pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     KeyframeCursor { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
 }
 
-/// The way between two linear rotation keys.
+/// The path between two rotation keys with linear interpolation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum RotationPath {
-    /// At constant speed, as glTF asks.
+    /// Constant speed along the arc, as glTF requires.
     #[default]
     Slerp = 0,
-    /// On the chord, then normalized: cheaper, and on ordinary clips 0.005 to 0.014 rad off.
+    /// Along the chord, then normalized: cheaper, and 0.005 to 0.014 rad off on ordinary clips.
     Nlerp = 1,
 }

@@ -1,85 +1,86 @@
-//! What meshes look like: the colours of glTF's materials, with their textures and what becomes of alpha.
+//! Materials: the base colours of glTF, their textures, and the use of alpha.
 
-/// The longest edge of an image: WebGPU's default limit.
+/// The longest edge of an image in texels: WebGPU's default limit.
 pub const MAX_TEXELS: u32 = 8192;
 
-/// The colour of a surface.
+/// The base colour of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// As the file has it.
+    /// The material's name in the file.
     pub name: String,
-    /// Linear red, green and blue, and alpha, each 0 to 1. A texture is multiplied with it.
+    /// Linear red, green and blue, and alpha, each 0 to 1. The texture is multiplied by it.
     pub color: [f32; 4],
-    /// sRGB colour and alpha.
+    /// The texture of sRGB colour and linear alpha.
     pub texture: Option<Texture>,
-    /// What becomes of alpha.
+    /// How alpha is used.
     pub alpha: Alpha,
 }
 
-/// An image, and how it is read.
+/// An image, and how it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Texture {
-    /// Which of the model's images.
+    /// Index of the image in the model.
     pub image: usize,
-    /// Between and beyond its texels.
+    /// How it is filtered and wrapped.
     pub sampling: Sampling,
 }
 
-/// How a texture is read between its texels and beyond its edges.
+/// How a texture is filtered between its texels and wrapped beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {
-    /// Beyond the edges, along u and v.
+    /// Wrapping along u and v.
     pub wrap: [Wrapping; 2],
-    /// Where texels are larger than pixels.
+    /// Filter where texels are larger than pixels.
     pub magnified: Filter,
-    /// Where they are smaller.
+    /// Filter where texels are smaller than pixels.
     pub minified: Filter,
-    /// Between mip levels; without, there are none.
+    /// Filter between mip levels; `None` means that there are no mip levels.
     pub mips: Option<Filter>,
 }
 
 impl Default for Sampling {
-    /// Repeats, and is linear in everything.
+    /// Repeats, with linear filters throughout.
     fn default() -> Self {
         let linear = Filter::Linear;
         Self { wrap: [Wrapping::Repeat; 2], magnified: linear, minified: linear, mips: Some(linear) }
     }
 }
 
-/// What lies beyond an image's edge.
+/// What lies beyond the edge of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wrapping {
     /// The image again.
     Repeat,
-    /// The image again, every other one turned round.
+    /// The image again, every second one mirrored.
     Mirror,
-    /// Its last texel.
+    /// The texel at the edge.
     Clamp,
 }
 
-/// What lies between texels, or between mip levels.
+/// How values between texels, or between mip levels, are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
-    /// The nearest.
+    /// The nearest value.
     Nearest,
-    /// A mean by distance.
+    /// Linear interpolation.
     Linear,
 }
 
-/// What becomes of alpha.
+/// How alpha is used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
-    /// Nothing: all of the surface is seen.
+    /// Alpha is ignored: the whole surface is opaque.
     Opaque,
-    /// What has less than this is not there.
+    /// Parts with an alpha below this value are not drawn.
     Mask(f32),
-    /// As many of each 4 × 4 pixels are there as alpha says: a screen-door. It needs no order of triangles, and writes
-    /// depth. Of two such surfaces, one behind the other, the nearer hides all that is no denser than itself.
+    /// A screen-door pattern: of each 4 × 4 pixels, alpha decides how many are drawn. Triangles need no
+    /// sorting, and depth is written. Where two such surfaces overlap, the nearer hides all of the other unless
+    /// that one is denser.
     Dithered,
 }
 
-/// The alpha below which a pixel of [`Alpha::Dithered`] is not there: the rank of its place among 4 × 4 (Bayer 1973),
-/// between 0 and 1.
+/// The threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with an alpha below it are not
+/// drawn. It is the rank of the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
 pub fn dithered([x, y]: [u32; 2]) -> f32 {
     let rank = |x: u32, y: u32| 2 * (x ^ y) + y;
     ((4 * rank(x & 1, y & 1) + rank(x >> 1 & 1, y >> 1 & 1)) as f32 + 0.5) / 16.0
@@ -96,7 +97,7 @@ mod tests {
         ranks.sort_by(f32::total_cmp);
         assert_eq!(ranks, (0..16).map(|rank| (rank as f32 + 0.5) / 16.0).collect::<Vec<_>>());
         assert_eq!(dithered([5, 6]), dithered([1, 2]));
-        // Half of the pixels at an alpha of ½ are a chequerboard.
+        // At an alpha of ½ the drawn pixels form a chequerboard.
         assert!((0..16).all(|at| (dithered([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
     }
 }

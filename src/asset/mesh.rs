@@ -1,5 +1,5 @@
-//! Skinned meshes: vertices in the space that they were bound in, the bones of a skin that they follow, triangles, and
-//! morph targets.
+//! Skinned meshes: vertices in the space in which they were bound, their influences, triangles, and morph
+//! targets.
 
 use super::indices::check_triangles;
 use super::morph::{MorphTarget, WeightKeys};
@@ -11,66 +11,69 @@ use crate::asset::skeleton::Skin;
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 1 << 24;
 
-/// The largest size of a coordinate.
+/// The largest absolute value of a coordinate.
 pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
-/// The most levels of detail of a mesh: itself, and [`Mesh::levels`].
+/// The most levels of detail of a mesh, itself and [`Mesh::levels`] together.
 pub const MAX_LEVELS: usize = 16;
 
-/// A coarser form of a mesh, of some of its vertices.
+/// A coarser level of a mesh, which uses a subset of its vertices.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshLevel {
-    /// Three a triangle, of the mesh's vertices; at least one triangle.
+    /// Three indices per triangle, of the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
-    /// Units of the model, not negative: how far the level's surface and the mesh's are apart, in the poses that were
-    /// looked at. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at places: no vertex of the mesh is further from
-    /// the level, and none of these places on the level from the mesh; what lies between may be.
+    /// The distance between the surfaces of the level and the mesh, in the model's units, at least 0: the
+    /// largest in the poses that were examined. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it
+    /// at samples: no vertex of the mesh is further from the level, and no sample of the level is further from
+    /// the mesh; points between samples may be.
     pub error: f32,
 }
 
 /// Triangles that follow the bones of one skin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Of the node, and the primitive's number behind it.
+    /// The node's name followed by the primitive's number.
     pub name: String,
-    /// Which of the model's skins.
+    /// Index of the skin in the model.
     pub skin: usize,
-    /// In the space of the skin's inverse bind matrices.
+    /// Positions in the space of the skin's inverse bind matrices.
     pub positions: Vec<[f32; 3]>,
-    /// One a vertex, unit length or 0.
+    /// One normal per vertex, of unit length or 0.
     pub normals: Vec<[f32; 3]>,
-    /// One a vertex: a unit vector along u, and ±1; the bitangent along v is that times normal × tangent. glTF's
-    /// fourth component has the other sign.
+    /// One tangent per vertex: a unit vector along u, and ±1. The bitangent, along v, is this sign times normal
+    /// × tangent. glTF's fourth component has the opposite sign.
     pub tangents: Vec<[f32; 4]>,
-    /// One a vertex, v down the image; those of the material's texture.
+    /// One pair of texture coordinates per vertex, for the material's texture; v points down the image.
     pub uv: Vec<[f32; 2]>,
-    /// Three a triangle, counter-clockwise seen from outside, where the skin's bones take it. Where these mirror it at
-    /// rest, that is clockwise as it was bound; import turns the file's triangles round there.
+    /// Three indices per triangle, counter-clockwise seen from outside once the skin's bones have transformed
+    /// it. Where the bones mirror it at rest, it is clockwise in the space of binding; the import reverses the
+    /// file's triangles there.
     pub indices: Vec<u32>,
-    /// Whether triangles are seen from inside too.
+    /// Whether triangles are also visible from inside.
     pub double_sided: bool,
-    /// Which of the model's materials; without, it takes the colour of whoever draws it.
+    /// Index of the material in the model; without one, the drawing code chooses the colour.
     pub material: Option<usize>,
-    /// What each vertex follows.
+    /// The influences of each vertex.
     pub influences: Influences,
-    /// What moves vertices before they are skinned.
+    /// Morph targets, which move vertices before they are skinned.
     pub targets: Vec<MorphTarget>,
-    /// One a target, where no clip moves it.
+    /// One weight per target, for clips that do not animate them.
     pub weights: Vec<f32>,
-    /// The clips that move the targets, and how.
+    /// The clips that animate the weights, each with its keys.
     pub weight_keys: Vec<(usize, WeightKeys)>,
-    /// Coarser and coarser, fewer than [`MAX_LEVELS`]: level 1 and on, the mesh itself is level 0. Each is of vertices
-    /// of the one before, and errors do not descend.
+    /// Coarser levels, fewer than [`MAX_LEVELS`], starting with level 1; level 0 is the mesh itself. Each uses
+    /// a subset of the vertices of the level before, and errors do not decrease.
     pub levels: Vec<MeshLevel>,
 }
 
 impl Mesh {
-    /// How many vertices.
+    /// Number of vertices.
     pub fn vertices(&self) -> usize {
         self.positions.len()
     }
 
-    /// Three a triangle of a level: 0 is the mesh itself, and one that it lacks its last.
+    /// The triangles of a level, three indices each. Level 0 is the mesh itself; a number beyond the last level
+    /// gives the last.
     pub fn triangles(&self, level: u32) -> &[u32] {
         match self.levels.len().min(level as usize) {
             0 => &self.indices,
@@ -78,7 +81,7 @@ impl Mesh {
         }
     }
 
-    /// Checks lengths, indices and ranges, and that it fits its skin.
+    /// Checks lengths, indices and ranges, and that the mesh matches its skin.
     ///
     /// # Errors
     /// [`InputError`] that names the field, with its index.
@@ -149,7 +152,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Which vertices triangles have.
+    /// For each vertex, whether the triangles use it.
     fn used(&self, indices: &[u32]) -> Vec<bool> {
         let mut used = vec![false; self.vertices()];
         indices.iter().for_each(|vertex| used[*vertex as usize] = true);
@@ -184,23 +187,23 @@ impl Mesh {
         Ok(())
     }
 
-    /// The weights of the morph targets at a time inside a clip.
+    /// The weights of the morph targets at a time inside a clip, in seconds.
     pub fn weights_at(&self, clip: usize, time: f32) -> Vec<f32> {
         let keys = self.weight_keys.iter().find(|(of, _)| *of == clip);
         keys.map_or_else(|| self.weights.clone(), |(_, keys)| keys.at(time))
     }
 
-    /// No weight of a target is ever further from 0 than this, in no clip; at least 1.
+    /// The largest absolute value that the weight of a target has in any clip; at least 1.
     fn largest_weight(&self, target: usize) -> f32 {
         let keyed = self.weight_keys.iter().map(|(_, keys)| keys.largest(target));
         keyed.fold(self.weights[target].abs().max(1.0), f32::max)
     }
 }
 
-/// Refuses what is not finite or larger than [`COORDINATE_LIMIT`].
+/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`].
 pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
     for (vertex, vector) in vectors.iter().enumerate() {
-        // NaN is not within.
+        // The comparison is false for NaN.
         let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
         if let Some(axis) = vector.as_ref().iter().position(|value| !is_within(value)) {
             let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
@@ -210,8 +213,8 @@ pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), 
     Ok(())
 }
 
-/// Normals for vertices that have none: the triangles' normals, weighted by their areas. A vertex without triangles
-/// gets +Z.
+/// Normals for vertices that have none: the normals of adjacent triangles, weighted by area. A vertex without
+/// triangles gets +Z.
 pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let mut sums = vec![glam::DVec3::ZERO; positions.len()];
     let position = |index: u32| glam::DVec3::from(positions[index as usize].map(f64::from));
@@ -224,10 +227,10 @@ pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f3
     sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
 }
 
-/// Tangents for vertices that have none: see [`mod@tangents`].
+/// Tangents for vertices that have none; see [`mod@tangents`].
 ///
 /// # Errors
-/// [`InputError`] for coordinates out of range, and indices of no vertex.
+/// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
 pub(crate) fn solved_tangents(
     positions: &[[f32; 3]],
     normals: &[[f32; 3]],
@@ -237,15 +240,16 @@ pub(crate) fn solved_tangents(
     tangents(&tangents::Mesh { positions, normals, uv, indices })
 }
 
-/// How far vertices reach from each bone that they follow: the largest distance, in the bone's space, from its origin
-/// to a vertex that it weighs, as morph targets may move it. 0 where a bone weighs none. Rounded up.
+/// For each bone, the largest distance, in the bone's space, from its origin to a vertex that follows it,
+/// wherever morph targets may move the vertex. 0 for a bone that no vertex follows. Rounded up.
 ///
-/// Times the bone's largest scale this bounds how far a turn of the bone by a small angle moves any vertex, per radian
-/// (the ρ of the `bounded` gate). A target counts with the largest weight that it has in any clip, at least 1: whoever
-/// sets larger weights by hand reaches further.
+/// This radius times the bone's largest scale bounds how far a rotation of the bone by a small angle moves any
+/// vertex, per radian (the ρ of the `bounded` gate). A target counts with the largest weight that it has in any
+/// clip, at least 1; larger weights that are set by hand are not covered.
 ///
 /// # Panics
-/// For meshes that do not fit the skins, and skins that do not fit `bones` bones: see [`Mesh::validate`].
+/// For meshes that do not match the skins, and for skins that do not match `bones` bones; see
+/// [`Mesh::validate`].
 pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
     let mut bone_radii = vec![0.0_f64; bones];
     for mesh in meshes {
@@ -267,11 +271,11 @@ pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
             }
         }
     }
-    // The nearest f32 is at most 2⁻²⁴ below; f64's own errors are far smaller.
+    // Rounding to f32 loses at most 2⁻²⁴; the errors of f64 are far smaller.
     bone_radii.into_iter().map(|bone_radius| (bone_radius * (1.0 + 1e-6)) as f32).collect()
 }
 
-/// How far each target moves each vertex at most.
+/// For each vertex, the largest displacement by each target.
 fn deltas_by_vertex(mesh: &Mesh) -> Vec<Vec<glam::DVec3>> {
     let mut deltas = vec![Vec::new(); mesh.vertices()];
     for (index, target) in mesh.targets.iter().enumerate() {
@@ -289,7 +293,7 @@ mod tests {
     use crate::asset::influences::Influence;
     use crate::asset::morph::MorphDelta;
 
-    /// One triangle; its last vertex follows two bones, one of them bound at x = 10 and at half the size.
+    /// One triangle, whose last vertex follows two bones, one of them bound at x = 10 and at half the size.
     fn triangle() -> (Mesh, Vec<Skin>) {
         let bind = glam::Mat4::from_scale(glam::Vec3::splat(0.5))
             * glam::Mat4::from_translation(glam::vec3(-10.0, 0.0, 0.0));
@@ -327,7 +331,7 @@ mod tests {
         assert_eq!(mesh.validate(&skins), Ok(()));
         let bone_radius = |mesh: &Mesh| bone_radii(5, &skins, std::slice::from_ref(mesh));
         let near = |found: f32, wanted: f32| (wanted..wanted * 1.000_002).contains(&found);
-        // The weight of −3 counts.
+        // The weight of −3 counts with its absolute value.
         let found = bone_radius(&mesh);
         assert!(near(found[3], 2.0 + 3.0) && near(found[1], 26.0_f32.sqrt() + 1.5), "{found:?}");
         assert_eq!([found[0], found[2], found[4]], [0.0; 3]);
@@ -378,7 +382,7 @@ mod tests {
 
     #[test]
     fn levels_are_nested_and_coarser_and_coarser() {
-        // Two triangles; then the first.
+        // A level with both triangles, then one with the first.
         let levelled = |levels: &[(&[u32], f32)]| {
             let (mut mesh, skins) = triangle();
             mesh.indices = vec![0, 1, 2, 2, 1, 0];

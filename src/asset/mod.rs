@@ -1,5 +1,5 @@
-//! Plain data that no device is needed for: models with their skeletons, skins, clips, meshes and materials, and their
-//! import.
+//! Plain data, independent of any device: models with their skeletons, skins, clips, meshes and materials, and
+//! their import.
 
 pub mod clip;
 pub mod gltf;

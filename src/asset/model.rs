@@ -1,5 +1,5 @@
-//! A character, or anything else that moves in parts or not at all: one skeleton, the skins that share it, its clips and
-//! its meshes.
+//! A model: one skeleton, the skins that share it, its clips and its meshes. It may be a character, or anything
+//! else, moving or not.
 
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
@@ -11,26 +11,26 @@ use crate::asset::{Material, Mesh};
 pub struct Model {
     /// The bones.
     pub skeleton: Skeleton,
-    /// What follows them.
+    /// The skins, which meshes follow.
     pub skins: Vec<Skin>,
-    /// What moves them.
+    /// The clips, which move the bones.
     pub clips: Vec<Clip>,
-    /// What is seen of it.
+    /// The meshes, which are drawn.
     pub meshes: Vec<Mesh>,
-    /// How many of these, from the first on, have a skin of the file; each of the others follows one bone as a whole, the
-    /// node that it hangs on.
+    /// How many of the meshes, from the first on, have a skin from the file. Each of the others follows one
+    /// bone as a whole: its node or an ancestor of that.
     pub skinned: usize,
-    /// What its meshes look like.
+    /// The materials of the meshes.
     pub materials: Vec<Material>,
-    /// What textures show: sRGB, alpha as it is, the first row on top.
+    /// The images of textures: sRGB with linear alpha, the top row first.
     pub images: Vec<image::RgbaImage>,
 }
 
 impl Model {
-    /// What a mesh looks like, where it has a material.
+    /// The material of a mesh, if it has one.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model lacks, and an image without texels.
+    /// [`InputError`] for a material or an image that the model does not have, and for an image without texels.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
         let Some(material) = self.materials.get(index) else {
@@ -53,7 +53,7 @@ impl Model {
         Ok(Some(material))
     }
 
-    /// The clip of this name, or of this number, counted from 0. A name that is a number wins.
+    /// The clip with this name or this index, counted from 0. A name that is a number takes precedence.
     ///
     /// # Errors
     /// [`InputError`] that lists the clips.

@@ -1,40 +1,40 @@
-//! Morph targets: how vertices move before they are skinned, and the keys of the targets' weights (glTF 2.0, sections
-//! 3.7.2.2 and 3.11).
+//! Morph targets, which move vertices before they are skinned, and the keys of their weights (glTF 2.0,
+//! sections 3.7.2.2 and 3.11).
 
 use super::clip::{Interpolation, check_times};
 use super::keyframe::{KeyframeCursor, keyframe_cursor};
 use super::transform::finite;
 use crate::InputError;
 
-/// What a weight of 1 adds to some vertices. The others do not move.
+/// The displacement of some vertices at a weight of 1. All other vertices stay.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MorphTarget {
-    /// The vertices, ascending.
+    /// Indices of the vertices, ascending.
     pub vertices: Vec<u32>,
-    /// One a vertex of the list: what is added to its position, normal and tangent.
+    /// One delta per listed vertex, added to its position, normal and tangent.
     pub deltas: Vec<MorphDelta>,
 }
 
-/// What a weight of 1 adds to a vertex.
+/// The displacement of a vertex at a weight of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MorphDelta {
-    /// To its position.
+    /// Added to its position.
     pub position: [f32; 3],
-    /// To its normal.
+    /// Added to its normal.
     pub normal: [f32; 3],
-    /// To its tangent.
+    /// Added to its tangent.
     pub tangent: [f32; 3],
 }
 
 impl MorphTarget {
-    /// Keeps what moves of one delta a vertex.
+    /// A target from one delta per vertex; vertices with a delta of 0 are left out.
     pub fn new(deltas: &[MorphDelta]) -> Self {
         let moving = (0..).zip(deltas).filter(|(_, delta)| **delta != MorphDelta::default());
         let (vertices, deltas) = moving.map(|(vertex, delta): (u32, _)| (vertex, *delta)).unzip();
         Self { vertices, deltas }
     }
 
-    /// Moves `copy`, which lies behind all others, as it moves this vertex.
+    /// Gives `copy`, whose index exceeds all others, the delta of `vertex`, if there is one.
     pub(crate) fn repeat(&mut self, vertex: u32, copy: u32) {
         if let Ok(at) = self.vertices.binary_search(&vertex) {
             self.vertices.push(copy);
@@ -43,7 +43,7 @@ impl MorphTarget {
     }
 }
 
-/// The weights of a mesh's morph targets in a clip.
+/// The keys of a mesh's morph weights in one clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightKeys {
     times: Vec<f32>,
@@ -53,12 +53,13 @@ pub struct WeightKeys {
 }
 
 impl WeightKeys {
-    /// Keys of `targets` weights: at each time one value a target, in splines their in-tangents, the values and their
-    /// out-tangents (per second). `paths` come before the fields of times and values.
+    /// Keys of `targets` weights. Each key has one value per target; in splines it has the in-tangents, the
+    /// values and the out-tangents (per second). `at_times` and `at_values` are the paths of these fields in
+    /// errors.
     ///
     /// # Errors
-    /// [`InputError`] for no keys or targets, times that descend, are negative, too large or not finite, a wrong
-    /// number of values, and values that are not finite.
+    /// [`InputError`] for no keys or targets; for times that descend, are negative, too large or not finite;
+    /// for a wrong number of values; and for values that are not finite.
     pub fn new(
         [at_times, at_values]: [&str; 2],
         times: Vec<f32>,
@@ -76,12 +77,12 @@ impl WeightKeys {
         Ok(Self { times, values, interpolation, targets })
     }
 
-    /// The last key's time in seconds.
+    /// The time of the last key, in seconds.
     pub fn duration(&self) -> f32 {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// The weights at a time inside the clip.
+    /// The weights at a time inside the clip, in seconds.
     pub fn at(&self, time: f32) -> Vec<f32> {
         let KeyframeCursor { key, fraction } = keyframe_cursor(&self.times, time);
         let key = key as usize;
@@ -115,14 +116,15 @@ impl WeightKeys {
         }
     }
 
-    /// No weight of a target is ever further from 0 than this.
+    /// A bound on the absolute value of a target's weight.
     pub fn largest(&self, target: usize) -> f32 {
         let all = (0..self.times.len()).map(|key| self.between(key, 0.0, target).abs());
         let values = all.fold(0.0, f32::max);
         if self.interpolation != Interpolation::CubicSpline {
             return values;
         }
-        // The weights of the tangents, t³ − 2t² + t and t³ − t², reach 4/27; together they never exceed 1/4.
+        // The weights of the tangents, t³ − 2t² + t and t³ − t², reach 4/27 in absolute value; the sum of both
+        // never exceeds 1/4.
         let tangent = |key: usize, part: usize| self.values[(3 * key + part) * self.targets + target].abs();
         let bends = (1..self.times.len())
             .map(|key| (self.times[key] - self.times[key - 1]) * tangent(key - 1, 2).max(tangent(key, 0)));
@@ -149,7 +151,7 @@ mod tests {
         assert_eq!((linear.largest(0), linear.largest(1)), (4.0, 1.0));
         let step = keys(&values, Interpolation::Step).expect("valid");
         assert_eq!((step.at(1.9), step.at(2.0)), (vec![0.0, 1.0], vec![4.0, -1.0]));
-        // In, value, out; the second target bends.
+        // In-tangents, values, out-tangents; the second target has a curve between its keys.
         let spline = [0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.0, -6.0, 4.0, 1.0, 0.0, 0.0];
         let spline = keys(&spline, Interpolation::CubicSpline).expect("valid");
         assert_eq!(

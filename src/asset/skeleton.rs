@@ -1,4 +1,4 @@
-//! Skeletons: bones in topological order, their rest pose, and the skins that are bound to them.
+//! Skeletons: bones in topological order with their rest pose, and the skins that are bound to them.
 
 use super::transform::{Transform, finite};
 use crate::InputError;
@@ -9,23 +9,23 @@ pub const MAX_BONES: usize = 1 << 20;
 /// A node of the skeleton.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bone {
-    /// As the file has it; names need not differ.
+    /// The bone's name in the file; names need not be unique.
     pub name: String,
-    /// The parent's index, below the bone's own.
+    /// Index of the parent, which is smaller than the bone's own.
     pub parent: Option<u32>,
-    /// Where it is, in its parent's space, when no clip moves it.
+    /// The bone's transform in its parent's space when no clip moves it.
     pub rest: Transform,
 }
 
 impl Bone {
-    /// The largest of its scales at rest; 1 where all are 0.
+    /// The largest of its scales at rest; 1 if all are 0.
     pub(crate) fn scale(&self) -> f64 {
         let largest = self.rest.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
         if largest > 0.0 { largest.into() } else { 1.0 }
     }
 }
 
-/// Bones, each after its parent. Nodes that no skin uses belong to it where joints hang below them.
+/// Bones, each after its parent. Nodes that no skin uses are bones too if there are joints below them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skeleton {
     bones: Vec<Bone>,
@@ -35,11 +35,11 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
-    /// A skeleton of `bones`; `joints` are those that skins use, in the order in which tools know them.
+    /// A skeleton of `bones`. `joints` are the bones that skins use, in the order in which tools list them.
     ///
     /// # Errors
-    /// [`InputError`] for no or too many bones, a parent that does not come before its child, a rest pose that is
-    /// not finite or has no rotation, and joints that are no bones or named twice.
+    /// [`InputError`] for no or too many bones, for a parent that does not come before its child, for a rest
+    /// pose that is not finite or has no rotation, and for joints that are not bones or are named twice.
     pub fn new(mut bones: Vec<Bone>, joints: Vec<u32>) -> Result<Self, InputError> {
         if !(1..=MAX_BONES).contains(&bones.len()) {
             return Err(InputError::new("bones.len", bones.len(), format!("must be in 1..={MAX_BONES}")));
@@ -80,38 +80,39 @@ impl Skeleton {
         &self.bones
     }
 
-    /// How many bones.
+    /// Number of bones.
     pub fn len(&self) -> usize {
         self.bones.len()
     }
 
-    /// False: a skeleton has bones.
+    /// Always false, since a skeleton has at least one bone.
     pub fn is_empty(&self) -> bool {
         self.bones.is_empty()
     }
 
-    /// The bones that skins use, in the order of the file: every skin's joints, each once. Of files without skins all bones.
+    /// The bones that skins use, in the order of the file: the joints of every skin, each once. If the file has
+    /// no skins, all bones.
     pub fn joints(&self) -> &[u32] {
         &self.joints
     }
 
-    /// Steps from the root, for each bone.
+    /// For each bone, the number of steps from its root.
     pub fn depths(&self) -> &[u32] {
         &self.depths
     }
 
-    /// Direct and indirect children, for each bone.
+    /// For each bone, the number of its descendants.
     pub fn descendants(&self) -> &[u32] {
         &self.descendants
     }
 
-    /// Every bone at rest, in its parent's space.
+    /// The rest transform of every bone, in its parent's space.
     pub fn rest(&self) -> Vec<Transform> {
         self.bones.iter().map(|bone| bone.rest).collect()
     }
 
-    /// By how much what is below each bone's parent is larger at rest than in its own units: the product of the largest
-    /// scales of the bones above. Scales of 0 count as 1.
+    /// For each bone, a bound on how much larger than in its own units lengths in the parent's space are at
+    /// rest: the product of the largest scales of its ancestors. Scales of 0 count as 1.
     pub(crate) fn scales_above(&self) -> Vec<f64> {
         let mut above = Vec::with_capacity(self.bones.len());
         for bone in &self.bones {
@@ -121,7 +122,8 @@ impl Skeleton {
         above
     }
 
-    /// How long each bone is at rest, in its own units: as far as its farthest child, or as its parent where it has none.
+    /// The length of each bone at rest, in its own units: the distance to its farthest child, or to its parent
+    /// if it has no child.
     pub fn lengths(&self) -> Vec<f64> {
         let reach = |bone: &Bone| glam::DVec3::from(bone.rest.translation.map(f64::from)).length();
         let mut lengths = vec![0.0_f64; self.bones.len()];
@@ -139,7 +141,7 @@ impl Skeleton {
         lengths
     }
 
-    /// For each of [`Skeleton::joints`], the place in that list of the nearest joint above it.
+    /// For each of [`Skeleton::joints`], the index in that list of the nearest joint above it.
     pub fn joint_parents(&self) -> Vec<Option<u32>> {
         let mut place = vec![None; self.bones.len()];
         for (joint, at) in self.joints.iter().zip(0..) {
@@ -171,23 +173,23 @@ fn descendants(bones: &[Bone]) -> Vec<u32> {
     descendants
 }
 
-/// Bones that vertices follow, and where those bones were when the vertices were bound.
+/// A skin: bones that vertices follow, and the inverse bind matrix of each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skin {
-    /// As the file has it.
+    /// The skin's name in the file.
     pub name: String,
-    /// Bones; what a vertex's joint numbers count.
+    /// Indices of bones; the joint numbers of vertices are indices of this list.
     pub bones: Vec<u32>,
-    /// One a bone, column-major: from the mesh's space into the bone's, at the time of binding.
+    /// One matrix per bone, column-major: from the mesh's space into the bone's, at the time of binding.
     pub inverse_binds: Vec<[f32; 16]>,
 }
 
 impl Skin {
-    /// Checks that it fits a skeleton.
+    /// Checks that the skin matches a skeleton.
     ///
     /// # Errors
-    /// [`InputError`] for bones that the skeleton lacks, other than one matrix a bone, and values that are not
-    /// finite or no affine matrix.
+    /// [`InputError`] for bones that the skeleton does not have, for a number of matrices that is not one per
+    /// bone, and for matrices that are not finite or not affine.
     pub fn validate(&self, skeleton: &Skeleton) -> Result<(), InputError> {
         if let Some(at) = self.bones.iter().position(|bone| *bone as usize >= skeleton.len()) {
             let bound = format!("must be below {}", skeleton.len());
@@ -204,10 +206,10 @@ impl Skin {
     }
 }
 
-/// Refuses what is not a finite affine matrix.
+/// Refuses a matrix that is not finite or not affine.
 pub(crate) fn inverse_bind(path: &str, matrix: &[f32; 16]) -> Result<(), InputError> {
     finite(path, matrix)?;
-    // Exporters write such rows with rounding errors.
+    // Exporters write the last row with rounding errors.
     let row = [3, 7, 11, 15].map(|index| matrix[index]);
     let error = row.iter().zip([0.0, 0.0, 0.0, 1.0]).map(|(value, wanted)| (value - wanted).abs());
     if error.fold(0.0, f32::max) > 1e-4 {

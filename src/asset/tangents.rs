@@ -1,46 +1,39 @@
-//! Tangent frames of meshes, solved in f64: what import falls back to, and the reference of `kernels/surface/tangent.wgsl`.
-//! How they are defined stands at [`crate::surface::tangent`].
+//! Tangent frames of meshes, solved in f64: the fallback of the import, and the reference of
+//! `kernels/surface/tangent.wgsl`. [`crate::surface::tangent`] has their definition.
 
 use glam::{DVec2, DVec3};
 
 use super::indices::check_triangles;
 use crate::InputError;
 
-/// The largest size of a coordinate, of positions and uv.
+/// The largest absolute value of a coordinate, for positions and uv.
 pub const COORDINATE_LIMIT: f32 = 1e18;
 
-/// A triangle whose area, tangent, or area in uv is no more than this contributes nothing. All three are measured
-/// after scaling the triangle to a box of edge 1, in uv in each direction by itself. The errors of
-/// f32 are at most a sixteenth of it: they turn a tangent of this length by less than four degrees.
+/// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three
+/// are measured after scaling the triangle to a box of edge 1, and in uv each direction separately. The errors
+/// of f32 are at most a sixteenth of it: they rotate a tangent of this length by less than four degrees.
 pub const DEGENERATE: f32 = 1.0 / 16_384.0;
 
-/// A sum of tangents vanishes when what is orthogonal to the normal is no more than this share of the weights.
-/// Handedness is negative when its sum is below minus this share.
+/// A sum of tangents counts as 0 if its part orthogonal to the normal is no more than this fraction of the
+/// weights. The handedness is negative if its sum is below minus this fraction.
 pub const VANISHING: f32 = 1.0 / 64.0;
 
-/// How far a component of a tangent may lie from the reference's, on any device, for a vertex of sensitivity 1
-/// ([`Frame`]).
+/// The largest difference allowed between a component of a tangent and the reference, on any device, for a
+/// vertex of sensitivity 1 ([`Frame`]).
 ///
-/// With ε = 2⁻²³ (`+ − ×` round to either neighbour, division 2.5ε, `inverseSqrt` 2ε, `sqrt` 4.5ε; fusing only
-/// helps): scaled edges of positions and uv carry 3.5ε of at most 1; a product 8ε; the tangent and the face
-/// normal, differences of two products, 18ε a component and 32ε as a vector, which normalising divides by their
-/// length and adds 5ε to. Unit edges carry 8.5ε, their chord c 17ε + 8ε·c. So a contribution carries
-/// 17ε + c·(15ε + 32ε / length), one to the handedness 17ε + c·(27ε + 32ε / length): both less than
-/// 32ε·(1 + c·(1 + 1 / length)). Adding n of them costs n·ε of the weights, taking off the normal's part (the
-/// unit normal carries 8ε) 20ε. Divided by what is left, that is 52ε·sensitivity; normalising and the second
-/// Gram–Schmidt step add 20ε: 72ε < 1e-5. Duff's basis from a normal that carries 8ε stays below 40ε.
+/// `docs/rounding-bounds.md` has the derivation.
 pub const TANGENT_BOUND: f32 = 1e-5;
 
 /// A triangle mesh with normals and texture coordinates.
 #[derive(Debug, Clone, Copy)]
 pub struct Mesh<'a> {
-    /// In any unit, finite, no component larger than [`COORDINATE_LIMIT`].
+    /// Positions in any unit, finite, no component larger than [`COORDINATE_LIMIT`].
     pub positions: &'a [[f32; 3]],
-    /// One a vertex, of any length.
+    /// One normal per vertex, of any length.
     pub normals: &'a [[f32; 3]],
-    /// One a vertex, finite, no component larger than [`COORDINATE_LIMIT`].
+    /// One pair of texture coordinates per vertex, finite, no component larger than [`COORDINATE_LIMIT`].
     pub uv: &'a [[f32; 2]],
-    /// Three a triangle, counter-clockwise seen from where normals point.
+    /// Three indices per triangle, counter-clockwise seen from the side to which normals point.
     pub indices: &'a [u32],
 }
 
@@ -57,7 +50,7 @@ impl Mesh<'_> {
             }
         }
         for (field, len) in [("positions.len", vertices), ("indices.len", self.indices.len())] {
-            // The adjacency's last offset counts all.
+            // The last offset of the adjacency is the number of all corners.
             if u32::try_from(len).is_err() {
                 return Err(InputError::new(field, len, format!("must be at most {}", u32::MAX)));
             }
@@ -80,18 +73,18 @@ fn coordinates<const N: usize>(field: &str, vectors: &[[f32; N]]) -> Result<(), 
     }
 }
 
-/// Which corners of triangles meet at each vertex. The reference and the kernel sum in its order, so that no two runs
-/// differ.
+/// The corners of triangles that meet at each vertex. The reference and the kernel sum in this order, so that
+/// no two runs differ.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adjacency {
-    /// Where each vertex's corners begin; one more than there are vertices.
+    /// Where each vertex's corners begin; one entry more than there are vertices.
     pub offsets: Vec<u32>,
-    /// Positions in the indices, ascending at each vertex.
+    /// Positions in the index list, ascending for each vertex.
     pub corners: Vec<u32>,
 }
 
 impl Adjacency {
-    /// Of valid `indices` to `vertices` vertices.
+    /// The adjacency of `vertices` vertices; `indices` must be valid.
     pub(crate) fn new(vertices: usize, indices: &[u32]) -> Self {
         let mut offsets = vec![0; vertices + 1];
         for index in indices {
@@ -116,7 +109,7 @@ impl Adjacency {
     }
 }
 
-/// 2⁻¹⁰⁰, its bits and those of 2¹⁰⁰.
+/// 2⁻¹⁰⁰, and its bits and those of 2¹⁰⁰.
 const LEAST: f64 = 7.888_609_052_210_118e-31;
 const LEAST_BITS: u32 = 0x0d80_0000;
 const LARGEST_BITS: u32 = 0x7180_0000;
@@ -124,13 +117,13 @@ const LARGEST_BITS: u32 = 0x7180_0000;
 /// A unit of the last place of numbers around 1.
 const EPSILON: f64 = f32::EPSILON as f64;
 
-/// A tangent frame, and how well f32 can tell it.
+/// A tangent frame, and its sensitivity to rounding in f32.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// Unit tangent x, y, z, orthogonal to the normal; handedness ±1.
+    /// Unit tangent x, y, z, orthogonal to the normal, and the handedness ±1.
     pub tangent: [f32; 4],
-    /// By how much [`TANGENT_BOUND`] must be multiplied at this vertex: 1 or more. Infinite where rounding decides
-    /// whether something counts as degenerate.
+    /// The factor for [`TANGENT_BOUND`] at this vertex: 1 or more. Infinite if rounding decides whether
+    /// something counts as degenerate.
     pub sensitivity: f64,
 }
 
@@ -142,7 +135,7 @@ pub fn tangents(mesh: &Mesh<'_>) -> Result<Vec<[f32; 4]>, InputError> {
     Ok(frames(mesh)?.into_iter().map(|frame| frame.tangent).collect())
 }
 
-/// As [`tangents`], with the sensitivity of each.
+/// As [`tangents`], with the sensitivity of each frame.
 ///
 /// # Errors
 /// [`InputError`] as [`Mesh::validate`].
@@ -157,7 +150,7 @@ struct Contribution {
     tangent: DVec3,
     weight: f64,
     handedness: f64,
-    /// Of the tangent and of the handedness.
+    /// Sensitivities of the tangent and of the handedness.
     sensitivity: DVec2,
 }
 
@@ -178,7 +171,7 @@ fn unit(vector: DVec3) -> DVec3 {
     vector / vector.dot(vector).sqrt()
 }
 
-/// What the triangle with this corner adds at the corner's vertex.
+/// The contribution of the triangle that has this corner to the corner's vertex.
 fn contribution(mesh: &Mesh<'_>, corner: u32, normal: DVec3) -> Contribution {
     let first = corner - corner % 3;
     let [vertex, next, last] = [corner, first + (corner + 1) % 3, first + (corner + 2) % 3]
@@ -220,12 +213,12 @@ fn contribution(mesh: &Mesh<'_>, corner: u32, normal: DVec3) -> Contribution {
     }
 }
 
-/// Infinite where `value` lies so near to a threshold that rounding decides.
+/// Infinite if `value` is so close to a threshold that rounding decides; otherwise 0.
 fn undecided(value: f64, threshold: f64, error: f64) -> f64 {
     if (value - threshold).abs() <= error { f64::INFINITY } else { 0.0 }
 }
 
-/// The first vector of the basis of Duff et al. 2017, from a unit normal.
+/// The first vector of the basis of Duff et al. 2017 for a unit normal.
 fn fallback(normal: DVec3, negative_z: bool) -> DVec3 {
     let side = if negative_z { -1.0 } else { 1.0 };
     let a = -1.0 / (side + normal.z);
@@ -252,7 +245,7 @@ fn frame(mesh: &Mesh<'_>, adjacency: &Adjacency, vertex: usize) -> Frame {
     }
     let flat = sum.tangent - normal * normal.dot(sum.tangent);
     let least = sum.weight * f64::from(VANISHING);
-    // n additions add n roundings: a unit is 32 of them.
+    // n additions add n roundings; the bound's unit covers 32 of them.
     let sensitivity = sum.sensitivity * (1.0 + corners.len() as f64 / 32.0);
     let error = f64::from(TANGENT_BOUND) * sensitivity;
     let vanishing = if sum.weight > 0.0 { undecided(flat.length(), least, error.x) } else { 0.0 };

@@ -1,37 +1,37 @@
-//! What a bone does to its parent's space: translation, rotation and scale, as keys hold them; and the affine
-//! matrices that chains of bones make.
+//! Transforms of bones as keys hold them, translation, rotation and scale, and the affine matrices that result
+//! from chains of bones.
 
 use crate::InputError;
 
-/// A quaternion shorter than this has no direction, and is refused.
+/// A quaternion shorter than this has no usable direction and is refused.
 pub const SHORTEST: f32 = 1e-6;
 
-/// `translation · rotation · scale`: scales first.
+/// The transform `translation · rotation · scale`, which scales first.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Transform {
-    /// In the parent's space, metres.
+    /// Translation in the parent's space, in metres.
     pub translation: [f32; 3],
     /// A unit quaternion (x, y, z, w); q and −q are the same rotation.
     pub rotation: [f32; 4],
-    /// Along the bone's own axes; may be negative or zero.
+    /// Scale factors along the bone's own axes; they may be negative or zero.
     pub scale: [f32; 3],
 }
 
 impl Transform {
-    /// Changes nothing.
+    /// The identity.
     pub const IDENTITY: Self =
         Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] };
 
-    /// A translation.
+    /// A transform that only translates.
     pub fn from_translation(translation: [f32; 3]) -> Self {
         Self { translation, ..Self::IDENTITY }
     }
 
-    /// The same with a rotation of length 1.
+    /// The same transform with a rotation of length 1.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]; `path` comes
-    /// before the field's name.
+    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]; `path`
+    /// precedes the field's name.
     pub fn checked(self, path: &str) -> Result<Self, InputError> {
         finite(&format!("{path}.translation"), &self.translation)?;
         finite(&format!("{path}.scale"), &self.scale)?;
@@ -45,7 +45,7 @@ impl Default for Transform {
     }
 }
 
-/// Refuses values that are not finite; names the first with its index.
+/// Refuses values that are not finite, and names the first with its index.
 pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
@@ -53,7 +53,7 @@ pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
     }
 }
 
-/// A quaternion of length 1.
+/// The quaternion scaled to length 1.
 pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputError> {
     finite(path, &quaternion)?;
     let wide = quaternion.map(f64::from);
@@ -65,11 +65,11 @@ pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputEr
     Ok(wide.map(|component| (component / length) as f32))
 }
 
-/// The first three rows of an affine 4×4 matrix: row r of `m · (p, 1)` is a dot product with `m[r]`. The layout of
-/// palettes: three `vec4` a bone.
+/// The first three rows of an affine 4×4 matrix: component r of `m · (p, 1)` is the dot product with `m[r]`.
+/// Palettes have this layout, three `vec4` per bone.
 pub type Affine = [[f32; 4]; 3];
 
-/// Changes nothing.
+/// The identity.
 pub const AFFINE_IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
 /// All sixteen values of an affine matrix, column by column.
@@ -78,10 +78,11 @@ pub fn column_major(affine: &Affine) -> [f32; 16] {
     std::array::from_fn(|index| row(index % 4, index / 4))
 }
 
-/// Splits a column-major matrix into translation, rotation and scale. A mirrored one gets a negative x scale.
+/// Decomposes a column-major matrix into translation, rotation and scale. A mirrored matrix gets a negative x
+/// scale.
 ///
 /// # Errors
-/// [`InputError`] for values that are not finite, a last row other than 0 0 0 1, and shear.
+/// [`InputError`] for values that are not finite, for a last row other than 0 0 0 1, and for shear.
 pub(crate) fn decomposed(path: &str, matrix: &[f32; 16]) -> Result<Transform, InputError> {
     finite(path, matrix)?;
     let refused = |bound| Err(InputError::new(path, format!("{matrix:?}"), bound));
@@ -110,10 +111,10 @@ pub(crate) fn decomposed(path: &str, matrix: &[f32; 16]) -> Result<Transform, In
     })
 }
 
-/// How far a matrix may lie from its parts' product, as a share of its largest scale.
+/// The largest difference between a matrix and the product of its parts, as a fraction of its largest scale.
 const SHEAR: f64 = 1e-3;
 
-/// Unit axes of a matrix, with right angles where a scale is zero.
+/// The unit axes of a matrix; axes whose scale is zero are chosen at right angles.
 fn completed(columns: [glam::DVec3; 3], scale: [f64; 3], largest: f64) -> [glam::DVec3; 3] {
     let is_there = |axis: usize| scale[axis] > 1e-12 * largest;
     let mut axes =

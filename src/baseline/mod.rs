@@ -1,5 +1,5 @@
-//! Kernels that others are measured against: what moving the same bytes costs, and the arithmetic that
-//! cannot be avoided. Every speed figure of relievo is a ratio to one of them in the same run.
+//! Kernels against which others are measured: the cost of moving the same bytes, and of arithmetic that cannot
+//! be avoided. Every speed figure of relievo is a ratio to one of them in the same run.
 
 #[cfg(feature = "verify")]
 pub mod bench;

@@ -1,54 +1,54 @@
-//! What can go wrong on the device, each with what to do about it.
+//! Failures of the device, each with advice on what to do.
 
 /// A failure of the device.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No adapter matches what was asked for.
+    /// No adapter matches the request.
     #[error("no GPU adapter {wanted}; {seen}")]
     NoAdapter {
-        /// What was asked for.
+        /// The request.
         wanted: String,
-        /// What there is, and what to do.
+        /// The adapters that exist, and what to do.
         seen: String,
     },
-    /// The adapter gives no device with WebGPU's default limits.
+    /// The adapter provides no device with WebGPU's default limits.
     #[error(
         "adapter `{adapter}` gives no device: {reason}; choose another with RELIEVO_ADAPTER (`relievo info` lists them)"
     )]
     NoDevice {
         /// The adapter's name.
         adapter: String,
-        /// The driver's words.
+        /// The driver's message.
         reason: String,
     },
-    /// The device is gone: everything made on it is too.
+    /// The device is lost, and with it everything that was created on it.
     #[error("the GPU device was lost ({reason}); create a new `Gpu` and everything on it again")]
     DeviceLost {
-        /// The driver's words.
+        /// The driver's message.
         reason: String,
     },
     /// The device has no memory left.
     #[error("the GPU has no memory left ({reason}); use a smaller batch or drop buffers")]
     OutOfMemory {
-        /// wgpu's words.
+        /// wgpu's message.
         reason: String,
     },
-    /// wgpu refused a call.
+    /// wgpu rejected a call.
     #[error("wgpu refused a call: {reason}; please report this with the output of `relievo info`")]
     Validation {
-        /// wgpu's words.
+        /// wgpu's message.
         reason: String,
     },
-    /// The driver failed for a reason of its own.
+    /// The driver failed for an internal reason.
     #[error("the GPU driver failed: {reason}; `relievo verify` tells which kernels it runs correctly")]
     Internal {
-        /// wgpu's words.
+        /// wgpu's message.
         reason: String,
     },
-    /// A pass needs more than the device's limit.
+    /// A pass needs more than a limit of the device permits.
     #[error("{pass} needs {limit} = {needed}, and this device allows {available}; {remedy}")]
     Limit {
-        /// The pass.
+        /// Name of the pass.
         pass: &'static str,
         /// WebGPU's name of the limit.
         limit: &'static str,
@@ -59,12 +59,12 @@ pub enum GpuError {
         /// What to do.
         remedy: &'static str,
     },
-    /// The device did not answer.
+    /// The device did not finish in time.
     #[error(
         "the GPU did not finish within {seconds} s; the driver may hang: try a smaller batch or another adapter"
     )]
     Hung {
-        /// How long we waited.
+        /// The time waited, in seconds.
         seconds: u64,
     },
 }
@@ -73,7 +73,7 @@ impl From<wgpu::Error> for GpuError {
     fn from(error: wgpu::Error) -> Self {
         match error {
             wgpu::Error::OutOfMemory { source } => Self::OutOfMemory { reason: source.to_string() },
-            // A caller's own device has the caller's handlers: what tells of its loss is the refusal.
+            // A caller's own device has the caller's handlers, so that only the rejected call reveals its loss.
             wgpu::Error::Validation { description, .. } if description.contains("device is lost") => {
                 Self::DeviceLost { reason: description }
             }

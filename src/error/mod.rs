@@ -1,4 +1,4 @@
-//! What can go wrong: bad input, files, and the GPU.
+//! Errors: invalid input, files, and the GPU.
 
 #[cfg(feature = "gpu")]
 mod gpu;
@@ -75,7 +75,7 @@ impl Error {
         Self::Output { path: path.as_ref().to_owned(), reason: reason.to_string() }
     }
 
-    /// Whether the user's input is at fault, rather than the machine.
+    /// Whether the user's input is at fault, and not the machine.
     pub fn is_input(&self) -> bool {
         matches!(self, Self::Input(_) | Self::InputFile { .. } | Self::File { .. })
     }

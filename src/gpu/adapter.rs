@@ -1,16 +1,16 @@
-//! Choosing an adapter by name or kind.
+//! Selection of an adapter by name or kind.
 
 use super::GpuError;
 
-/// The environment variable that chooses an adapter where [`Options::adapter`] does not.
+/// The environment variable that selects an adapter when [`Options::adapter`] does not.
 pub const ADAPTER_VARIABLE: &str = "RELIEVO_ADAPTER";
 
 /// How to choose an adapter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
-    /// A kind (`discrete`, `integrated`, `virtual`, `cpu`) or a part of the adapter's name or driver, in any
-    /// case (`llvmpipe`, `swiftshader`, `H200`). Default: the variable `RELIEVO_ADAPTER`, else the fastest
-    /// kind there is.
+    /// A kind (`discrete`, `integrated`, `virtual`, `cpu`), or a part of the adapter's name or driver, in any
+    /// case (`llvmpipe`, `swiftshader`, `H200`). Default: the variable `RELIEVO_ADAPTER`, or else the fastest
+    /// kind available.
     pub adapter: Option<String>,
 }
 
@@ -52,7 +52,7 @@ impl AdapterSummary {
             || self.driver.to_lowercase().contains(&wanted)
     }
 
-    // The fastest kind first.
+    // The fastest kind ranks first.
     fn rank(&self) -> usize {
         let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
         kinds.iter().position(|kind| *kind == self.kind).unwrap_or(kinds.len())
@@ -65,7 +65,7 @@ impl std::fmt::Display for AdapterSummary {
     }
 }
 
-/// Every adapter of this machine, the one that would be chosen first.
+/// Every adapter of this machine, the one that would be selected by default first.
 pub fn adapters() -> Vec<AdapterSummary> {
     let mut all: Vec<_> = (pollster::block_on(enumerate()).iter())
         .map(|adapter| AdapterSummary::of(&adapter.get_info()))
@@ -75,7 +75,7 @@ pub fn adapters() -> Vec<AdapterSummary> {
 }
 
 async fn enumerate() -> Vec<wgpu::Adapter> {
-    // GL only where there is nothing else: its drivers serve compute badly, and look for a window system.
+    // GL is used only if there is nothing else: its drivers serve compute badly, and look for a window system.
     let native = enumerate_on(wgpu::Backends::all() - wgpu::Backends::GL).await;
     if native.is_empty() { enumerate_on(wgpu::Backends::GL).await } else { native }
 }

@@ -1,10 +1,10 @@
-//! What generated bindings are made of: see `gpu::bindings`.
+//! The parts from which generated bindings are built; see `gpu::bindings`.
 
 use std::marker::PhantomData;
 
 use super::Buffer;
 
-/// What generated code uses.
+/// The names that generated code uses.
 pub(crate) mod prelude {
     pub(crate) use super::Slice;
     pub(crate) use crate::gpu::{Gpu, GpuError, Group as BindGroup, Kernel, Uniform, shaders};
@@ -31,7 +31,8 @@ impl<'a, T> Slice<'a, T> {
         self.raw.as_entire_binding()
     }
 
-    /// The same bytes as elements of another type: rows of a matrix, say. One size must be a multiple of the other.
+    /// The same bytes as elements of another type, for example the rows of a matrix. The size of one type must
+    /// be a multiple of the other's.
     pub(crate) fn cast<U>(self) -> Slice<'a, U> {
         const {
             let (from, to) = (size_of::<T>(), size_of::<U>());

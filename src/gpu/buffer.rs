@@ -22,10 +22,10 @@ pub struct Buffer<T> {
 }
 
 impl<T: bytemuck::Pod> Buffer<T> {
-    /// A zeroed buffer. An empty one gets room for one element, since WebGPU binds no empty ranges.
+    /// A buffer of zeros. An empty one gets room for one element, since WebGPU binds no empty ranges.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] when it is larger than one binding may be, [`GpuError::OutOfMemory`].
+    /// [`GpuError::Limit`] when it is larger than a binding may be, [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
         let size = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
         if size > gpu.max_binding() {
@@ -69,7 +69,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, bytemuck::cast_slice(data)))
     }
 
-    /// Replaces `data.len()` elements from `first` on.
+    /// Replaces `data.len()` elements, starting at `first`.
     ///
     /// # Errors
     /// [`GpuError::Validation`] when they reach beyond the buffer's end.
@@ -78,25 +78,25 @@ impl<T: bytemuck::Pod> Buffer<T> {
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, offset, bytemuck::cast_slice(data)))
     }
 
-    /// The elements, once everything that was submitted before the first poll has run.
+    /// Reads the elements as they are once everything submitted before the first poll has run.
     ///
-    /// Never blocks: the future is woken when the device has answered. A browser's event loop hears the device
-    /// by itself. Elsewhere somebody has to listen, or the future never wakes: call
-    /// `gpu.device().poll(wgpu::PollType::Poll)` once a frame, or [`Gpu::wait`] on a thread of its own.
+    /// The call never blocks: the future is woken when the device has answered. A browser's event loop notices
+    /// that by itself. Elsewhere the program must poll the device, or the future never wakes: call
+    /// `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or [`Gpu::wait`] on a thread of its own.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
         let bytes = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await?;
-        // The mapped bytes may lie anywhere, so the elements are copied, not cast in place.
+        // The mapped bytes may be unaligned, so the elements are copied and not cast in place.
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// [`Buffer::read`], blocking until the device has finished. Not for browsers, which never answer while a
-    /// program waits.
+    /// As [`Buffer::read`], but blocks until the device has finished. Do not use it in browsers, where the
+    /// answer never arrives while a program waits.
     ///
     /// # Errors
-    /// Whatever the device reports, or [`GpuError::Hung`].
+    /// Errors of the device, or [`GpuError::Hung`].
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
         let readback = Readback::start(gpu, &self.raw, self.content_bytes())?;
         gpu.wait()?;
@@ -169,7 +169,7 @@ impl<T: ShaderSize + WriteInto> Uniform<T> {
     /// Replaces the value.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn write(&self, gpu: &Gpu, value: &T) -> Result<(), GpuError> {
         let bytes = uniform_bytes(value)?;
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, &bytes))

@@ -1,9 +1,9 @@
-//! Dispatches that are prepared once and recorded every frame.
+//! Jobs: dispatches that are prepared once and recorded every frame.
 
 use super::kernel::{Group, Kernel};
 use super::{Gpu, GpuError};
 
-/// One dispatch with everything bound.
+/// One dispatch with its pipeline and bind groups.
 #[derive(Debug, Clone)]
 pub struct Step {
     /// The pipeline.
@@ -31,8 +31,8 @@ impl Step {
     }
 }
 
-/// Invocations after which [`Job::run`] submits what it has: some tenths of a second on a slow GPU. Watchdogs of
-/// operating systems end what takes seconds.
+/// The number of invocations after which [`Job::run`] submits: some tenths of a second of work on a slow GPU.
+/// Operating systems abort work that takes seconds.
 pub const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
 
 /// Dispatches that belong together: prepared once, recorded as often as wanted without allocation.
@@ -72,11 +72,11 @@ impl Job {
         self.steps.iter().for_each(|step| step.dispatch(pass));
     }
 
-    /// Runs all steps and waits. Long jobs go to the device in several submissions, each with at most `most`
+    /// Runs all steps and waits. Long jobs are split into several submissions, each with at most `most`
     /// invocations (see [`INVOCATIONS_A_SUBMISSION`]) or one step.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn run(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
         self.submissions(most).into_iter().try_for_each(|steps| {
             gpu.run(self.label, |encoder| {
@@ -103,7 +103,8 @@ impl Job {
     }
 }
 
-/// Dispatches whose workgroups kernels write: prepared once, recorded as often as wanted without allocation.
+/// Indirect dispatches, whose numbers of workgroups are written by kernels: prepared once, and recorded as
+/// often as wanted without allocation.
 #[derive(Debug, Clone)]
 pub struct IndirectJob {
     label: &'static str,
@@ -113,7 +114,8 @@ pub struct IndirectJob {
 }
 
 impl IndirectJob {
-    /// A dispatch for each bind group; the byte of `arguments` where its workgroups along x, y and z begin stands with it.
+    /// Prepares one dispatch for each bind group, each with the byte offset in `arguments` at which its
+    /// workgroups along x, y and z begin.
     pub fn new(
         label: &'static str,
         kernel: &Kernel,
@@ -138,7 +140,7 @@ impl IndirectJob {
     }
 }
 
-/// Begins a compute pass. One for many jobs is cheaper than one each.
+/// Begins a compute pass. One pass for many jobs is cheaper than one for each.
 pub fn compute_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, label: &'static str) -> wgpu::ComputePass<'a> {
     encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None })
 }

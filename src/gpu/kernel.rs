@@ -1,9 +1,9 @@
-//! Compute pipelines and bind groups, laid out by the manifest that `build.rs` wrote.
+//! Compute pipelines and bind groups, with the layouts of the manifest that `build.rs` writes.
 
 use super::shaders::{Binding, BindingKind, Shader, Stage};
 use super::{Gpu, GpuError};
 
-/// A compute pipeline of one shader with its override constants set.
+/// A compute pipeline of one shader, with its override constants set.
 #[derive(Debug, Clone)]
 pub struct Kernel {
     shader: &'static Shader,
@@ -11,15 +11,15 @@ pub struct Kernel {
     layouts: Vec<wgpu::BindGroupLayout>,
 }
 
-/// Something to bind.
+/// A resource to bind.
 pub type Resource<'a> = wgpu::BindingResource<'a>;
 
 /// Bind groups of one kernel, in order.
 pub type Group = wgpu::BindGroup;
 
 impl Kernel {
-    /// Compiles the pipeline, or shares the same one that was compiled on this device before. `overrides` sets
-    /// override constants by name.
+    /// Compiles the pipeline, or returns the same one if it was compiled on this device before. `overrides`
+    /// sets override constants by name.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -38,7 +38,7 @@ impl Kernel {
                 entry_point: None,
                 compilation_options: wgpu::PipelineCompilationOptions {
                     constants: overrides,
-                    // Every kernel writes all of what it reads from workgroup memory.
+                    // Every kernel writes workgroup memory before it reads it.
                     zero_initialize_workgroup_memory: false,
                 },
                 cache: None,
@@ -50,15 +50,16 @@ impl Kernel {
     /// Binds the resources of one group, in the order of their bindings.
     ///
     /// # Errors
-    /// [`GpuError::Validation`] when they do not fit the shader.
+    /// [`GpuError::Validation`] when they do not match the shader.
     pub fn bind(&self, gpu: &Gpu, group: u32, resources: &[Resource<'_>]) -> Result<Group, GpuError> {
         bind(gpu, self.shader, &self.layouts, group, resources)
     }
 
-    /// Binds resources of one group by their numbers.
+    /// Binds the resources of one group by their binding numbers.
     ///
     /// # Errors
-    /// [`GpuError::Validation`] when the kernel is another shader's, and when they do not fit the shader.
+    /// [`GpuError::Validation`] when the kernel belongs to another shader, and when the resources do not match
+    /// the shader.
     pub(crate) fn bind_group(
         &self,
         gpu: &Gpu,
@@ -83,7 +84,7 @@ impl Kernel {
         })
     }
 
-    /// Workgroups for `invocations` in one row, spread over x and y where they exceed the limit of a dimension.
+    /// Workgroups for `invocations` in one row, spread over x and y if they exceed the limit of one dimension.
     pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
@@ -99,7 +100,8 @@ impl Kernel {
     }
 }
 
-/// Workgroups along x, y and z: rows as long as the device allows. For none, none along y.
+/// Workgroups along x, y and z for `groups` in all, in rows as long as the device permits. For 0 groups the
+/// count along y is 0.
 pub fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]
@@ -126,10 +128,10 @@ pub fn pipeline_layout(
     })
 }
 
-/// The bind group layouts of a shader, one for every group up to its last.
+/// The bind group layouts of a shader, one for every group up to the last that it uses.
 ///
 /// # Errors
-/// [`GpuError::Validation`] when the device's limits do not allow them.
+/// [`GpuError::Validation`] when the device's limits do not permit them.
 pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
     let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
     gpu.scoped(|| {
@@ -153,7 +155,7 @@ pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>,
 /// Binds the resources of one group, in the order of their bindings.
 ///
 /// # Errors
-/// [`GpuError::Validation`] when they do not fit the shader.
+/// [`GpuError::Validation`] when they do not match the shader.
 pub fn bind(
     gpu: &Gpu,
     shader: &Shader,

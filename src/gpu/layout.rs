@@ -1,8 +1,8 @@
-//! Structs that host and shader share: encase's layout against naga's reflection of the flat shader.
+//! Checks of structs that host and shader share: encase's layout against naga's reflection of the flat shader.
 
 use super::shaders::Shader;
 
-/// Compares a struct's size and member offsets with the shader's struct of that name.
+/// Compares the size and member offsets of a struct with those of the shader's struct of the same name.
 pub(crate) fn check(shader: &Shader, name: &str, size: u64, offsets: &[u64]) -> Result<(), String> {
     let found = shader.structs.iter().find(|layout| layout.name == name);
     let layout = found.ok_or_else(|| format!("{} has no struct `{name}`", shader.name))?;
@@ -13,7 +13,7 @@ pub(crate) fn check(shader: &Shader, name: &str, size: u64, offsets: &[u64]) -> 
     Ok(())
 }
 
-/// A `u32` constant of the flat shader that the host has too.
+/// The value of a `u32` constant of the flat shader.
 #[cfg(test)]
 pub(crate) fn constant(shader: &Shader, name: &str) -> Option<u32> {
     let line =
@@ -21,7 +21,7 @@ pub(crate) fn constant(shader: &Shader, name: &str) -> Option<u32> {
     line.strip_suffix("u;")?.parse().ok()
 }
 
-/// A test that a `ShaderType` is laid out as the shader's struct of that name.
+/// Defines a test that a `ShaderType` has the layout of the shader's struct of the same name.
 macro_rules! layout_test {
     ($test:ident: $type:ty = $shader:ident $name:literal) => {
         #[cfg(test)]

@@ -1,9 +1,9 @@
-//! How many bytes the storage buffers of a device hold.
+//! Accounting of the bytes that a device's storage buffers hold.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Bytes in every [`super::Buffer`] of a device and its clones: now, and the most at once.
+/// The bytes of every [`super::Buffer`] of a device and its clones: the current number, and the peak.
 #[derive(Debug, Default)]
 pub struct Memory {
     now: AtomicU64,
@@ -11,12 +11,12 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Bytes held now.
+    /// Bytes held at present.
     pub fn now(&self) -> u64 {
         self.now.load(Ordering::SeqCst)
     }
 
-    /// The most bytes held at once since the last call.
+    /// The peak since the last call.
     pub fn take_most(&self) -> u64 {
         self.most.swap(self.now(), Ordering::SeqCst)
     }
@@ -28,7 +28,7 @@ impl Memory {
     }
 }
 
-/// Bytes that count until this is dropped.
+/// Bytes that are counted until this value is dropped.
 #[derive(Debug)]
 pub(super) struct Held {
     memory: Arc<Memory>,

@@ -1,8 +1,8 @@
-//! The device: choosing an adapter or embedding in a program that has one, typed buffers, readback, kernels
-//! and timing. The only module that opens devices; `render` makes its textures and pipelines on them.
+//! The device: opening one, or using that of an embedding program; typed buffers, readback, kernels and timing.
+//! This is the only module that opens devices; `render` creates its textures and pipelines on them.
 //!
-//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing here
-//! panics or aborts.
+//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing in this
+//! module panics or aborts.
 
 mod adapter;
 pub(crate) mod bind;
@@ -32,18 +32,18 @@ pub use timer::{Measurement, TimedBy, Timer};
 
 use shared::Shared;
 
-/// How long a wait for the device may take before it counts as hung.
+/// The longest wait for the device before it counts as hung.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// What the handlers of an own device have heard.
+/// Errors that the handlers of an own device have received.
 #[derive(Debug, Default)]
 struct Heard {
     lost: Option<String>,
     error: Option<GpuError>,
 }
 
-/// A device and its queue, with what relievo needs to know of the adapter. Clones share the device, and the
-/// pipelines compiled on it.
+/// A device and its queue, with the properties of the adapter that relievo uses. Clones share the device and
+/// the pipelines compiled on it.
 #[derive(Debug, Clone)]
 pub struct Gpu {
     device: wgpu::Device,
@@ -59,8 +59,8 @@ pub struct Gpu {
 pub(crate) type RenderPipeline = (wgpu::RenderPipeline, Vec<wgpu::BindGroupLayout>);
 
 impl Gpu {
-    /// Opens a device of its own, without a window, with WebGPU's default limits; storage bindings may be larger,
-    /// and there may be more of them, where the adapter offers it.
+    /// Opens a device of its own, without a window, with WebGPU's default limits. Storage bindings may be
+    /// larger and more numerous if the adapter permits it.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
@@ -69,7 +69,7 @@ impl Gpu {
         pollster::block_on(Self::headless_async(options))
     }
 
-    /// [`Gpu::headless`] for programs that must not block, a browser among them.
+    /// As [`Gpu::headless`], for programs that must not block, for example in a browser.
     ///
     /// # Errors
     /// As [`Gpu::headless`].
@@ -91,8 +91,8 @@ impl Gpu {
         Ok(Self { heard, ..Self::new(device, queue, summary) })
     }
 
-    /// Embeds in a program that has its own device. Its error handlers are left alone; relievo's own calls
-    /// are wrapped in error scopes.
+    /// Uses the device of an embedding program. The program's error handlers stay in place; relievo wraps its
+    /// own calls in error scopes.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let summary = AdapterSummary::of(&device.adapter_info());
         Self::new(device, queue, summary)
@@ -118,7 +118,7 @@ impl Gpu {
         &self.summary
     }
 
-    /// What relievo's storage buffers hold on this device.
+    /// The bytes that relievo's storage buffers hold on this device.
     pub fn memory(&self) -> &Arc<Memory> {
         &self.memory
     }
@@ -137,7 +137,7 @@ impl Gpu {
     /// Records with `record`, submits, and waits until the device has finished.
     ///
     /// # Errors
-    /// Whatever the device reports: see [`GpuError`].
+    /// The errors of [`GpuError`] that the device reports.
     pub fn run(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<(), GpuError> {
         self.scoped(|| {
             let mut encoder = self.encoder(label);
@@ -150,7 +150,7 @@ impl Gpu {
     /// Waits until everything submitted so far has run.
     ///
     /// # Errors
-    /// A lost device or an error that was reported meanwhile, or [`GpuError::Hung`].
+    /// The loss of the device, an error that was reported in the meantime, or [`GpuError::Hung`].
     pub fn wait(&self) -> Result<(), GpuError> {
         let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
         let polled = self.device.poll(poll);
@@ -158,10 +158,10 @@ impl Gpu {
         polled.map(|_| ()).map_err(|_| GpuError::Hung { seconds: PATIENCE.as_secs() })
     }
 
-    /// The first error that the device has reported outside a call that returned it.
+    /// Checks for errors that the device has reported outside a call that returned them.
     ///
     /// # Errors
-    /// That error.
+    /// The first of these errors.
     pub fn check(&self) -> Result<(), GpuError> {
         let mut heard = self.heard.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(reason) = &heard.lost {
@@ -191,15 +191,15 @@ impl Gpu {
             first = first.or(error);
         }
         let Some(error) = first else { return Ok(done) };
-        // A lost device refuses every call; polling tells why it was lost.
+        // A lost device rejects every call; polling tells why it was lost.
         let _ = self.device.poll(wgpu::PollType::Poll);
         self.check()?;
         Err(GpuError::from(error))
     }
 }
 
-/// WebGPU's default limits, but for the storage bindings that the adapter offers: some buffers cannot be split, and some
-/// kernels stand for several where a shader may bind enough.
+/// WebGPU's default limits, with the adapter's own limits for the size and number of storage bindings: some
+/// buffers cannot be split, and some kernels replace several others where a shader may bind enough buffers.
 fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
     let default = wgpu::Limits::default();
     // Shaders count words in u32 with room to spare.

@@ -1,22 +1,22 @@
-//! Bytes on their way from the device to the host.
+//! Copies of bytes from the device to the host.
 
 use futures_channel::oneshot::{Receiver, channel};
 
 use super::{Gpu, GpuError};
 
-/// A copy that was submitted, and the device's answer that it has arrived.
+/// A submitted copy, and the receiver of the device's answer that it has arrived.
 pub(super) struct Readback {
     staging: wgpu::Buffer,
     size: u64,
-    // None where there is nothing to read.
+    // `None` if there is nothing to read.
     mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
 impl Readback {
-    /// Submits a copy of the first `size` bytes of `buffer`, and asks for them.
+    /// Submits a copy of the first `size` bytes of `buffer`, and maps it.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn start(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Self, GpuError> {
         let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         gpu.scoped(|| {
@@ -34,14 +34,14 @@ impl Readback {
             gpu.queue().submit([encoder.finish()]);
             let (sender, receiver) = channel();
             staging.map_async(wgpu::MapMode::Read, .., move |result| {
-                // The receiver is gone only when the caller gave up waiting.
+                // The receiver no longer exists if the caller gave up waiting.
                 let _ = sender.send(result);
             });
             Self { staging, size, mapped: Some(receiver) }
         })
     }
 
-    /// The bytes, once the device has answered. Pending for ever where nobody polls the device.
+    /// The bytes, once the device has answered. The future stays pending if nobody polls the device.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].

@@ -1,4 +1,4 @@
-//! The flat, validated WGSL of every pass, with what its bindings are. Written by `build.rs`.
+//! The flat, validated WGSL of every pass, with a description of its bindings. `build.rs` writes it.
 
 /// A pipeline stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -12,16 +12,16 @@ pub enum Stage {
     Compute,
 }
 
-/// A function that a pipeline starts in.
+/// An entry point of a shader.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct EntryPoint {
     /// The function's name.
     pub name: &'static str,
     /// Its stage.
     pub stage: Stage,
-    /// Invocations a workgroup; zeros outside compute.
+    /// Invocations per workgroup; zeros outside compute.
     pub workgroup_size: [u32; 3],
-    /// What it takes from vertex buffers; nothing outside vertex stages.
+    /// Its vertex attributes; empty outside vertex stages.
     pub inputs: &'static [Input],
 }
 
@@ -37,7 +37,7 @@ pub struct Input {
     pub ty: &'static str,
 }
 
-/// What a binding takes.
+/// The kind of resource at a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BindingKind {
@@ -66,7 +66,7 @@ pub struct Binding {
     pub binding: u32,
     /// The variable's name.
     pub name: &'static str,
-    /// What it takes.
+    /// The kind of resource.
     pub kind: BindingKind,
     /// WGSL's name of its type: `array<vec4<f32>>`. Structs are among [`Shader::structs`].
     #[serde(rename = "type")]
@@ -80,9 +80,9 @@ pub struct Binding {
 pub struct Struct {
     /// Its name.
     pub name: &'static str,
-    /// Bytes.
+    /// Size in bytes.
     pub size: u32,
-    /// In the order of their offsets.
+    /// Members in the order of their offsets.
     pub members: &'static [Member],
 }
 
@@ -91,7 +91,7 @@ pub struct Struct {
 pub struct Member {
     /// Its name.
     pub name: &'static str,
-    /// Bytes from the struct's start.
+    /// Offset from the struct's start, in bytes.
     pub offset: u32,
     /// WGSL's name of its type.
     #[serde(rename = "type")]
@@ -106,16 +106,16 @@ pub struct Override {
     /// WGSL's name of its type: `bool`, `i32`, `u32` or `f32`.
     #[serde(rename = "type")]
     pub ty: &'static str,
-    /// Its value where a pipeline sets none, as WebGPU's `constants` take it: 0 or 1 for `bool`.
+    /// The default value as WebGPU's `constants` take it: 0 or 1 for `bool`.
     pub default: f64,
 }
 
-/// A limit of the device that a shader needs raised.
+/// A device limit that a shader needs raised above WebGPU's default.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Limit {
     /// WebGPU's name of the limit: `maxStorageBuffersPerShaderStage`.
     pub name: &'static str,
-    /// The least that suffices.
+    /// The smallest sufficient value.
     pub needed: u32,
 }
 
@@ -124,19 +124,19 @@ pub struct Limit {
 pub struct Shader {
     /// The path of its root file without `kernels/` or `wgsl/` and extension.
     pub name: &'static str,
-    /// WGSL.
+    /// The WGSL text.
     #[serde(skip)]
     pub source: &'static str,
-    /// Where pipelines start.
+    /// The entry points.
     pub entry_points: &'static [EntryPoint],
-    /// What it binds.
+    /// The resources that it binds.
     pub bindings: &'static [Binding],
     /// Its pipeline-overridable constants.
     pub overrides: &'static [Override],
-    /// The limits that it needs raised above WebGPU's defaults. None for every shader but `animation/decide`, which
-    /// [`Dispatches::of`](crate::animation::decide::Dispatches::of) takes only where a device allows it.
+    /// The limits that it needs raised above WebGPU's defaults. Empty for every shader but `animation/decide`,
+    /// which [`Dispatches::of`](crate::animation::decide::Dispatches::of) uses only where a device permits it.
     pub limits: &'static [Limit],
-    /// The structs of its bindings and functions.
+    /// The structs that its bindings and functions use.
     pub structs: &'static [Struct],
 }
 
@@ -146,7 +146,7 @@ pub struct Shader {
 pub struct Module {
     /// The folder below `wgsl/`: `animation`, `skinning`, `surface` or `terrain`.
     pub name: &'static str,
-    /// WGSL, with a comment on every declaration.
+    /// The WGSL text, with a comment on every declaration.
     #[serde(skip)]
     pub source: &'static str,
 }

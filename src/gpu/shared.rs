@@ -1,11 +1,11 @@
-//! Pipelines that were compiled on a device, for every pass that asks for the same one again.
+//! A cache of the pipelines compiled on a device, which all passes share.
 
 use std::collections::HashMap;
 use std::sync::Mutex;
 
 use super::GpuError;
 
-/// Compiled things by what they were compiled from.
+/// Compiled objects by the key from which they were compiled.
 #[derive(Debug)]
 pub(crate) struct Shared<T>(Mutex<HashMap<String, T>>);
 
@@ -16,16 +16,17 @@ impl<T> Default for Shared<T> {
 }
 
 impl<T: Clone> Shared<T> {
-    /// What was compiled for `key` before, else what `compile` gives.
+    /// The object that was compiled for `key` before, or else the result of `compile`.
     ///
     /// # Errors
-    /// Those of `compile`, which is tried again next time.
+    /// Errors of `compile`, which is tried again at the next call.
     pub fn get(&self, key: String, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let all = || self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());
         }
-        // Not locked meanwhile: drivers take seconds, and two threads may compile different ones.
+        // The map is not locked during compilation: drivers take seconds, and two threads may compile different
+        // objects.
         let compiled = compile()?;
         Ok(all().entry(key).or_insert(compiled).clone())
     }

@@ -1,14 +1,14 @@
-//! How long recorded work takes on the device: timestamps, or wall time where the adapter has none.
+//! Measures how long recorded work takes on the device, by timestamps, or by wall time if the adapter has none.
 
 use std::time::Instant;
 
 use super::{Buffer, Gpu, GpuError};
 
-/// What a duration was measured with.
+/// The clock of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TimedBy {
-    /// The device's own clock, around the recorded work alone.
+    /// The device's own clock, around the recorded work only.
     Timestamp,
     /// The host's clock, around submission and wait.
     Wall,
@@ -17,9 +17,9 @@ pub enum TimedBy {
 /// A measured duration.
 #[derive(Debug, Clone, Copy)]
 pub struct Measurement {
-    /// Nanoseconds.
+    /// Duration in nanoseconds.
     pub nanoseconds: f64,
-    /// What it was measured with.
+    /// The clock that was used.
     pub timed_by: TimedBy,
 }
 
@@ -30,7 +30,7 @@ pub struct Timer {
 }
 
 impl Timer {
-    /// A timer. Uses timestamps where the device was opened with `TIMESTAMP_QUERY` and
+    /// A timer. It uses timestamps if the device was opened with `TIMESTAMP_QUERY` and
     /// `TIMESTAMP_QUERY_INSIDE_ENCODERS`.
     ///
     /// # Errors
@@ -57,8 +57,8 @@ impl Timer {
         Ok(Self { queries: Some((set, Buffer::new(gpu, "timer", 2)?, resolved)) })
     }
 
-    /// A timer around work that draws too: wall time on processors, as lavapipe's timestamps around compute work are too
-    /// short once a picture has been drawn.
+    /// A timer for work that also draws. On software adapters it uses wall time, because lavapipe's timestamps
+    /// around compute work are too short once a picture has been drawn.
     ///
     /// # Errors
     /// [`GpuError::OutOfMemory`].
@@ -66,7 +66,7 @@ impl Timer {
         if gpu.adapter().kind == "cpu" { Ok(Self { queries: None }) } else { Self::new(gpu) }
     }
 
-    /// What [`Timer::measure`] measures with.
+    /// The clock that [`Timer::measure`] uses.
     pub fn timed_by(&self) -> TimedBy {
         if self.queries.is_some() { TimedBy::Timestamp } else { TimedBy::Wall }
     }
@@ -74,7 +74,7 @@ impl Timer {
     /// Records, submits, waits, and returns how long the recorded work took.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn measure(
         &self,
         gpu: &Gpu,
@@ -94,7 +94,8 @@ impl Timer {
         let Some((set, host, resolved)) = &self.queries else {
             return Ok(Measurement { nanoseconds: wall, timed_by: TimedBy::Wall });
         };
-        // In a submission of its own: some drivers resolve zeros beside the work that is being timed.
+        // The resolve has a submission of its own: some drivers resolve zeros in the same submission as the
+        // timed work.
         gpu.run("resolve", |encoder| {
             encoder.resolve_query_set(set, 0..2, resolved, 0);
             encoder.copy_buffer_to_buffer(resolved, 0, host.raw(), 0, 16);

@@ -1,18 +1,18 @@
-//! Parity cases: what an operation adds, and what came of it.
+//! Parity cases of operations, and their results.
 
 use serde::Serialize;
 
 use super::compare::Comparison;
 use crate::gpu::Gpu;
 
-/// One case's result.
+/// The result of one case.
 #[derive(Debug, Clone, Serialize)]
 pub struct CaseResult {
     /// The kernel.
     pub stem: &'static str,
-    /// What was computed.
+    /// Description of the case.
     pub case: String,
-    /// What came of it.
+    /// The outcome.
     #[serde(flatten)]
     pub comparison: Comparison,
 }
@@ -22,9 +22,9 @@ pub struct CaseResult {
 pub struct Skipped {
     /// The kernel.
     pub stem: &'static str,
-    /// What would have been computed.
+    /// Description of the case.
     pub case: String,
-    /// Why it cannot be.
+    /// Why the device cannot run it.
     pub reason: String,
 }
 
@@ -39,7 +39,7 @@ pub struct Cases<'a> {
 }
 
 impl Cases<'_> {
-    /// Says that this device cannot run a case, and why. A kernel of which it can run none does not hold.
+    /// Records that this device cannot run a case, and why. A kernel whose cases are all skipped does not hold.
     pub fn skip(&mut self, case: impl Into<String>, reason: impl Into<String>) {
         self.skipped.push(Skipped { stem: self.stem, case: case.into(), reason: reason.into() });
     }
@@ -52,7 +52,7 @@ impl Cases<'_> {
     }
 }
 
-/// Whether `stem` is asked for: `only` is a stem, a part of one, or nothing.
+/// Whether `stem` is selected: `only` is its name or a part of it; `None` selects everything.
 pub fn selected(stem: &str, only: Option<&str>) -> bool {
     only.is_none_or(|only| stem.contains(only))
 }

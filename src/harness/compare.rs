@@ -1,57 +1,58 @@
-//! Comparators: exact for integers, bounded for floats, levels a channel for images. Each is seen to fail on
-//! planted faults in `tests/parity.rs`.
+//! Comparators: exact for integers, with bounds for floats, and in levels per channel for images.
+//! `tests/parity.rs` shows that each fails on a planted fault.
 
 use std::fmt::Debug;
 
 use serde::Serialize;
 
-/// What a comparison found.
+/// The result of a comparison.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// Whether every value is within the bound.
     pub holds: bool,
-    /// Values compared.
+    /// Number of values compared.
     pub values: usize,
     /// The largest error.
     pub error: f64,
-    /// What it may be.
+    /// The largest error allowed.
     pub bound: f64,
-    /// What error and bound count.
+    /// Unit of error and bound.
     pub unit: &'static str,
-    /// The errors themselves and what was left out, where each value has a bound of its own.
+    /// Statistics of the errors and of uncertain values, where each value has a bound of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread: Option<Spread>,
-    /// What was left out, where anything may be.
+    /// The values that were left out, where that is permitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
-    /// The first value out of bound.
+    /// Description of the first value beyond its bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
 }
 
-/// Errors of values that have a bound each, and values that prove little.
+/// Statistics of errors of values that each have a bound of their own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// What the errors count.
+    /// Unit of the errors.
     pub unit: &'static str,
-    /// What 99 of 100 errors are within.
+    /// The 99th percentile of the errors.
     pub p99: f64,
     /// The largest error.
     pub largest: f64,
-    /// Values whose bound is so wide, or that are so near a branch, that they prove little or nothing.
+    /// Number of values that prove little, because their bound is wide or because they are close to a branch.
     pub touching: usize,
-    /// How many there may be.
+    /// The largest number of such values allowed.
     pub may_touch: usize,
 }
 
-/// What a comparison leaves out, since rounding may decide it either way: instances at an edge, bones half a turn apart.
+/// Values that a comparison leaves out because rounding may decide them either way, such as instances at an
+/// edge of the view and bones half a turn apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
-    /// How many were.
+    /// Number of values left out.
     pub count: usize,
-    /// Of how many.
+    /// Number of all values.
     pub of: usize,
-    /// How many may be.
+    /// The largest number that may be left out.
     pub most: usize,
 }
 
@@ -62,7 +63,7 @@ impl Comparison {
         Self { holds: false, values, error, bound, unit, spread: None, left_out: None, fault: Some(fault) }
     }
 
-    /// The same, which says what it left out. It fails where that is more than may be.
+    /// The comparison with a record of what it left out. It fails if that is more than is allowed.
     #[must_use]
     pub fn leaving_out(self, left_out: LeftOut) -> Self {
         let LeftOut { count, of, most } = left_out;
@@ -104,7 +105,7 @@ fn compare<T: Copy + Debug>(
     Comparison { holds: wrong == 0, values, error: worst, bound, unit, spread: None, left_out: None, fault }
 }
 
-/// Integers: every bit.
+/// Compares integers: every bit must be equal.
 pub fn exact<T: Copy + Debug + PartialEq>(actual: &[T], expected: &[T]) -> Comparison {
     compare(
         actual,
@@ -115,14 +116,14 @@ pub fn exact<T: Copy + Debug + PartialEq>(actual: &[T], expected: &[T]) -> Compa
     )
 }
 
-/// Floats: an absolute bound.
+/// Compares floats with an absolute bound.
 pub fn absolute(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
     compare(actual, expected, "absolute", bound.into(), |actual, expected| {
         (f64::from(actual) - f64::from(expected)).abs()
     })
 }
 
-/// Floats: a bound relative to the expected value, or absolute where that is below 1e-6.
+/// Compares floats with a bound relative to the expected value, or absolute where that value is below 1e-6.
 pub fn relative(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
     compare(actual, expected, "relative", bound.into(), |actual, expected| {
         let (actual, expected) = (f64::from(actual), f64::from(expected));
@@ -130,13 +131,13 @@ pub fn relative(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
     })
 }
 
-/// Floats: units in the last place of the expected value.
+/// Compares floats in units in the last place of the expected value.
 pub fn ulps(actual: &[f32], expected: &[f32], bound: u32) -> Comparison {
     compare(actual, expected, "ulp", bound.into(), |actual, expected| {
         if actual.is_nan() || expected.is_nan() {
             return f64::NAN;
         }
-        // Ordered integers: neighbours differ by one, and both zeros are zero.
+        // Maps floats to integers in the same order: neighbours differ by one, and both zeros map to 0.
         let ordered = |value: f32| {
             let bits = i64::from(value.to_bits() & 0x7fff_ffff);
             if value.is_sign_negative() { -bits } else { bits }
@@ -145,7 +146,7 @@ pub fn ulps(actual: &[f32], expected: &[f32], bound: u32) -> Comparison {
     })
 }
 
-/// Images: the largest difference of any of four 8-bit channels.
+/// Compares images by the largest difference in any of four 8-bit channels.
 pub fn levels(actual: &[u32], expected: &[u32], bound: u8) -> Comparison {
     compare(actual, expected, "levels of 255", bound.into(), |actual, expected| {
         let pairs = actual.to_le_bytes().into_iter().zip(expected.to_le_bytes());
@@ -153,19 +154,21 @@ pub fn levels(actual: &[u32], expected: &[u32], bound: u8) -> Comparison {
     })
 }
 
-/// One value that has a bound of its own.
+/// The judgement of one value that has a bound of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judgement {
-    /// The error over its bound; NaN and infinity fail.
+    /// The error divided by its bound; NaN and infinity fail.
     pub ratio: f64,
     /// The error itself.
     pub error: f64,
-    /// Whether it proves little: its bound is wide, or it lies so near a branch that it may be something else.
+    /// Whether the value proves little: its bound is wide, or it is so close to a branch that either side may
+    /// be taken.
     pub touches: bool,
 }
 
-/// Values with a bound each: every error within its own, and at most a share `may_touch` of the values touching, at
-/// least one. `describe` describes a value by its index.
+/// Compares values that each have a bound of their own: every error must be within its bound, and of all values
+/// at most the fraction `may_touch`, but at least one, may prove little. `describe` describes a value by its
+/// index.
 pub fn each(
     judgements: &[Judgement],
     unit: &'static str,

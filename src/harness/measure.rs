@@ -1,4 +1,4 @@
-//! Repetition: contenders take turns, so that whatever else the machine does hits all of them.
+//! Repeated measurement. Contenders take turns, so that disturbances on the machine affect all of them.
 
 use std::time::{Duration, Instant};
 
@@ -6,29 +6,30 @@ use super::{Backend, Row};
 use crate::Error;
 use crate::gpu::{Gpu, Job, TimedBy, Timer};
 
-/// Repetitions that do not count: the first dispatches of a pipeline compile it.
+/// Repetitions that are not counted: the first dispatches of a pipeline compile it.
 const WARM_UP: usize = 2;
 
-/// Rounds of everybody that count.
+/// Counted rounds of all contenders.
 const ROUNDS: usize = 5;
 
-/// Rounds of the device's work alone that follow, at the most: it is compared more closely, and takes less time.
+/// The largest number of further rounds for the device's contenders alone, which are compared more closely and
+/// take less time.
 const DEVICE_ROUNDS: usize = 101;
 
-/// These end after that long.
+/// The time after which these further rounds end.
 const ENOUGH: Duration = Duration::from_millis(1200);
 
-/// Work on the device that takes longer is repeated until its turns are as long as those of the case's longest: on a
-/// busy machine the scheduler takes more from long turns than from short ones.
+/// Work on the device that takes longer than this, in nanoseconds, is repeated until its turns are as long as
+/// the longest of the case: on a busy machine the scheduler takes more time from long turns than from short ones.
 const LONG: f64 = 1e6;
 
-/// The most repetitions a turn.
+/// The largest number of repetitions per turn.
 const REPEATS: f64 = 8.0;
 
-/// Something to measure.
+/// A piece of work to measure.
 pub struct Contender<'a> {
     backend: Backend,
-    // Repetitions a turn.
+    // Repetitions per turn.
     repeats: u32,
     work: Work<'a>,
 }
@@ -45,7 +46,7 @@ impl<'a> Contender<'a> {
         Self::recorded(backend, |encoder| job.record(encoder))
     }
 
-    /// Whatever is recorded, in one submission.
+    /// Work that is recorded in one submission.
     pub fn recorded(backend: Backend, record: impl Fn(&mut wgpu::CommandEncoder) + 'a) -> Self {
         Self { backend, repeats: 1, work: Work::Device(Box::new(record)) }
     }
@@ -55,7 +56,7 @@ impl<'a> Contender<'a> {
         Self { backend, repeats: 1, work: Work::Host(Box::new(work)) }
     }
 
-    /// Work on host and device, by the host's clock.
+    /// Work on host and device together, timed by the host's clock.
     pub fn both(backend: Backend, work: impl FnMut() -> Result<(), Error> + 'a) -> Self {
         Self { backend, repeats: 1, work: Work::Both(Box::new(work)) }
     }
@@ -105,7 +106,7 @@ impl<'a> Bench<'a> {
         Ok(Self { gpu, name, timer: Timer::new(gpu)?, rows: Vec::new(), measure: true, progress })
     }
 
-    /// Sets cases up without measuring them: every time is 0.
+    /// Sets up the cases without measuring them: every time is 0.
     pub(crate) fn unmeasured(self) -> Self {
         Self { measure: false, ..self }
     }
@@ -114,7 +115,8 @@ impl<'a> Bench<'a> {
         self.rows
     }
 
-    /// Measures the contenders of a case in turn. All compute `items`; `bytes` is what must be moved.
+    /// Measures the contenders of a case in turn. Each computes `items`; `bytes` is the number of bytes that
+    /// must be moved.
     ///
     /// # Errors
     /// What the device reports.
@@ -188,12 +190,13 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Every other round goes backwards, so that whoever follows whom, and a machine that grows busier, favours nobody.
+/// The order of contenders in a round. Every second round runs backwards, so that neither the order nor a
+/// machine that grows busier favours anyone.
 fn order(round: usize, contenders: usize) -> impl Iterator<Item = usize> {
     (0..contenders).map(move |index| if round.is_multiple_of(2) { index } else { contenders - 1 - index })
 }
 
-/// Repetitions a turn, given what one took; of the host, nothing.
+/// Repetitions per turn, given the times of single runs; 1 for work on the host.
 fn repeats(times: &[&[f64]]) -> Vec<u32> {
     let shortest = |times: &&[f64]| times.iter().copied().reduce(f64::min).unwrap_or(0.0);
     let longest = times.iter().map(shortest).fold(0.0, f64::max);
@@ -207,7 +210,7 @@ fn sorted(times: impl Iterator<Item = f64>) -> Vec<f64> {
     times
 }
 
-/// The median over the rounds in which both took part: noise that hits a round hits both.
+/// The median ratio over the rounds in which both took part: a disturbance in a round affects both.
 fn median_ratio(times: &[f64], kernel: &[f64]) -> f64 {
     let ratios = sorted(times.iter().zip(kernel).map(|(time, kernel)| time / kernel));
     ratios[ratios.len() / 2]
@@ -219,7 +222,8 @@ mod tests {
 
     #[test]
     fn a_ratio_is_taken_round_by_round() {
-        // Twice as slow in every round, on a machine whose speed changes between them: medians alone would say 1.
+        // The work is twice as slow in every round, on a machine whose speed changes between rounds. The ratio
+        // of medians would be 1.
         let kernel = [1.0, 10.0, 1.0, 10.0, 10.0];
         let other = [2.0, 20.0, 2.0];
         assert_eq!(median_ratio(&other, &kernel), 2.0);

@@ -1,5 +1,5 @@
-//! What proves and measures operations, and knows none of them: comparators, poisoned buffers, parity cases; repetition,
-//! clocks, tables.
+//! Tools that verify and measure operations, independent of any operation: comparators, poisoned buffers and
+//! parity cases; repetition, clocks and tables.
 
 mod cases;
 pub mod compare;

@@ -1,16 +1,16 @@
-//! Outputs that are full of poison before a kernel runs: what it forgets to write shows, and what it writes
-//! beyond its end does too.
+//! Outputs that are filled with a poison value before a kernel runs. They show what the kernel forgets to
+//! write, and what it writes beyond the end.
 
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::harness::compare::Comparison;
 
-/// The poison's words.
+/// The poison value of every word.
 pub const POISON: u32 = 0xdead_beef;
 
-/// Elements beyond the end.
+/// Elements of the guard beyond the end.
 const GUARD: usize = 64;
 
-/// A poisoned output of `len` elements, and a guard behind it.
+/// A poisoned output of `len` elements, followed by a guard.
 #[derive(Debug, Clone)]
 pub struct Poisoned<T> {
     /// The buffer, guard included.
@@ -19,7 +19,7 @@ pub struct Poisoned<T> {
 }
 
 impl<T: bytemuck::Pod> Poisoned<T> {
-    /// A poisoned buffer.
+    /// Creates a poisoned buffer.
     ///
     /// # Errors
     /// What the device reports.
@@ -39,7 +39,7 @@ impl<T: bytemuck::Pod> Poisoned<T> {
         self.buffer.write(gpu, bytemuck::cast_slice(&words))
     }
 
-    /// The output, compared by `compare`; a guard that changed is a fault of its own.
+    /// Compares the output with `compare`. A changed guard is a fault too.
     ///
     /// # Errors
     /// What the device reports.

@@ -1,24 +1,24 @@
-//! What a benchmark measures.
+//! The rows of a benchmark.
 
 use serde::Serialize;
 
 use crate::gpu::TimedBy;
 
-/// What a row measures.
+/// The contender that a row measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Backend {
     /// The kernel.
     Gpu,
-    /// Its reference on one thread.
+    /// Its CPU reference on one thread.
     Reference,
-    /// Its reference on all threads.
+    /// Its CPU reference on all threads.
     ReferenceParallel,
-    /// Straightforward structure-of-arrays code for the processor, on one thread.
+    /// Plain structure-of-arrays code for the CPU, on one thread.
     PlainSoa,
     /// A kernel that moves the same bytes.
     Copy,
-    /// What cannot be avoided: see the benchmark.
+    /// Work that cannot be avoided; the benchmark says which.
     Limit,
 }
 
@@ -36,30 +36,31 @@ impl Backend {
     }
 }
 
-/// One measured figure.
+/// One measured result.
 #[derive(Debug, Clone, Serialize)]
 pub struct Row {
     /// The kernel.
     pub name: &'static str,
     /// Sizes and batch.
     pub case: String,
-    /// What was measured.
+    /// The contender.
     pub backend: Backend,
-    /// Median of the repetitions.
+    /// Median time of the repetitions, in nanoseconds.
     pub nanoseconds: f64,
-    /// The shortest.
+    /// The shortest time, in nanoseconds.
     pub min: f64,
-    /// The longest.
+    /// The longest time, in nanoseconds.
     pub max: f64,
-    /// Time beside the kernel's (`gpu`): the median over rounds in which both took their turn. None for the kernel.
+    /// The ratio of this time to the kernel's (`gpu`): the median over the rounds in which both took part.
+    /// `None` for the kernel.
     #[serde(skip)]
     pub beside_kernel: Option<f64>,
-    /// Items computed.
+    /// Number of items computed.
     pub items: u64,
     /// What an item is.
     pub item: &'static str,
     /// Bytes that must be read and written.
     pub bytes: u64,
-    /// The clock.
+    /// The clock that was used.
     pub timed_by: TimedBy,
 }

@@ -1,10 +1,11 @@
-//! Rows as a table for people.
+//! Formats rows as a text table.
 
 use super::Row;
 use crate::gpu::TimedBy;
 
-/// The rows, with nanoseconds an item, items a second, bytes a second, how a kernel compares with its case's other rows, and the
-/// clock: the device's own, or the host's, which counts submission and waiting too.
+/// The rows as a table: nanoseconds per item, items and bytes per second, the ratio of each row to its case's
+/// kernel, and the clock. The device's clock measures the work alone; the host's clock includes submission and
+/// waiting.
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
         "{:<22} {:<34} {:<13} {:>11} {:>11} {:>9} {:>11} {:>11} {:>8}  {}\n",

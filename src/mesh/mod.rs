@@ -1,4 +1,4 @@
-//! Meshes in fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3).
+//! Simplification of meshes: the same surface with fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3).
 
 pub mod nearest;
 pub mod simplify;

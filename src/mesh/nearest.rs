@@ -1,11 +1,13 @@
-//! Places on triangles.
+//! The nearest point on a triangle.
 
 use glam::Vec3;
 
-/// The place on a triangle that is nearest to a point (Ericson, "Real-Time Collision Detection", section 5.1.5: by the
-/// part of the plane, around corners, edges and the inside, that the point lies over). A triangle may be a line or a
-/// point. For sizes and distances of 1e-8 to 1e9, whose fourth powers are numbers, to about 1e-6 of the larger one;
-/// beyond, some place on the triangle, so that what is measured may be too far, and is never too near.
+/// The point on a triangle that is nearest to `point` (Ericson, "Real-Time Collision Detection", section
+/// 5.1.5): it depends on which Voronoi region of the triangle, of a corner, an edge or the inside, the point
+/// projects onto. A triangle may be degenerate, a line or a point. For sizes and distances of 1e-8 to 1e9,
+/// whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of the larger of the two.
+/// Beyond that range the result still lies on the triangle, so that a measured distance may be too large but is
+/// never too small.
 pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
@@ -39,12 +41,12 @@ pub fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     a + ab * to_b + ac * to_c.min(1.0 - to_b)
 }
 
-/// `one` of both.
+/// `one` as a fraction of the sum of both.
 fn part(one: f32, other: f32) -> f32 {
     ratio(one, one + other)
 }
 
-/// 0 to 1; 0 of nothing, and of what is no number.
+/// `one / all` where that is in 0..=1; 0 otherwise, also for 0 / 0 and NaN.
 fn ratio(one: f32, all: f32) -> f32 {
     let ratio = one / all;
     if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
@@ -65,7 +67,7 @@ mod tests {
         assert_eq!(found(1.0, -2.0), [1.0, 0.0]);
         assert_eq!(found(-2.0, 1.0), [0.0, 1.0]);
         assert_eq!(found(1.0, 1.0), [1.0, 1.0]);
-        // Over the long edge: its middle, and 3:4:5 off it.
+        // A point above the middle of the long edge, displaced along the edge's normal.
         let [x, y] = found(2.0 + 3.0, 1.5 + 4.0);
         assert!((x - 2.0).abs() < 1e-6 && (y - 1.5).abs() < 1e-6, "{x} {y}");
     }
@@ -86,7 +88,7 @@ mod tests {
         }
     }
 
-    /// Too large or too small for their fourth powers.
+    /// The sizes are too large or too small for `f32` to represent their fourth powers.
     #[test]
     fn places_are_always_on_the_triangle() {
         for scale in [1e-30_f32, 1e-18, 1e-11, 1e10, 1e15, 1e18] {

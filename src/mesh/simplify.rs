@@ -1,31 +1,34 @@
-//! Simplification by half-edge collapses: a point of the surface becomes one of its neighbours, again and again, the
-//! cheapest first. Vertices are never moved or made, so that every level uses some of the mesh's own, whatever their
-//! attributes, and one run records every level (B section 3.2, after Hoppe, "Progressive Meshes", SIGGRAPH 1996).
+//! Simplification by half-edge collapses: a point of the surface is merged into one of its neighbours, again
+//! and again, the cheapest collapse first. Vertices are neither moved nor created, so that every level uses a
+//! subset of the mesh's own vertices, whatever their attributes are, and one run records every level (B section
+//! 3.2, after Hoppe, "Progressive Meshes", SIGGRAPH 1996).
 //!
-//! Vertices at one place in every pose are the *wedges* of one *point*: copies that differ in attributes. Where the two
-//! triangles of an edge use different wedges runs a *seam*.
+//! Vertices that share one position in every pose are the *wedges* of one *point*: copies that differ in
+//! attributes. An edge whose two triangles use different wedges is part of a *seam*.
 //!
 //! # Legality
 //!
-//! Whatever the cost:
-//! - The link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): the surface keeps its topology. What is closed
-//!   stays closed, what is manifold stays manifold. Points where the input is not manifold stay.
-//! - No triangle's normal turns by more than 90° in any pose (A section 4.1), nor does a triangle lose its area; those
-//!   without area may do anything.
-//! - Points of a border move along it alone.
-//! - Every wedge of a point becomes a wedge that it shares an edge with, so seams collapse only along themselves: no
-//!   triangle leaves its chart, and there are no holes. Where wedges are split at one end of an edge alone, as at the
-//!   poles of a sphere, those beside each other count as one. So where every triangle has vertices of its own nothing
-//!   collapses: such meshes want to be indexed first.
+//! A collapse is legal only if all of the following hold, whatever its cost:
+//! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999): the surface keeps its topology.
+//!   Closed surfaces stay closed and manifold surfaces stay manifold. Points where the input is not manifold
+//!   are kept.
+//! - No triangle's normal turns by more than 90° in any pose (A section 4.1), and no triangle loses its area.
+//!   Triangles that have no area to begin with are not restricted.
+//! - A point of a border moves only along that border.
+//! - Every wedge of the point becomes a wedge with which it shares an edge. Seams therefore collapse only along
+//!   themselves: no triangle leaves its chart of the texture, and no holes appear. Where wedges are split at
+//!   one end of an edge only, as at the poles of a sphere, adjacent wedges count as one. If every triangle has
+//!   vertices of its own, nothing can collapse: index such meshes first.
 //!
 //! # Several poses
 //!
-//! A skinned mesh is simplified for all poses that count: a collapse costs what it costs in the worst of them (after
-//! DeCoro and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take the sum).
+//! A skinned mesh is simplified for all given poses: the cost of a collapse is its largest cost in any of them
+//! (after DeCoro and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take
+//! the sum).
 //!
-//! The same input gives the same collapses on every machine: only `+ − × ÷` and square roots, in a fixed order, and
-//! ties go to the lower index. Time grows as n log n in triangles, and in proportion to poses. Quadrics take 88 bytes a
-//! point and pose.
+//! The same input gives the same collapses on every machine: the code uses only `+ − × ÷` and square roots, in
+//! a fixed order, and ties go to the lower index. Time grows as n log n with triangles, and linearly with
+//! poses. Quadrics take 88 bytes per point and pose.
 
 mod attributes;
 mod melax;
@@ -43,75 +46,77 @@ use crate::InputError;
 use points::Points;
 use topology::Topology;
 
-/// What is simplified.
+/// The mesh to simplify.
 #[derive(Debug, Clone, Copy)]
 pub struct Surface<'a> {
-    /// The places of all vertices in each of the poses that count; a rigid mesh has one. Finite.
+    /// Positions of all vertices in each pose, in the model's units, finite. A rigid mesh has one pose.
     pub poses: &'a [Vec<[f32; 3]>],
-    /// Three a triangle.
+    /// Three indices per triangle.
     pub indices: &'a [u32],
-    /// `stride` numbers a vertex (normals, texture coordinates, …), each scaled so that 1 counts as much as a distance
-    /// of 1. Finite. They belong to the first pose.
+    /// `stride` numbers per vertex (normals, texture coordinates, …), finite, in the first pose. Scale them so
+    /// that a difference of 1 counts as much as a distance of 1.
     pub attributes: &'a [f32],
-    /// May be 0.
+    /// Numbers per vertex in `attributes`; may be 0.
     pub stride: usize,
 }
 
-/// What a collapse costs.
+/// The cost function of collapses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
-    /// The root mean square distance from the planes of all triangles that the point has stood for (Garland and
-    /// Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997), weighted by area; borders and
-    /// seams are held by planes across them (their section 6). Attributes add their own (Hoppe, "New Quadric Metric for
-    /// Simplifying Meshes with Appearance Attributes", Visualization 1999), each wedge for itself.
+    /// The root mean square distance from the planes of all triangles that were merged into the point, weighted
+    /// by area (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997).
+    /// Planes perpendicular to borders and seams hold these in place (their section 6). Attributes add a cost
+    /// of their own, separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes with
+    /// Appearance Attributes", Visualization 1999).
     #[default]
     Quadric,
-    /// Length of the edge × how far the normals of the point's triangles are from those at the edge (Melax, "A Simple,
-    /// Fast, and Effective Polygon Reduction Algorithm", 1998; B equation 3.1). Knows no attributes and remembers
-    /// nothing: leaves more error than quadrics.
+    /// The length of the edge times a measure of how far the normals of the point's triangles turn from those
+    /// at the edge (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B equation 3.1).
+    /// It ignores attributes and earlier collapses, and leaves a larger error than quadrics.
     Melax {
-        /// Refuse a collapse where the normals of the two points, in the first pose, are more than 90° apart (B section
-        /// 3.2.3).
+        /// Whether to refuse a collapse where the normals of the two points are more than 90° apart in the
+        /// first pose (B section 3.2.3).
         check_normals: bool,
     },
 }
 
-/// What to do, and when to stop: whatever comes first.
+/// The cost function, and when to stop: at the first limit that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// What a collapse costs.
+    /// The cost function of collapses.
     pub cost: Cost,
-    /// Stop at so many triangles, or one below.
+    /// Stop at this number of triangles, or at one less.
     pub triangles: usize,
-    /// Stop before a collapse costs more; units of positions, at least 0, may be infinite.
+    /// Stop before a collapse that costs more than this, in units of positions; at least 0, may be infinite.
     pub error: f32,
 }
 
 impl Default for Options {
-    /// Quadrics, as far as it goes.
+    /// Quadrics, without a limit.
     fn default() -> Self {
         Self { cost: Cost::Quadric, triangles: 0, error: f32::INFINITY }
     }
 }
 
-/// A point became its neighbour.
+/// One collapse: a point was merged into its neighbour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Collapse {
-    /// Where its part of [`Simplified::moved`] ends.
+    /// End of this collapse's range in [`Simplified::moved`].
     end: u32,
-    /// The most that a collapse has cost so far, in units of positions: what the mesh is off by, as the cost sees it.
+    /// The largest cost of any collapse so far, in units of positions: the error of the mesh as the cost
+    /// function estimates it.
     pub error: f32,
-    /// No point of the mesh that is gone was further from what is left than this after it, in any pose; infinite where
-    /// that was not limited.
+    /// After this collapse, every removed point of the mesh lies within this distance of the remaining surface,
+    /// in every pose. Infinite if distances were not limited.
     pub distance: f32,
-    /// Triangles left after it.
+    /// Number of triangles after this collapse.
     pub triangles: u32,
 }
 
-/// Why it went no further.
+/// Why simplification stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stopped {
-    /// [`Options::triangles`] are left.
+    /// No more than [`Options::triangles`] are left.
     Triangles,
     /// The next collapse costs more than [`Options::error`].
     Error,
@@ -119,7 +124,7 @@ pub enum Stopped {
     Exhausted,
 }
 
-/// Every level of a mesh.
+/// The sequence of collapses, which describes every level of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simplified {
     collapses: Vec<Collapse>,
@@ -130,36 +135,37 @@ pub struct Simplified {
 }
 
 impl Simplified {
-    /// In the order in which they happened; errors do not descend.
+    /// The collapses in the order in which they happened; errors never decrease.
     pub fn collapses(&self) -> &[Collapse] {
         &self.collapses
     }
 
-    /// Every vertex that went in a collapse, and the vertex that it became; there is one vertex at least.
+    /// The vertices that one collapse removed, each with the vertex that replaces it; at least one.
     ///
     /// # Panics
-    /// Without such a collapse.
+    /// If there is no collapse with this number.
     pub fn moved(&self, collapse: usize) -> &[[u32; 2]] {
         let start = collapse.checked_sub(1).map_or(0, |before| self.collapses[before].end);
         &self.moved[start as usize..self.collapses[collapse].end as usize]
     }
 
-    /// Triangles left after the last collapse.
+    /// Number of triangles after the last collapse.
     pub fn triangles_left(&self) -> usize {
         self.collapses.last().map_or(self.triangles, |last| last.triangles as usize)
     }
 
-    /// The most that a collapse has cost; 0 where there was none.
+    /// The largest cost of any collapse; 0 if there was none.
     pub fn error(&self) -> f32 {
         self.collapses.last().map_or(0.0, |last| last.error)
     }
 
-    /// Why it went no further.
+    /// Why simplification stopped.
     pub fn stopped(&self) -> Stopped {
         self.stopped
     }
 
-    /// How many collapses leave at most so many triangles; all of them, where none does.
+    /// The number of collapses after which at most `triangles` triangles are left, or all of them if that is
+    /// never reached.
     pub fn collapses_to(&self, triangles: usize) -> usize {
         if self.triangles <= triangles {
             return 0;
@@ -168,49 +174,51 @@ impl Simplified {
         (above + 1).min(self.collapses.len())
     }
 
-    /// How many collapses cost at most so much.
+    /// The number of collapses whose cost is at most `error`.
     pub fn collapses_within(&self, error: f32) -> usize {
         self.collapses.partition_point(|collapse| collapse.error <= error)
     }
 
-    /// How many collapses leave no place further from what is left than this: see [`simplify_within`].
+    /// The number of collapses after which every removed point is within `distance` of the remaining surface;
+    /// see [`simplify_within`].
     pub fn collapses_near(&self, distance: f32) -> usize {
         self.collapses.partition_point(|collapse| collapse.distance <= distance)
     }
 
-    /// The point that a vertex is a wedge of: the same number for all wedges at a place.
+    /// The point to which a vertex belongs: the same number for all wedges at one position.
     ///
     /// # Panics
-    /// For a vertex that there is not.
+    /// If there is no such vertex.
     pub fn point(&self, vertex: u32) -> u32 {
         self.points[vertex as usize]
     }
 
-    /// Whether three vertices are of three points.
+    /// Whether three vertices belong to three different points.
     pub(crate) fn are_apart(&self, vertices: [u32; 3]) -> bool {
         let [a, b, c] = vertices.map(|vertex| self.point(vertex));
         a != b && b != c && c != a
     }
 
-    /// What each vertex is after so many collapses: itself, or what it became.
+    /// For each vertex, the vertex that stands for it after the first `collapses` collapses: itself, or its
+    /// replacement.
     ///
     /// # Panics
-    /// Beyond the number of collapses.
+    /// If there are fewer collapses.
     pub fn remap(&self, collapses: usize) -> Vec<u32> {
         let mut remap: Vec<u32> = (0..self.points.len() as u32).collect();
         let end = collapses.checked_sub(1).map_or(0, |last| self.collapses[last].end);
-        // The last first: what a vertex became has found its own heir by then.
+        // The last collapse comes first, so that the final replacement of `to` is already known.
         for &[from, to] in self.moved[..end as usize].iter().rev() {
             remap[from as usize] = remap[to as usize];
         }
         remap
     }
 
-    /// The triangles after so many collapses, in the mesh's order: those left that have three different points.
-    /// `indices` are those of the mesh.
+    /// The triangles that are left after the first `collapses` collapses, in the mesh's order: those that still
+    /// have three different points. `indices` are the mesh's own.
     ///
     /// # Panics
-    /// Beyond the number of collapses, and for indices of another mesh.
+    /// If there are fewer collapses, or if the indices belong to another mesh.
     pub fn triangles(&self, indices: &[u32], collapses: usize) -> Vec<u32> {
         let remap = self.remap(collapses);
         let mut left = Vec::new();
@@ -224,7 +232,7 @@ impl Simplified {
     }
 }
 
-/// Simplifies a mesh as far as the options say, and records how.
+/// Simplifies a mesh until a limit of `options` is reached, and records every collapse.
 ///
 /// ```
 /// use relievo::mesh::{Options, Stopped, Surface, simplify};
@@ -240,19 +248,23 @@ impl Simplified {
 /// ```
 ///
 /// # Errors
-/// [`InputError`] for no pose, poses of different lengths, indices that are not three a triangle or out of range,
-/// attributes that are not `stride` a vertex, numbers that are not finite, and an error below 0 or not a number.
+/// [`InputError`] for no pose, poses of different lengths, indices that are out of range or not three per
+/// triangle, attributes that are not `stride` per vertex, numbers that are not finite, and an error that is
+/// negative or NaN.
 pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, InputError> {
     simplify_within(surface, options, &[f32::INFINITY])
 }
 
-/// Simplifies a mesh as far as can be with every point that is gone within a distance of what is left, in every pose;
-/// then, from there on, within the next distance, and so on. Each point is near one and the same triangle in all poses.
-/// That is measured, where [`Options::error`] is an average: of as many triangles, those have less of an average error,
-/// these less of a largest one. Takes a few times longer.
+/// Simplifies a mesh as far as possible while every removed point stays within the first of `distances` of the
+/// remaining surface, in every pose; then continues with the next distance, and so on. Each removed point is
+/// close to one triangle, the same in all poses.
+///
+/// These distances are measured, whereas [`Options::error`] is an average. At the same number of triangles,
+/// [`simplify()`] has the smaller average error and this function the smaller largest one. It takes a few times
+/// longer.
 ///
 /// # Errors
-/// As [`simplify()`]; for distances that are below 0 or descend.
+/// As [`simplify()`], and [`InputError`] for distances that are negative or that decrease.
 pub fn simplify_within(
     surface: &Surface<'_>,
     options: &Options,
@@ -275,7 +287,7 @@ pub fn simplify_within(
     Ok(reducer::reduce(surface, points, topology, options, distances))
 }
 
-/// The point of each vertex, numbered by their first vertices: see [`Simplified::point`].
+/// The point of each vertex, numbered in the order of the points' first vertices; see [`Simplified::point`].
 pub(crate) fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()
 }
@@ -306,7 +318,7 @@ fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     finite("attributes", surface.attributes, surface.stride)
 }
 
-/// Refuses what is not finite among the numbers of each vertex.
+/// Refuses numbers that are not finite, and names the first one's vertex.
 fn finite(field: &str, numbers: &[f32], stride: usize) -> Result<(), InputError> {
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(()),

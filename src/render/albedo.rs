@@ -1,4 +1,4 @@
-//! What skinned meshes look like on the device: a material's colour, its texture, and alpha.
+//! Base colours of skinned meshes on the device: a factor, a texture, and the use of alpha.
 
 use std::collections::HashMap;
 
@@ -9,32 +9,33 @@ use crate::gpu::{Gpu, GpuError};
 use crate::render::color::ColorTexture;
 use crate::surface::mips::Mips;
 
-/// The colour of a surface.
+/// The base colour of a surface.
 #[derive(Debug, Clone)]
 pub struct Albedo {
-    /// Colour and alpha.
+    /// The texture of colour and alpha.
     pub texture: ColorTexture,
-    /// What these are multiplied with: linear red, green, blue, and alpha.
+    /// The factor of the texture: linear red, green, blue, and alpha.
     pub factor: [f32; 4],
-    /// What becomes of alpha.
+    /// How alpha is used.
     pub alpha: Alpha,
 }
 
 impl From<ColorTexture> for Albedo {
-    /// A texture as it is, opaque.
+    /// An opaque surface with this texture, unchanged.
     fn from(texture: ColorTexture) -> Self {
         Self { texture, factor: [1.0; 4], alpha: Alpha::Opaque }
     }
 }
 
-/// How textures are uploaded: [`ColorTexture::new`] or [`ColorTexture::linear`].
+/// A function that uploads textures: [`ColorTexture::new`] or [`ColorTexture::linear`].
 pub type Upload = fn(&Gpu, &Mips, bool) -> Result<ColorTexture, GpuError>;
 
 impl Albedo {
-    /// One for each mesh of a model, each texture uploaded once. Meshes without a material get `other`.
+    /// The base colours of a model's meshes, one per mesh, with each texture uploaded once. Meshes without a
+    /// material get `other`.
     ///
     /// # Errors
-    /// [`crate::InputError`] for materials and images that the model lacks; [`GpuError`].
+    /// [`crate::InputError`] for materials and images that the model does not have; [`GpuError`].
     pub fn of_meshes(gpu: &Gpu, model: &Model, other: &Self, upload: Upload) -> Result<Vec<Self>, Error> {
         let mut textures = Textures { gpu, model, upload, known: HashMap::new() };
         let mut all = Vec::with_capacity(model.meshes.len());
@@ -48,7 +49,8 @@ impl Albedo {
     }
 }
 
-/// What has been uploaded: images, with or without mip levels. Nothing but white is under no image.
+/// Textures that have been uploaded, by image and by whether they have mip levels; the white texture has no
+/// image.
 struct Textures<'a> {
     gpu: &'a Gpu,
     model: &'a Model,

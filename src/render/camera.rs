@@ -7,11 +7,11 @@ use crate::InputError;
 /// A perspective camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where it is, world units.
+    /// Position in world units.
     pub eye: Vec3,
-    /// What it looks at.
+    /// The point at which the camera looks, in world units.
     pub target: Vec3,
-    /// Vertical field of view, radians.
+    /// Vertical field of view in radians.
     pub field_of_view: f32,
     /// Distance of the near plane, > 0.
     pub near: f32,
@@ -20,15 +20,16 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that sees a box from a low angle, from the south.
+    /// A camera that sees a box from the south, at a low angle.
     pub fn framing(low: Vec3, high: Vec3) -> Self {
         let (centre, extent) = ((low + high) / 2.0, (high - low).max(Vec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;
-        // The footprint's circle fills the height of the picture; looking down at it makes it flatter.
+        // The circle around the box's footprint fills the height of the picture, since the view from above
+        // foreshortens it.
         let radius = extent.length() / 2.0;
         let distance = 0.72 * radius / (field_of_view / 2.0).sin();
         let eye = centre + Vec3::new(-0.30, 0.52, 0.80).normalize() * distance;
-        // The near edge takes more of the picture than the far one.
+        // The near edge takes more of the picture than the far edge, so the target is shifted.
         let target = centre + Vec3::new(-0.03, -0.10, 0.05) * radius;
         Self { eye, target, field_of_view, near: distance / 1000.0, far: 2.0 * distance + 2.0 * radius }
     }
@@ -36,7 +37,7 @@ impl Camera {
     /// The matrix from world to clip space.
     ///
     /// # Errors
-    /// [`InputError`] when eye and target coincide or planes and angle are no camera.
+    /// [`InputError`] when eye and target coincide, or when the planes or the angle are out of range.
     pub fn clip_from_world(&self, aspect: f32) -> Result<Mat4, InputError> {
         let refuse = |field: &str, value: &dyn std::fmt::Debug, bound: &str| {
             Err(InputError::new(field, format!("{value:?}"), bound))
@@ -55,7 +56,7 @@ impl Camera {
             );
         }
         let forward = (self.target - self.eye).normalize();
-        // Straight down has no up: north stands in.
+        // Straight down, the up vector is undefined; north replaces it.
         let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
         let view = camera::rh::view::look_at_mat4(self.eye, self.target, up);
         Ok(camera::rh::proj::directx::perspective(self.field_of_view, aspect, self.near, self.far) * view)

@@ -5,17 +5,17 @@ use crate::gpu::{Gpu, GpuError};
 use crate::srgb::linear;
 use crate::surface::mips::Mips;
 
-/// A filtered texture.
+/// A texture with its sampler.
 #[derive(Debug, Clone)]
 pub struct ColorTexture {
-    /// RGBA, all mip levels.
+    /// RGBA with all mip levels.
     pub texture: wgpu::Texture,
-    /// Trilinear; wraps or clamps.
+    /// A trilinear sampler that wraps or clamps.
     pub sampler: wgpu::Sampler,
 }
 
 impl ColorTexture {
-    /// Uploads mip levels as 8-bit texels: sRGB for colours, linear for normals, as they were made.
+    /// Uploads mip levels as 8-bit texels: sRGB for colours and linear for data, as `mips` says.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -27,8 +27,8 @@ impl ColorTexture {
         upload(gpu, mips, wraps, format, 4, |level| level.as_raw().clone())
     }
 
-    /// Uploads mip levels as linear half floats: twice the memory, and no driver decodes sRGB its own way. For
-    /// pictures that are compared across drivers.
+    /// Uploads mip levels as linear half floats, for pictures that are compared across drivers: this takes
+    /// twice the memory, but depends on no driver's sRGB decoding.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -47,7 +47,7 @@ impl ColorTexture {
         upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, 8, halves)
     }
 
-    /// The same texture, read in another way. Mip levels are those that were uploaded.
+    /// The same texture with another sampler. The mip levels stay those that were uploaded.
     ///
     /// # Errors
     /// [`GpuError`].

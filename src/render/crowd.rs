@@ -1,6 +1,6 @@
-//! Crowds of several characters in one picture: who is seen, how far each fades and with which level of detail is decided
-//! in one compute pass; meshes are skinned once; every level of a mesh, which has one material, is two indirect draws, all
-//! in the caller's render pass with its depth buffer.
+//! Crowds of several characters in one picture. One compute pass decides which instances are seen, how far each
+//! one's influences fade and which level of detail it has. Meshes are skinned once. Each level of a mesh, which
+//! has one material, takes two indirect draws, all in the caller's render pass with its depth buffer.
 
 use glam::{Mat4, Vec3};
 
@@ -18,30 +18,31 @@ use crate::skinning::picture::Light;
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
-/// Steps of the fade.
+/// Number of steps of the fade.
 const STEPS: u32 = 64;
 
-/// Instances of a character, as [`CrowdScene::add`] takes them.
+/// The instances of one character, as [`CrowdScene::add`] takes them.
 #[derive(Debug, Clone, Copy)]
 pub struct Character<'a> {
-    /// Its skeleton and meshes.
+    /// The skeleton and meshes.
     pub model: &'a Model,
-    /// Where the bones of each instance are: of a crowd under a gate
-    /// [`GatedFrame::model_matrices`](crate::animation::frame::GatedFrame::model_matrices). Where it is not known which of
-    /// them a frame updates, all vertices are skinned in every frame.
+    /// The model matrices of each instance's bones; for a crowd under a gate,
+    /// [`GatedFrame::model_matrices`](crate::animation::frame::GatedFrame::model_matrices). If the matrices do
+    /// not record which bones a frame updates, all vertices are skinned in every frame.
     pub matrices: &'a ModelMatrices,
-    /// From the model's space into the world, one an instance. They may mirror.
+    /// The transforms from the model's space into the world, one per instance. They may mirror.
     pub placements: &'a Buffer<Affine>,
-    /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::away`]
+    /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::projected_distance`]
     /// counts them.
     pub fade: [f32; 2],
-    /// From which on levels 1, 2 … of the character are used, likewise, not descending: where each of its
-    /// [`level_errors`](crate::skinning::level_errors) may be, by
-    /// [`Extent::level_ranges`](crate::skinning::Extent::level_ranges). Without, meshes are drawn whole.
+    /// Distances, counted likewise and not descending, from which on levels 1, 2 … of the character are used:
+    /// those at which each of its [`level_errors`](crate::skinning::level_errors) is permitted, as computed by
+    /// [`Extent::level_ranges`](crate::skinning::Extent::level_ranges). If empty, the meshes themselves are
+    /// drawn.
     pub levels: &'a [f32],
     /// How influences are blended.
     pub blend: Blend,
-    /// Colours, one a mesh: [`Albedo::of_meshes`].
+    /// Base colours, one per mesh; see [`Albedo::of_meshes`].
     pub albedos: &'a [Albedo],
 }
 
@@ -57,11 +58,13 @@ pub struct CrowdScene {
 /// A character on the device.
 #[derive(Debug, Clone)]
 pub struct DrawnCharacter {
-    /// One a mesh. The caller may write weights of morph targets here.
+    /// One per mesh. The caller may write the weights of morph targets here.
     pub frames: Vec<SkinFrame>,
-    /// One a mesh. The second of the first's ten arguments of each level is how many instances are drawn.
+    /// One per mesh. Of the ten arguments of each level in the first scene, the second is the number of
+    /// instances that are drawn.
     pub scenes: Vec<SkinnedScene>,
-    /// Which instances these are, level by level, [`list_stride`](crate::skinning::lod::list_stride) words each.
+    /// The indices of these instances, level by level, [`list_stride`](crate::skinning::lod::list_stride) words
+    /// each.
     pub drawn: Buffer<u32>,
     view: LodView,
     lod: LodJob,
@@ -69,7 +72,7 @@ pub struct DrawnCharacter {
 }
 
 impl CrowdScene {
-    /// Nobody yet; compiles the pipelines for targets of `color` format with a
+    /// An empty scene; compiles the pipelines for targets of `color` format with a
     /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
     ///
     /// # Errors
@@ -79,12 +82,13 @@ impl CrowdScene {
         Ok(Self { renderer, lod, light, characters: Vec::new() })
     }
 
-    /// Prepares a character, and says which it is among [`CrowdScene::characters`]. Morph targets are as at rest.
+    /// Prepares a character and returns its index in [`CrowdScene::characters`]. Morph targets have their
+    /// weights at rest.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes, other than one colour a mesh, distances out of order, no
-    /// instances, buffers that are too small, and dual quaternions under a gate that linear blending alone keeps
-    /// ([`SkinFrame::new`]); [`GpuError`].
+    /// [`InputError`] for a model without meshes, a number of colours that is not one per mesh, distances out
+    /// of order, no instances, buffers that are too small, and dual quaternions under a gate whose bound holds
+    /// for linear blending only ([`SkinFrame::new`]); [`GpuError`].
     pub fn add(&mut self, gpu: &Gpu, character: &Character<'_>) -> Result<usize, Error> {
         let Character { model, matrices, placements, fade, levels, blend, albedos } = *character;
         let (meshes, count) = (model.meshes.len(), placements.len());
@@ -126,15 +130,15 @@ impl CrowdScene {
         Ok(self.characters.len() - 1)
     }
 
-    /// All of them, in the order in which they came.
+    /// The characters, in the order in which they were added.
     pub fn characters(&self) -> &[DrawnCharacter] {
         &self.characters
     }
 
-    /// Chooses the camera of the next submission.
+    /// Sets the camera of the next submission.
     ///
     /// # Errors
-    /// [`InputError`] for what is not finite; [`GpuError`].
+    /// [`InputError`] for values that are not finite; [`GpuError`].
     pub fn set_camera(&mut self, gpu: &Gpu, clip_from_world: Mat4, eye: Vec3) -> Result<(), Error> {
         for character in &mut self.characters {
             character.view = LodView { clip_from_world, eye, ..character.view };
@@ -144,7 +148,7 @@ impl CrowdScene {
         Ok(())
     }
 
-    /// Records what precedes the drawing: who is seen, how far they fade, and skinning.
+    /// Records the work before drawing: visibility, fade and level of detail, then skinning.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         LodJob::record_together(encoder, self.characters.iter().map(|character| &character.lod));
         for character in &self.characters {
@@ -158,7 +162,7 @@ impl CrowdScene {
         }
     }
 
-    /// Draws everybody.
+    /// Draws all characters.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for scene in self.characters.iter().flat_map(|character| &character.scenes) {
             scene.draw(pass);
@@ -167,12 +171,12 @@ impl CrowdScene {
 }
 
 impl DrawnCharacter {
-    /// Levels of detail that are told apart, the meshes themselves included.
+    /// Number of levels of detail of the character, the meshes themselves included.
     fn levels(&self) -> usize {
         1 + self.view.levels.distances().len()
     }
 
-    /// What was decided for the first mesh holds for all of the character.
+    /// Copies the decisions for the first mesh to the other meshes of the character.
     fn share(&self, encoder: &mut wgpu::CommandEncoder) {
         let (frame, scene) = (&self.frames[0].crowd.instance_lods, &self.scenes[0].arguments);
         for (other, drawn) in self.frames.iter().zip(&self.scenes).skip(1) {

@@ -1,4 +1,4 @@
-//! A whole picture of terrain, off screen: what the command line draws, and the shortest way to one.
+//! Off-screen pictures of terrain, as the command line draws them; the shortest way to a picture.
 
 use image::imageops::{FilterType, resize};
 
@@ -12,31 +12,31 @@ use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::fields::Fields;
 use crate::terrain::texture::Texture;
 
-/// Linear light of the sky.
+/// Colour of the sky in linear light.
 const SKY: [f64; 3] = [0.36, 0.55, 0.80];
 
 /// How a picture is drawn.
 #[derive(Debug, Clone)]
 pub struct Picture<'a> {
-    /// What the heights were made with.
+    /// The configuration of the heights.
     pub config: &'a Config,
-    /// A texture for each of its zones.
+    /// One texture for each zone of the configuration.
     pub textures: &'a [Texture],
-    /// Light and weights.
+    /// Light and the mode of zone weights.
     pub shading: Shading,
-    /// Textured, or triangle edges.
+    /// Textured, or a wireframe.
     pub style: Style,
-    /// Where it is seen from; world position 0 is the first sample of the first patch.
+    /// The camera; world position 0 is the first sample of the first patch.
     pub camera: Camera,
     /// Pixels.
     pub size: [u32; 2],
 }
 
 impl Picture<'_> {
-    /// Draws fields with a margin of at least one sample, of `patches` in the order of the fields.
+    /// Draws fields, which have a margin of at least one sample and show `patches` in the order of the fields.
     ///
     /// # Errors
-    /// [`crate::InputError`] for what cannot be drawn; [`crate::gpu::GpuError`].
+    /// [`crate::InputError`] for fields or parameters that cannot be drawn; [`crate::gpu::GpuError`].
     pub fn draw(&self, gpu: &Gpu, parts: &[Fields], patches: &[[i32; 2]]) -> Result<image::RgbaImage, Error> {
         let materials = Materials::new(gpu, &self.config.zones, self.textures)?;
         let renderer = TerrainRenderer::new(gpu, COLOR_FORMAT, self.style)?;
@@ -48,7 +48,7 @@ impl Picture<'_> {
             scene.add(gpu, self.config, part, here, origin)?;
             rest = after;
         }
-        // Drawn at twice the size and averaged: one sample a pixel crawls with jagged edges.
+        // Draws at twice the size and averages, because edges are jagged with one sample per pixel.
         let available = gpu.device().limits().max_texture_dimension_2d;
         let bytes = 16 * u64::from(self.size[0]) * u64::from(self.size[1]);
         let fits = self.size.iter().all(|edge| 2 * edge <= available) && bytes <= gpu.max_binding();

@@ -1,15 +1,16 @@
-//! Render pipelines of this crate's shaders: a `vertex` entry, opaque colour, depth that must be less.
+//! Render pipelines of this crate's shaders: vertex entry point `vertex`, opaque colour, and the depth test
+//! `Less`.
 
 use crate::gpu::{Gpu, GpuError, RenderPipeline, layouts, module, pipeline_layout, shaders::Shader};
 use crate::render::target::DEPTH_FORMAT;
 
-/// What pipelines differ in.
+/// The properties in which pipelines differ.
 pub(super) struct Draws<'a> {
     pub shader: &'static Shader,
     pub fragment: &'a str,
     pub constants: &'a [(&'a str, f64)],
     pub topology: wgpu::PrimitiveTopology,
-    /// Triangles that are left out.
+    /// The faces that are culled.
     pub cull: Option<wgpu::Face>,
     pub vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
 }

@@ -1,4 +1,4 @@
-//! Draws meshes with relief into the caller's render pass.
+//! Draws meshes with relief in the caller's render pass.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
@@ -12,7 +12,7 @@ use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{March, Method, SurfaceMarch};
 use crate::{Error, InputError};
 
-/// `ReliefView` of the shader.
+/// The shader's `ReliefView`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct ReliefView {
     pub clip_from_world: Mat4,
@@ -26,24 +26,26 @@ pub(crate) struct ReliefView {
     pub softness: f32,
 }
 
-/// What a pipeline draws: fixed when it is compiled. What may change without another pipeline is in [`Material`].
+/// Options that are fixed when a pipeline is compiled. [`Material`] has the parameters that may change without
+/// a new pipeline.
 ///
-/// The default finds surfaces by [`Method::Quadtree`] and does nothing more: no shadow, normals from the heights, no
-/// silhouette, the polygon's depth, mip level 0.
+/// The default uses [`Method::Quadtree`], without shadow, with normals from the heights, without silhouette,
+/// with the polygon's depth, and with mip level 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReliefOptions {
-    /// How the surface is found: the method that the [`SurfaceTextures`] were made for.
+    /// The method that finds the surface; the [`SurfaceTextures`] must be made for it.
     pub method: Method,
     /// Self-shadow.
     pub shadow: Shadow,
-    /// Normals from a normal map, and where its green points; else those of the heights.
+    /// If set, normals come from a normal map whose green channel points in this direction; otherwise they
+    /// follow from the heights.
     pub normal_map: Option<Green>,
-    /// Discards what leaves the mesh's range of uv, so that silhouettes follow the relief.
+    /// Whether to discard points outside the mesh's range of uv, so that silhouettes follow the relief.
     pub silhouette: bool,
-    /// Writes the relief's own depth rather than the polygon's. Costs early depth tests.
+    /// Whether to write the depth of the relief and not that of the polygon. This disables early depth tests.
     pub depth: bool,
-    /// Chooses the heights' mip level from the size of a pixel. Acceleration maps belong to level 0: `cone` and
-    /// `quadtree` march there whatever this says.
+    /// Whether to choose the mip level of the heights from the size of a pixel. Acceleration maps belong to
+    /// level 0, so that `cone` and `quadtree` always march there.
     pub mip: bool,
 }
 
@@ -60,7 +62,7 @@ impl Default for ReliefOptions {
     }
 }
 
-/// The pipeline.
+/// Draws meshes with relief on targets of one format.
 #[derive(Debug, Clone)]
 pub struct ReliefRenderer {
     pipeline: wgpu::RenderPipeline,
@@ -68,23 +70,23 @@ pub struct ReliefRenderer {
     options: ReliefOptions,
 }
 
-/// Where a relief is seen from.
+/// The view of a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliefCamera {
-    /// From world to clip space, depth 0 to 1.
+    /// The matrix from world space to clip space, depth 0 to 1.
     pub clip_from_world: Mat4,
-    /// The eye with w = 1, or the direction towards it with w = 0 for a parallel projection.
+    /// The position of the eye with w = 1, or for a parallel projection the direction towards it with w = 0.
     pub eye: Vec4,
 }
 
 /// The maps of a material.
 #[derive(Debug, Clone, Copy)]
 pub struct ReliefMaps<'a> {
-    /// Heights and their acceleration.
+    /// Heights and their acceleration map.
     pub textures: &'a SurfaceTextures,
     /// Colour, sRGB.
     pub albedo: &'a ColorTexture,
-    /// Tangent-space normals: needed where [`ReliefOptions::normal_map`] says so, else ignored.
+    /// Tangent-space normals: required if [`ReliefOptions::normal_map`] is set, else ignored.
     pub normals: Option<&'a ColorTexture>,
 }
 
@@ -92,7 +94,7 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2];
 
 impl ReliefRenderer {
-    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a
+    /// Compiles the pipeline, unless it is cached for this device, for targets of `color` format with a
     /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
     ///
     /// # Errors
@@ -125,10 +127,10 @@ impl ReliefRenderer {
         Ok(Self { pipeline, layouts, options })
     }
 
-    /// Uploads a mesh and binds its material. `world` is the size of a uv unit in world units.
+    /// Uploads a mesh and binds its material. `world` is the length of a uv unit in world units.
     ///
     /// # Errors
-    /// [`InputError`] for what does not fit together; [`GpuError`].
+    /// [`InputError`] for arguments that do not match each other; [`GpuError`].
     pub fn scene(
         &self,
         gpu: &Gpu,
@@ -221,7 +223,7 @@ pub struct ReliefScene {
 }
 
 impl ReliefScene {
-    /// Chooses the camera of the next submission.
+    /// Sets the camera of the next submission.
     ///
     /// # Errors
     /// [`GpuError`].

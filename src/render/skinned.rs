@@ -1,5 +1,6 @@
-//! Draws skinned instances of a mesh into the caller's render pass: two indirect draws for all, or for all of a level of
-//! detail, the second of what is mirrored. A mesh has one material: a model of several is drawn mesh by mesh.
+//! Draws skinned instances of a mesh in the caller's render pass. The instances of each level of detail take
+//! two indirect draws, the second for those that are mirrored. A mesh has one material: a model with several is
+//! drawn mesh by mesh.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
@@ -17,7 +18,7 @@ use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 
-/// `SkinnedView` of the shader.
+/// The shader's `SkinnedView`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct SkinnedView {
     pub clip_from_world: Mat4,
@@ -28,34 +29,36 @@ pub(crate) struct SkinnedView {
     pub side: f32,
 }
 
-/// Draws meshes on targets of a format.
+/// Draws meshes on targets of one format.
 #[derive(Debug, Clone)]
 pub struct SkinnedRenderer {
     color: wgpu::TextureFormat,
 }
 
-/// What is drawn.
+/// The instances to draw.
 #[derive(Debug, Clone, Copy)]
 pub struct SkinnedInstances<'a> {
     /// Triangles of all levels, and texture coordinates.
     pub mesh: &'a MeshBuffers,
-    /// As [`crate::skinning::skin::SkinPass`] writes them.
+    /// Skinned vertices, as [`crate::skinning::skin::SkinPass`] writes them.
     pub skinned: &'a Buffer<Vertex>,
-    /// From the model's space into the world, one an instance. They may mirror: outside stays outside.
+    /// The transforms from the model's space into the world, one per instance. A mirrored instance still shows
+    /// its outside.
     pub placements: &'a Buffer<Affine>,
-    /// The instances that are drawn: one list, at most as long as there are places, of the mesh itself; or one a level of
-    /// detail ([`MeshBuffers::levels`]), [`list_stride`] words each. Lists of levels that there are not are drawn with the
-    /// last.
+    /// Indices of the instances to draw. Either one list for the mesh itself, with at most as many entries as
+    /// there are placements; or one list per level of detail ([`MeshBuffers::levels`]), [`list_stride`] words
+    /// each. Lists of levels that do not exist are drawn with the last level.
     pub drawn: &'a Buffer<u32>,
-    /// Colour.
+    /// The base colour.
     pub albedo: &'a Albedo,
-    /// What lights them.
+    /// The light.
     pub light: Light,
 }
 
 impl SkinnedRenderer {
-    /// Compiles the pipelines of what is opaque, unless this device has them already, for targets of `color` format with
-    /// a [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer. The first mesh that is not compiles its own.
+    /// Compiles the pipelines for opaque surfaces, unless they are cached for this device, for targets of
+    /// `color` format with a [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer. The first mesh
+    /// that is not opaque compiles pipelines of its own.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -89,12 +92,13 @@ impl SkinnedRenderer {
         gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
     }
 
-    /// Binds instances. Until [`SkinnedScene::arguments`] says otherwise, as many of the first list are drawn as it has
-    /// room for, one a place at most, and none of the others; any of them may be mirrored.
+    /// Binds instances. Until [`SkinnedScene::arguments`] is written, the first list is drawn with as many
+    /// entries as it has room for, at most one per placement, and the other lists are not drawn; any instance
+    /// may be mirrored.
     ///
     /// # Errors
-    /// [`InputError`] for too few vertices or places, and other than whole lists of at most [`MAX_LEVELS`] levels;
-    /// [`GpuError`].
+    /// [`InputError`] for too few vertices or placements, and for a buffer that does not consist of whole lists
+    /// of at most [`MAX_LEVELS`] levels; [`GpuError`].
     pub fn scene(&self, gpu: &Gpu, instances: &SkinnedInstances<'_>) -> Result<SkinnedScene, Error> {
         let SkinnedInstances { mesh, skinned, placements, drawn, albedo, light } = *instances;
         light.validate()?;
@@ -139,7 +143,8 @@ impl SkinnedRenderer {
         })
     }
 
-    /// What draws all instances of both sides; or those that are not mirrored, and those that are.
+    /// The pipelines: one that draws all instances from both sides, or one for those that are not mirrored and
+    /// one for those that are.
     fn pipelines(
         &self,
         gpu: &Gpu,
@@ -150,24 +155,24 @@ impl SkinnedRenderer {
             if double_sided { &[Sides::Both] } else { &[Sides::Outer, Sides::OuterMirrored] };
         let (pipelines, mut layouts): (Vec<_>, Vec<_>) =
             sides.iter().map(|sides| self.pipeline(gpu, *sides, alpha)).collect::<Result<_, _>>()?;
-        // Of the same shader, and so the same.
+        // All are compiled from the same shader and have the same layouts.
         Ok((pipelines, layouts.swap_remove(0)))
     }
 }
 
-/// Which sides of triangles a draw shows, and of which instances: what a placement or the view mirrors runs clockwise on
-/// the screen, seen from outside.
+/// Which sides of triangles a draw shows, and of which instances. Seen from outside, triangles that the
+/// placement or the view mirrors run clockwise on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Sides {
-    /// Both, of all.
+    /// Both sides of all instances.
     Both,
-    /// The outer ones of what is not mirrored.
+    /// The outsides of instances that are not mirrored.
     Outer,
-    /// The outer ones of what is.
+    /// The outsides of mirrored instances.
     OuterMirrored,
 }
 
-/// How many lists of drawn instances there are, and the words of each.
+/// The number of lists of drawn instances, and the number of words of each.
 fn lists(words: usize, places: usize) -> Result<[usize; 2], InputError> {
     if words <= places {
         return Ok([1, words]);
@@ -183,7 +188,7 @@ fn lists(words: usize, places: usize) -> Result<[usize; 2], InputError> {
     Ok([levels, stride])
 }
 
-/// A list, to be bound. An empty one has room for a word.
+/// One list, to be bound. An empty list has room for one word.
 fn list(drawn: &Buffer<u32>, at: usize, words: usize) -> wgpu::BindingResource<'_> {
     let [offset, size] = [at * words, words.max(1)].map(|words| (size_of::<u32>() * words) as u64);
     let size = wgpu::BufferSize::new(size);
@@ -206,7 +211,7 @@ pub struct SkinnedScene {
 }
 
 impl SkinnedScene {
-    /// Chooses the camera of the next submission.
+    /// Sets the camera of the next submission.
     ///
     /// # Errors
     /// [`GpuError`].

@@ -1,4 +1,4 @@
-//! A whole picture of a square of relief, off screen: what the command line draws.
+//! Off-screen pictures of a square of relief, as the command line draws them.
 
 use glam::{DVec3, Mat4, Vec4};
 
@@ -19,31 +19,31 @@ use crate::surface::view::SquareView;
 /// How a square is drawn.
 #[derive(Debug, Clone)]
 pub struct SquarePicture<'a> {
-    /// Heights and their acceleration; the method is theirs.
+    /// Heights and their acceleration map; they determine the method.
     pub textures: &'a SurfaceTextures,
-    /// Colours.
+    /// Base colours.
     pub albedo: &'a Mips,
-    /// Tangent-space normals; else those of the heights.
+    /// Tangent-space normals; if `None`, normals follow from the heights.
     pub normals: Option<&'a Mips>,
-    /// Where green of the normals points.
+    /// The direction to which the green channel of the normals points.
     pub green: Green,
     /// Self-shadow.
     pub shadow: Shadow,
-    /// Cuts away what leaves the square.
+    /// Whether points beyond the square are cut away.
     pub silhouette: bool,
-    /// Depth and light; the light in the square's tangent space.
+    /// Depth and light; the light is in the square's tangent space.
     pub material: Material,
-    /// How rays are marched.
+    /// The parameters of the march.
     pub march: March,
-    /// Where it is seen from.
+    /// The view of the square.
     pub view: SquareView,
 }
 
 impl SquarePicture<'_> {
-    /// Draws it over a linear `background`, one sample a pixel.
+    /// Draws the square over a linear `background`, with one sample per pixel.
     ///
     /// # Errors
-    /// [`crate::InputError`] for what cannot be drawn; [`crate::gpu::GpuError`].
+    /// [`crate::InputError`] for parameters that cannot be drawn; [`crate::gpu::GpuError`].
     pub fn draw(&self, gpu: &Gpu, background: [f32; 3]) -> Result<LinearImage, Error> {
         self.view.validate()?;
         let options = ReliefOptions {
@@ -71,13 +71,13 @@ impl SquarePicture<'_> {
     }
 }
 
-/// The parallel projection of a view of [`SurfaceMesh::square`].
+/// The camera of a parallel view of [`SurfaceMesh::square`].
 pub fn camera(view: &SquareView) -> ReliefCamera {
     let world = |axis: [f64; 3]| DVec3::new(axis[0], -axis[1], axis[2]);
     let [right, up] = view.axes().map(world);
     let towards = world(view.towards());
     let [width, height] = view.size.map(|edge| 2.0 * view.zoom() / f64::from(edge));
-    // The square lies within one unit of the origin, its relief within two behind it.
+    // The square lies within one unit of the origin, and its relief within two units behind it.
     let depth = -0.25 * towards;
     let (right, up) = (right * width, up * height);
     let row = |axis: DVec3, last: f32| axis.as_vec3().extend(last);

@@ -8,10 +8,10 @@ pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrg
 /// The colour format of [`Target::linear`].
 pub const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The depth format that every pass here expects.
+/// The depth format that every pass of this module expects.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// An sRGB image with depth, to draw into without a window.
+/// An off-screen sRGB image with a depth buffer.
 #[derive(Debug, Clone)]
 pub struct Target {
     color: wgpu::Texture,
@@ -27,7 +27,7 @@ impl Target {
         Self::of(gpu, size, COLOR_FORMAT)
     }
 
-    /// A target of linear light in f32, which no driver rounds or encodes its own way.
+    /// A target of linear light in f32, whose values do not depend on a driver's rounding or encoding.
     ///
     /// # Errors
     /// As [`Target::new`].
@@ -64,15 +64,15 @@ impl Target {
         })
     }
 
-    /// Width over height.
+    /// Width divided by height.
     pub fn aspect(&self) -> f32 {
         self.color.width() as f32 / self.color.height() as f32
     }
 
-    /// Clears to `sky` (linear) and the far plane, draws with `draw`, and waits.
+    /// Clears the colour to `sky` (linear) and the depth to the far plane, draws with `draw`, and waits.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn draw(
         &self,
         gpu: &Gpu,
@@ -82,7 +82,7 @@ impl Target {
         gpu.run("draw", |encoder| self.record(encoder, sky, draw))
     }
 
-    /// Records what [`Target::draw`] draws into the caller's encoder.
+    /// Records the same work as [`Target::draw`] into the caller's encoder.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -114,10 +114,10 @@ impl Target {
         draw(&mut pass);
     }
 
-    /// The image of a target of [`Target::new`]: RGBA, sRGB, row by row.
+    /// Reads the image of a target made by [`Target::new`]: RGBA, sRGB, row by row.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
         let pixels = self.read_bytes(gpu, 4)?;
         image::RgbaImage::from_raw(self.color.width(), self.color.height(), pixels).ok_or_else(|| {
@@ -125,10 +125,10 @@ impl Target {
         })
     }
 
-    /// The linear red, green and blue of a target of [`Target::linear`], row by row.
+    /// Reads linear red, green and blue of a target made by [`Target::linear`], row by row.
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub fn read_linear(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, GpuError> {
         let pixels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read_bytes(gpu, 16)?);
         Ok(pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())

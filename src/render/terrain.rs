@@ -1,4 +1,4 @@
-//! Draws terrain fields into the caller's render pass, straight from their heights: no mesh, no index buffer.
+//! Draws terrain in the caller's render pass, straight from the heights: no mesh and no index buffer.
 
 mod scene;
 
@@ -14,7 +14,7 @@ use crate::terrain::config::Zone;
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
 
-/// `View` of the shader.
+/// The shader's `View`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct View {
     pub clip_from_world: Mat4,
@@ -26,14 +26,14 @@ pub(crate) struct View {
 /// How terrain is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
-    /// Zone textures and light.
+    /// Zone textures and lighting.
     #[default]
     Textured,
-    /// Triangle edges over dark ground.
+    /// Triangle edges on dark ground.
     Wireframe,
 }
 
-/// The pipeline.
+/// Draws terrain on targets of one format.
 #[derive(Debug, Clone)]
 pub struct TerrainRenderer {
     pipeline: wgpu::RenderPipeline,
@@ -41,7 +41,7 @@ pub struct TerrainRenderer {
 }
 
 impl TerrainRenderer {
-    /// Compiles the pipeline, unless this device has it already, for targets of `color` format with a
+    /// Compiles the pipeline, unless it is cached for this device, for targets of `color` format with a
     /// [`DEPTH_FORMAT`](crate::render::target::DEPTH_FORMAT) depth buffer.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl TerrainRenderer {
         Ok(Self { pipeline, layouts })
     }
 
-    /// Binds materials and a view of them.
+    /// Makes an empty scene with these materials.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -102,7 +102,7 @@ pub struct Materials {
 }
 
 impl Materials {
-    /// Uploads zones and their textures, one each.
+    /// Uploads zones and their textures, one texture per zone.
     ///
     /// # Errors
     /// [`InputError`] when their numbers differ; [`GpuError`].

@@ -1,4 +1,4 @@
-//! Benchmarks of `kernels/skinning/`: a mesh of 10,000 vertices around 64 bones.
+//! What the benchmarks of `kernels/skinning/` share: a mesh of 10,000 vertices around 64 bones.
 
 use crate::Error;
 use crate::asset::Model;
@@ -16,19 +16,19 @@ use crate::skinning::vertex::Blend;
 /// Vertices of the mesh: 100 rings of 100.
 pub(crate) const RING: usize = 100;
 
-/// Bones along it.
+/// Number of bones along the mesh.
 pub(crate) const BONES: usize = 64;
 
-/// Instances of the cases.
+/// Numbers of instances of the cases.
 pub(crate) const CROWDS: [usize; 3] = [1, 100, 1000];
 
-/// Reductions of a crowd, of which one instance in `every` is seen.
+/// The InstanceLods of a crowd of which one instance in `every` is seen.
 pub(crate) fn seen_of(instances: usize, every: usize) -> Vec<InstanceLod> {
     let one = |at: usize| if at.is_multiple_of(every) { InstanceLod::FULL } else { InstanceLod::UNSEEN };
     (0..instances).map(one).collect()
 }
 
-/// A tube along its bones; each vertex follows the `influences` bones nearest to it.
+/// A tube along its bones. Each vertex follows the `influences` bones that are nearest to it.
 pub(crate) fn tube(influences: usize, targets: usize) -> Result<Model, Error> {
     let shape = Shape { bones: 2 * BONES, vertices: 1, influences: 1, targets: 0, levels: 0 };
     let mut model = random_model(1, shape)?;
@@ -74,7 +74,7 @@ pub(crate) fn tube(influences: usize, targets: usize) -> Result<Model, Error> {
     Ok(model)
 }
 
-/// A mesh on the device, and instances with a palette each.
+/// A mesh on the device, and instances with one palette each.
 pub(crate) struct Scene {
     pub(crate) model: Model,
     pub(crate) mesh: MeshBuffers,

@@ -1,4 +1,4 @@
-//! A ball around a model in all of its clips.
+//! Bounding spheres of models in all of their clips.
 
 use glam::Vec3;
 
@@ -10,13 +10,15 @@ use crate::asset::Model;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::bone_radii;
 
-/// Moments of each clip that are looked at, at least and at most: an hour at 60 a second.
+/// The smallest and the largest number of moments at which a clip is sampled; the largest is an hour at 60 per
+/// second.
 const MOMENTS: [usize; 2] = [32, 216_001];
 
-/// A ball in the model's space around all meshes at rest and in every clip, larger by a twentieth for what lies between
-/// the moments that are looked at: 60 a second and at least 32 of a clip; of clips of more than an hour 216,001, which
-/// then lie further apart. For [`LodView`](super::lod::LodView). Of vertices it knows how far they reach from their bones
-/// alone, so it may be half again as large as it had to be; morph targets count as [`bone_radii`] says.
+/// A sphere in the model's space around all meshes at rest and in every clip, for
+/// [`LodView`](super::lod::LodView). Clips are sampled 60 times a second, at least 32 times; a clip of more
+/// than an hour is sampled 216,001 times, at larger intervals. The sphere is enlarged by a twentieth for motion
+/// between samples. It is computed from the distances of vertices from their bones only, so that it may be half
+/// again as large as necessary; morph targets count as [`bone_radii`] says.
 ///
 /// # Panics
 /// As [`bone_radii`].
@@ -47,7 +49,7 @@ pub fn bounding_sphere_in_clips(model: &Model) -> (Vec3, f32) {
     }
 }
 
-/// Whether any vertex follows each bone.
+/// For each bone, whether any vertex follows it.
 fn followed(model: &Model) -> Vec<bool> {
     let mut followed = vec![false; model.skeleton.len()];
     for mesh in &model.meshes {
@@ -91,7 +93,7 @@ mod tests {
         assert_eq!(bounding_sphere_in_clips(&bare), (Vec3::ZERO, 0.0));
     }
 
-    /// A jump of a tenth of a second in a minute and a half.
+    /// A clip of a minute and a half with a jump that lasts a tenth of a second.
     #[test]
     fn the_ball_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");

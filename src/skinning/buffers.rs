@@ -1,5 +1,5 @@
-//! What skinning has on the device: a mesh in clusters with its skin, and for each instance what moves it and where its
-//! vertices are.
+//! Skinning data on the device: a mesh in clusters with its skin, and for each instance its palette, weights
+//! and vertices.
 
 use glam::UVec4;
 
@@ -14,45 +14,46 @@ use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
-/// A mesh on the device, and the skin that it follows. Vertices lie in clusters: see [`Clusters::order`].
+/// A mesh on the device, and the skin that it follows. Vertices lie in clusters; see [`Clusters::order`].
 #[derive(Debug, Clone)]
 pub struct MeshBuffers {
-    /// Unmorphed.
+    /// Vertices before morphing.
     pub vertices: Buffer<Vertex>,
-    /// One a vertex.
+    /// Texture coordinates, one pair per vertex.
     pub uv: Buffer<[f32; 2]>,
-    /// Three a triangle, of all levels of detail: see [`Clusters::indices`].
+    /// Three indices per triangle, of all levels of detail; see [`Clusters::indices`].
     pub indices: Buffer<u32>,
-    /// What the mesh has at each level of its character ([`level_errors`]), the first of which is the mesh itself.
+    /// The part of the mesh that each level of its character ([`level_errors`]) uses; the first level is the
+    /// mesh itself.
     pub levels: Vec<ClusterLevel>,
     /// See [`Clusters::influences`].
     pub influences: Buffer<u32>,
     /// See [`Clusters::masks`].
     pub masks: Buffer<u32>,
-    /// Where each vertex's deltas begin; one more than there are vertices.
+    /// Where the deltas of each vertex begin; one more entry than there are vertices.
     pub delta_offsets: Buffer<u32>,
-    /// Three a delta: position and, as bits, the target; normal; tangent.
+    /// Three vectors per delta: position and, as bits, the target; normal; tangent.
     pub deltas: Buffer<[[f32; 4]; 3]>,
-    /// The skin's bones.
+    /// Indices of the skin's bones.
     pub bones: Buffer<u32>,
-    /// Three rows a bone of the skin.
+    /// Three rows per bone of the skin.
     pub inverse_binds: Buffer<[[f32; 4]; 3]>,
-    /// Words of a set of the skeleton's bones.
+    /// Words per set of the skeleton's bones.
     pub mask_words: usize,
-    /// Morph targets.
+    /// Number of morph targets.
     pub targets: usize,
-    /// Bones of the skeleton.
+    /// Number of bones of the skeleton.
     pub all_bones: usize,
-    /// [`Mesh::double_sided`].
+    /// Whether both sides of triangles are seen; see [`Mesh::double_sided`].
     pub double_sided: bool,
 }
 
 impl MeshBuffers {
-    /// Uploads one of a model's meshes. At each level of the model's character ([`level_errors`]) the clusters have the
-    /// mesh's own that is as near ([`own_levels`]).
+    /// Uploads one of a model's meshes. At each level of the model's character ([`level_errors`]) the clusters
+    /// use the mesh's own level that [`own_levels`] assigns to it.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that does not fit its skin; [`GpuError`].
+    /// [`InputError`] for a mesh that does not match its skin; [`GpuError`].
     pub fn new(gpu: &Gpu, model: &Model, mesh: &Mesh) -> Result<(Self, Clusters), Error> {
         let all_bones = model.skeleton.len();
         let own = own_levels(mesh, &level_errors(&model.meshes));
@@ -79,24 +80,25 @@ impl MeshBuffers {
         Ok((buffers, clusters))
     }
 
-    /// Clusters of 64 vertices.
+    /// Number of clusters, of 64 vertices each.
     pub fn clusters(&self) -> usize {
         self.vertices.len().div_ceil(super::clusters::CLUSTER)
     }
 
-    /// A level of detail of the character; of one that there is not, the last.
+    /// A level of detail of the character; the last one for a number beyond it.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Clusters of each level of the character, as kernels look them up: of those that there are not, the last one's.
+    /// Number of clusters at each level of the character, as kernels look them up; levels that do not exist
+    /// have the last one's.
     pub(crate) fn clusters_of_levels(&self) -> [UVec4; MAX_LEVELS / 4] {
         let of = |level: usize| self.level(level as u32).clusters;
         std::array::from_fn(|at| UVec4::from_array(std::array::from_fn(|lane| of(4 * at + lane))))
     }
 }
 
-/// The deltas of each vertex, by target.
+/// The deltas of each vertex, sorted by target.
 fn deltas(targets: &[MorphTarget], clusters: &Clusters) -> (Vec<u32>, Vec<[[f32; 4]; 3]>) {
     let mut by_vertex = vec![Vec::new(); clusters.order.len()];
     for (index, target) in (0..).zip(targets) {
@@ -115,27 +117,28 @@ fn deltas(targets: &[MorphTarget], clusters: &Clusters) -> (Vec<u32>, Vec<[[f32;
     (offsets, all)
 }
 
-/// Instances of one mesh on the device. All buffers may be read, written and bound by the caller.
+/// Instances of one mesh on the device. The caller may read, write and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct SkinnedCrowd {
-    /// Written by [`super::palette::PalettePass`]: `instance · bones of the skin + bone`; three vectors a bone, or for
-    /// dual quaternions four.
+    /// The palette that [`super::palette::PalettePass`] writes, at `instance · bones of the skin + bone`: three
+    /// vectors per bone, or four for dual quaternions.
     pub palette: Buffer<[f32; 4]>,
-    /// One an instance. Full at first; [`InstanceLod::UNSEEN`] where nothing is skinned, as [`super::lod`] says.
+    /// One per instance, full quality at first; [`InstanceLod::UNSEEN`] for instances that are not skinned (see
+    /// [`super::lod`]).
     pub instance_lods: Buffer<InstanceLod>,
-    /// Weights of morph targets, instance by instance. 0 at first.
+    /// Weights of morph targets, instance by instance; 0 at first.
     pub weights: Buffer<f32>,
-    /// Written by [`super::morph::MorphPass`], where the mesh has targets: `instance · vertices + place`. Clusters beyond
-    /// an instance's level stay as they were.
+    /// The vertices that [`super::morph::MorphPass`] writes if the mesh has targets, at `instance · vertices +
+    /// place`. Clusters beyond an instance's level keep their previous contents.
     pub morphed: Buffer<Vertex>,
-    /// How many.
+    /// Number of instances.
     pub instances: usize,
-    /// What the palette is for.
+    /// The kind of blending for which the palette is made.
     pub blend: Blend,
 }
 
 impl SkinnedCrowd {
-    /// Room for instances of a mesh.
+    /// Allocates the buffers for `instances` instances of a mesh.
     ///
     /// # Errors
     /// [`InputError`] for no instances; [`GpuError`].
@@ -157,21 +160,21 @@ impl SkinnedCrowd {
     }
 }
 
-/// The clusters that are to be skinned, in a buffer that kernels may fill.
+/// The list of clusters to be skinned, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
 pub struct ActiveClusters {
-    /// `cluster · instances + instance`; others are skipped.
+    /// `cluster · instances + instance` of each; all other clusters are skipped.
     pub pairs: Buffer<u32>,
-    /// Workgroups along x, y and z: arguments of an indirect dispatch; how many pairs; and a counter, which is 0 between
-    /// dispatches.
+    /// Workgroups along x, y and z, as arguments of an indirect dispatch; the number of pairs; and a counter,
+    /// which is 0 between dispatches.
     pub dispatched: Buffer<u32>,
 }
 
-/// Words of [`ActiveClusters::dispatched`].
+/// Number of words in [`ActiveClusters::dispatched`].
 pub const DISPATCHED_WORDS: usize = 5;
 
 impl ActiveClusters {
-    /// Room for all clusters of all instances; none is active.
+    /// Allocates a list with room for all clusters of all instances. It is empty at first.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -182,10 +185,10 @@ impl ActiveClusters {
         })
     }
 
-    /// Makes these pairs active, from the host.
+    /// Sets the list from the host.
     ///
     /// # Errors
-    /// [`GpuError`], for more pairs than there are too.
+    /// [`GpuError`], also for more pairs than the list has room for.
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
         let count = pairs.len() as u32;

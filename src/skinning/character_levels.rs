@@ -1,15 +1,17 @@
-//! Levels of a character of several meshes. An instance has one level, a number; each mesh has the coarsest of its own
-//! levels there that is off by no more than the character may be.
+//! Levels of detail of a character with several meshes. An instance has one level number; at that level, each
+//! mesh uses the coarsest of its own levels whose error the character's error permits.
 
 use std::collections::BTreeMap;
 
 use crate::asset::mesh::{MAX_LEVELS, Mesh};
 
-/// How far a character is off at most, units of the model, at its levels 1, 2 …: ascending, at most 15. The errors of all
-/// levels of its meshes; of more, those are left out without which the fewest triangles more are drawn, counted over the
-/// logarithm of the distance. Of a character of one mesh, whose levels have different errors, these errors.
+/// The errors of a character at its levels 1, 2 …, in the model's units: ascending, at most 15. They are the
+/// errors of all levels of its meshes. If there are more than 15, those are left out whose omission draws the
+/// fewest additional triangles, counted over the logarithm of the distance. For a character with one mesh whose
+/// levels have different errors, they are those errors.
 pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
-    // Triangles that a mesh loses as the error reaches that of its next level; by bits, as errors are not negative.
+    // The triangles that a mesh loses when the error reaches that of its next level. The key is the error's
+    // bits, whose order is right because errors are not negative.
     let mut lost: BTreeMap<u32, usize> = BTreeMap::new();
     for mesh in meshes {
         let mut left = mesh.indices.len();
@@ -22,7 +24,7 @@ pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     let mut steps: Vec<Step> =
         lost.into_iter().map(|(error, lost)| Step::new(f32::from_bits(error), lost)).collect();
     while steps.len() >= MAX_LEVELS {
-        // Without a step its triangles stay until the next one.
+        // Without a step, its triangles stay until the next step.
         let costs = steps.windows(2).map(|pair| pair[0].cost(&pair[1]));
         let cheapest = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(at, _)| at);
         let Step { lost, .. } = steps.remove(cheapest);
@@ -31,19 +33,19 @@ pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     steps.iter().map(|step| step.error).collect()
 }
 
-/// For each level of a character with these [`level_errors`], 0 included, the level that a mesh of it has there: the
-/// coarsest whose error is at most the character's; 0 is the mesh itself.
+/// For each level of a character with these [`level_errors`], 0 included, the level that one of its meshes uses
+/// there: the coarsest whose error is at most the character's; 0 is the mesh itself.
 pub fn own_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
     let coarsest = |error: &f32| mesh.levels.partition_point(|level| level.error <= *error) as u32;
     std::iter::once(0).chain(errors.iter().map(coarsest)).collect()
 }
 
-/// From one level of a character to the next.
+/// The transition from one level of a character to the next.
 struct Step {
     error: f32,
-    /// Of the error.
+    /// Logarithm of the error.
     logarithm: f64,
-    /// Indices of triangles that go.
+    /// Number of indices that are lost.
     lost: usize,
 }
 
@@ -52,7 +54,8 @@ impl Step {
         Self { error, logarithm: libm::log(f64::from(error)), lost }
     }
 
-    /// What is drawn more where it is left out: infinitely much for an error of 0, within which everybody may be.
+    /// The additional triangles drawn if the step is left out; infinite for an error of 0, which is always
+    /// permitted.
     fn cost(&self, next: &Self) -> f64 {
         if self.lost == 0 { 0.0 } else { self.lost as f64 * (next.logarithm - self.logarithm) }
     }
@@ -63,7 +66,8 @@ mod tests {
     use super::*;
     use crate::asset::mesh::MeshLevel;
 
-    /// A mesh of so many triangles, with levels of fewer and so much error. Nobody looks at anything else.
+    /// A mesh with `triangles` triangles, and levels with the given numbers of triangles and errors. Only these
+    /// numbers matter.
     fn mesh(triangles: usize, levels: &[(usize, f32)]) -> Mesh {
         let indices = |triangles: usize| vec![0; 3 * triangles];
         let level =
@@ -84,16 +88,18 @@ mod tests {
         assert_eq!(own[1], [0, 0, 0, 0, 1, 2]);
         assert_eq!(own[2], [0; 6]);
         assert_eq!(own[3], [0, 1, 1, 1, 2, 2]);
-        // Of levels with the same error the coarsest.
+        // Of levels with the same error, the coarsest is used.
         let twice = mesh(9, &[(6, 1.0), (3, 1.0)]);
         assert_eq!(own_levels(&twice, &level_errors(std::slice::from_ref(&twice))), [0, 2]);
         assert_eq!((level_errors(&[]), own_levels(&meshes[2], &[])), (vec![], vec![0]));
     }
 
-    /// No more levels than an instance has, without those that save least; never nearer to what is allowed than that.
+    /// There are no more levels than an instance can have, and those that save the least are left out. No level
+    /// exceeds the permitted error.
     #[test]
     fn levels_that_save_least_are_left_out() {
-        // Fifteen that halve the triangles as the error doubles, and in their middles some that save next to nothing.
+        // Fifteen levels that halve the triangles as the error doubles, and between them some that save next to
+        // nothing.
         let doubling = |at: i32| libm::exp2f(at as f32);
         let levels: Vec<_> = (0..15).map(|at| (1 << (15 - at), doubling(at))).collect();
         let wanted: Vec<f32> = levels.iter().map(|level| level.1).collect();
@@ -102,9 +108,9 @@ mod tests {
         let idle: Vec<_> = (0..12).map(|at| (90 - at as usize, 1.5 * doubling(at))).collect();
         let meshes = [steep, mesh(91, &idle)];
         assert_eq!(level_errors(&meshes), wanted);
-        // The others wait for the next one.
+        // The other levels wait for the next step of the character.
         assert_eq!(own_levels(&meshes[1], &wanted)[..4], [0, 0, 1, 2]);
-        // The coarsest is always there.
+        // The coarsest level is always kept.
         let meshes = [meshes[0].clone(), mesh(90, &[(89, 1e9)])];
         let errors = level_errors(&meshes);
         assert_eq!((errors.len(), errors[14]), (15, 1e9));

@@ -1,4 +1,4 @@
-//! Clusters: the vertices of a mesh in runs of 64 that follow few bones, laid out for the kernel.
+//! Clusters: the vertices of a mesh in runs of 64 that follow few bones, arranged for the kernels.
 
 use std::cmp::Reverse;
 
@@ -9,54 +9,57 @@ use crate::asset::skeleton::{Skeleton, Skin};
 use crate::skinning::vertex::Vertex;
 use crate::skinning::vertex::vertices_of;
 
-/// Vertices of a cluster.
+/// Number of vertices in a cluster.
 pub const CLUSTER: usize = 64;
 
-/// The most bones of a skin.
+/// The largest number of bones of a skin.
 pub const MAX_BONES: usize = 1 << 16;
 
-/// What a level of detail has of a mesh in clusters.
+/// The part of a mesh in clusters that a level of detail uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClusterLevel {
-    /// Its vertices lie at the first so many places.
+    /// Its vertices lie in this many places, from the first on.
     pub vertices: u32,
-    /// The first so many clusters hold them. The last of these may hold some of a finer level too.
+    /// This many clusters, from the first on, hold its vertices. The last of them may also hold vertices of a
+    /// finer level.
     pub clusters: u32,
-    /// Where its triangles begin in [`Clusters::indices`].
+    /// Index in [`Clusters::indices`] at which its triangles begin.
     pub first_index: u32,
-    /// Three a triangle.
+    /// Number of indices, three per triangle.
     pub indices: u32,
 }
 
-/// A mesh's vertices, cluster by cluster; the last cluster may have fewer. Those of coarse levels come first.
+/// A mesh's vertices arranged in clusters; the last cluster may have fewer. Vertices of coarse levels come
+/// first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
-    /// For each place the mesh's vertex there.
+    /// For each place, the mesh's vertex there.
     pub order: Vec<u32>,
-    /// The vertices in this order, unmorphed.
+    /// The vertices in this order, before morphing.
     pub vertices: Vec<Vertex>,
     /// Texture coordinates in this order.
     pub uv: Vec<[f32; 2]>,
-    /// The triangles of all levels, one behind the other, in the mesh's order, of vertices in this order.
+    /// The triangles of all levels, one level after the other, in the mesh's order; indices are places.
     pub indices: Vec<u32>,
-    /// The mesh itself, with all of its vertices, and its levels ([`Mesh::levels`]); or what it has of those of a
-    /// character ([`Clusters::with_levels`]).
+    /// The mesh itself with all of its vertices, followed by its levels ([`Mesh::levels`]) or by those that it
+    /// uses at the levels of a character ([`Clusters::with_levels`]).
     pub levels: Vec<ClusterLevel>,
-    /// Two words a cluster: where its influences begin, and how many its vertices have at most. There, in columns of 64
-    /// words: the bones, two a word, the strongest in the lower half of the first; then the weights of all but the
-    /// strongest, as bits. The strongest has what these leave of 1.
+    /// Two words per cluster: where its influences begin, and the largest number per vertex. The influences lie
+    /// there in columns of 64 words: the bones, two per word, with the strongest in the lower half of the
+    /// first; then the weights of all but the strongest, as bits. The weight of the strongest is 1 minus the
+    /// sum of the others.
     pub influences: Vec<u32>,
-    /// The bones of each cluster, as bits of [`Clusters::mask_words`] words: a bit a slot of the skeleton's [`Order`],
-    /// as gates and [`Active::updated_bones`](crate::animation::compact) have them.
+    /// The bones of each cluster as [`Clusters::mask_words`] words of bits, one bit per slot of the skeleton's
+    /// [`Order`], as in gates and [`Active::updated_bones`](crate::animation::compact).
     pub masks: Vec<u32>,
     /// [`Order::words`].
     pub mask_words: usize,
-    /// Whether morph targets move vertices, one a cluster.
+    /// For each cluster, whether morph targets move any of its vertices.
     pub morphs: Vec<bool>,
 }
 
 impl Clusters {
-    /// The clusters of a mesh whose skin fits a skeleton.
+    /// Arranges a mesh, whose skin must match a skeleton.
     ///
     /// # Errors
     /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MAX_BONES`].
@@ -89,20 +92,20 @@ impl Clusters {
         })
     }
 
-    /// The same with other levels: at each of a character's that of the mesh's own which
-    /// [`own_levels`](super::own_levels) says.
+    /// The same clusters with the levels of a character: at each of them, the mesh's own level that
+    /// [`own_levels`](super::own_levels) gives.
     #[must_use]
     pub fn with_levels(mut self, own: &[u32]) -> Self {
         self.levels = own.iter().map(|level| self.level(*level)).collect();
         self
     }
 
-    /// Where each of the mesh's vertices lies.
+    /// The place of each of the mesh's vertices.
     pub fn places(&self) -> Vec<u32> {
         places(&self.order)
     }
 
-    /// How many.
+    /// Number of clusters.
     pub fn len(&self) -> usize {
         self.order.len().div_ceil(CLUSTER)
     }
@@ -112,12 +115,12 @@ impl Clusters {
         self.order.is_empty()
     }
 
-    /// A level; of one that there is not, the last.
+    /// A level; the last one for a number beyond it.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Values one a place, back in the mesh's own order.
+    /// Converts one value per place to the mesh's own order.
     pub fn in_mesh_order<T: Copy>(&self, placed: &[T]) -> Vec<T> {
         let mut all: Vec<_> = self.order.iter().zip(placed).collect();
         all.sort_by_key(|(vertex, _)| **vertex);
@@ -135,7 +138,7 @@ fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
     (0..=mesh.levels.len() as u32).map(|level| mesh.triangles(level))
 }
 
-/// The coarsest level that each vertex is in: at least the mesh itself.
+/// The coarsest level that uses each vertex; at least level 0, the mesh itself.
 fn bands(mesh: &Mesh) -> Vec<u32> {
     let mut bands = vec![0; mesh.vertices()];
     for (level, triangles) in (0..).zip(all_triangles(mesh)) {
@@ -156,8 +159,8 @@ fn levels(mesh: &Mesh, bands: &[u32]) -> Vec<ClusterLevel> {
     (0..).zip(all_triangles(mesh)).map(level).collect()
 }
 
-/// Vertices of coarse levels first; of these, those of the same strongest bone beside each other, then those of as many
-/// influences, then of the same others.
+/// The order of vertices: those of coarse levels first, then by strongest bone, by number of influences, and by
+/// the other bones.
 fn order(mesh: &Mesh, bands: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
     order.sort_by_cached_key(|vertex| {
@@ -247,7 +250,7 @@ mod tests {
             }
             bones += if lane == 0 { mask.iter().map(|word| word.count_ones()).sum::<u32>() } else { 0 };
         }
-        // Few bones a cluster, of 153.
+        // A cluster has few of the 153 bones.
         assert!(bones < 8 * clusters.len() as u32, "{bones} in {}", clusters.len());
     }
 
@@ -272,7 +275,7 @@ mod tests {
             let placed = &clusters.indices[first_index as usize..][..indices as usize];
             let named: Vec<u32> = placed.iter().map(|place| clusters.order[*place as usize]).collect();
             assert_eq!(named, mesh.triangles(level));
-            // Its vertices are the first places. The mesh itself has some without a triangle too.
+            // A level uses the first places. Level 0 also has vertices without a triangle.
             let used: std::collections::BTreeSet<_> = placed.iter().copied().collect();
             assert!(used.iter().copied().eq(0..vertices) || level == 0 && used.last() < Some(&vertices));
             assert_eq!(held, vertices.div_ceil(64));

@@ -1,8 +1,10 @@
-//! Fewer bones with distance ("geometric imposters", A sections 8.8 and 9.6): bones collapse one by one into their
-//! parents, those first whose standing still is seen least, and what follows them turns rigid.
+//! Bone collapse: fewer bones with distance ("geometric imposters", A sections 8.8 and 9.6). Bones are merged
+//! one by one into their parents, those whose motion is least visible first, and the vertices that followed
+//! them become rigid.
 //!
-//! A bone collapses after all bones below it, so those that are left are the upper part of the skeleton, with all of
-//! their keys, and move exactly as before: whatever computes poses may leave the others out. A collapsed bone stays as it
+//! A bone collapses only after all bones below it. The remaining bones are therefore the upper part of the
+//! skeleton, keep all of their keys, and move exactly as before, so that pose computation may leave the others
+//! out. A collapsed bone keeps its rest pose relative to its nearest remaining ancestor.
 //! is at rest below the last bone that is left above it.
 
 use glam::{DMat4, DVec3};
@@ -14,25 +16,27 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Affine;
 use crate::asset::{Model, Skeleton, Skin, Transform};
 
-/// A model of fewer bones.
+/// A level of a model, with fewer bones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// For each bone of the skeleton the one whose motion it follows: itself, where it is left.
+    /// For each bone of the skeleton, the bone whose motion it follows; a remaining bone follows itself.
     pub follows: Vec<u32>,
-    /// How many are left.
+    /// Number of remaining bones.
     pub bones: usize,
-    /// In place of the model's skins: the same joints, which follow the bones that are left.
+    /// Replacements of the model's skins: they have the same joints, which follow the remaining bones.
     pub skins: Vec<Skin>,
-    /// How far a vertex strays at most in the poses that were looked at, in the model's units.
+    /// The largest displacement of any vertex in the sampled poses, in the model's units.
     pub error: f32,
 }
 
-/// Levels of a model, each with at most so many bones left, as `counts` say; more where `kept` bones need them. `kept`,
-/// end effectors for instance, never collapse, nor do the bones above them. `poses` of each clip are looked at, evenly
+/// Levels of a model, each with at most the number of bones that `counts` gives, or more if `kept` bones need
+/// them. `kept` bones, for example end effectors, and their ancestors never collapse. Each clip is sampled at
+/// `poses` evenly spaced poses.
 /// spaced.
 ///
 /// # Errors
-/// [`InputError`] for a model without clips or meshes, no poses, counts that grow, and kept bones that it lacks.
+/// [`InputError`] for a model without clips or meshes, for 0 poses, for counts that grow, and for kept bones
+/// that the model does not have.
 pub fn levels(model: &Model, counts: &[usize], kept: &[u32], poses: usize) -> Result<Vec<Level>, InputError> {
     validate(model, counts, kept, poses)?;
     let mut state = State::new(model, kept, poses);
@@ -68,24 +72,24 @@ fn validate(model: &Model, counts: &[usize], kept: &[u32], poses: usize) -> Resu
 
 /// A vertex that follows a bone.
 struct Follower {
-    /// Of all vertices of all meshes.
+    /// Index among all vertices of all meshes.
     vertex: usize,
-    /// In the bone's space, at the time of binding.
+    /// Position in the bone's space, at the time of binding.
     local: DVec3,
     weight: f64,
 }
 
 struct State<'a> {
     model: &'a Model,
-    /// Of each bone, in each pose.
+    /// The model matrix of each bone in each pose.
     models: Vec<Vec<DMat4>>,
     followers: Vec<Vec<Follower>>,
     vertices: usize,
     follows: Vec<u32>,
     left: usize,
-    /// Bones below each that are left; those that never collapse count as one more.
+    /// For each bone, the number of remaining children; one more for a bone that never collapses.
     holds: Vec<u32>,
-    /// What collapsing each bone costs, where it is known.
+    /// The cost of collapsing each bone, if known.
     costs: Vec<Option<f64>>,
 }
 
@@ -114,7 +118,7 @@ impl<'a> State<'a> {
         for bone in skeleton.bones() {
             match bone.parent {
                 Some(parent) => holds[parent as usize] += 1,
-                // A root has nothing to collapse into.
+                // A root has no parent into which it could collapse.
                 None => continue,
             }
         }
@@ -135,7 +139,8 @@ impl<'a> State<'a> {
         &self.model.skeleton
     }
 
-    /// Collapses the bone that costs least, if there is one. Of equal ones the last, which lies deepest in its chain.
+    /// Collapses the bone with the least cost, if there is one. Of equal costs the last bone is taken, which
+    /// lies deepest in its chain.
     fn collapse(&mut self) -> bool {
         let candidates: Vec<usize> = (0..self.follows.len())
             .filter(|bone| self.follows[*bone] as usize == *bone && self.holds[*bone] == 0)
@@ -162,7 +167,8 @@ impl<'a> State<'a> {
         true
     }
 
-    /// How far a vertex strays at most when a bone, and what has collapsed into it, follows its parent.
+    /// The largest displacement of a vertex if a bone, and the bones that have collapsed into it, follow the
+    /// bone's parent.
     fn cost(&self, bone: usize) -> f64 {
         let Some(parent) = self.skeleton().bones()[bone].parent else { return f64::INFINITY };
         let group: Vec<usize> =
@@ -182,7 +188,7 @@ impl<'a> State<'a> {
         strays.fold(0.0, f64::max).sqrt()
     }
 
-    /// Where a bone is at rest in the space of one above it.
+    /// The rest matrix of a bone in the space of one of its ancestors.
     fn rest(&self, above: usize, bone: usize) -> DMat4 {
         let bones = self.skeleton().bones();
         let parent = |bone: usize| bones[bone].parent.map(|parent| parent as usize);
@@ -209,7 +215,7 @@ impl<'a> State<'a> {
         Skin { name: skin.name.clone(), bones, inverse_binds }
     }
 
-    /// How far a vertex strays at most, all collapsed bones together.
+    /// The largest displacement of a vertex, with all collapses together.
     fn error(&self) -> f64 {
         let collapsed: Vec<(usize, DMat4)> = (0..self.follows.len())
             .filter(|bone| self.follows[*bone] as usize != *bone)
@@ -230,7 +236,7 @@ impl<'a> State<'a> {
     }
 }
 
-/// What follows each bone, and how many vertices there are.
+/// The followers of each bone, and the number of vertices.
 fn followers(model: &Model) -> (Vec<Vec<Follower>>, usize) {
     let mut followers: Vec<Vec<Follower>> = model.skeleton.bones().iter().map(|_| Vec::new()).collect();
     let mut first = 0;
@@ -267,7 +273,7 @@ mod tests {
         crate::samples::creature().expect("valid")
     }
 
-    /// Where the vertices are, by the references.
+    /// The vertices as the references compute them.
     fn skinned(model: &Model, skin_of: &Skin, clip: usize, time: f32) -> Vec<glam::Vec3> {
         let models = local_to_model(&model.skeleton, &sample(&model.clips[clip], time, RotationPath::Slerp));
         let mesh = &model.meshes[0];
@@ -293,7 +299,7 @@ mod tests {
             assert!((stray - level.error).abs() < 1e-5, "{stray} instead of {}", level.error);
         }
         assert!(levels.windows(2).all(|pair| pair[0].error < pair[1].error), "{levels:?}");
-        // What is hardly seen goes first: a third of the bones for a finger's breadth.
+        // The least visible bones go first: a third of the bones for a displacement of about a finger's width.
         assert!(levels[1].error < 0.02, "{}", levels[1].error);
     }
 
@@ -306,7 +312,7 @@ mod tests {
             for (bone, follows) in (0..).zip(&level.follows) {
                 let parent = model.skeleton.bones()[bone as usize].parent;
                 match parent {
-                    // Whoever is left has a parent that is left; whoever is not follows its parent's.
+                    // The parent of a remaining bone remains; a collapsed bone follows what its parent follows.
                     Some(parent) if bone == *follows => assert_eq!(level.follows[parent as usize], parent),
                     Some(parent) => assert_eq!(*follows, level.follows[parent as usize]),
                     None => assert_eq!(bone, *follows),

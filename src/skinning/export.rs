@@ -1,20 +1,20 @@
-//! Skinned meshes as Wavefront OBJ.
+//! Export of skinned meshes as Wavefront OBJ.
 
 use std::fmt::Write as _;
 
 use crate::asset::mesh::Mesh;
 use crate::skinning::vertex::Vertex;
 
-/// An object a mesh, in order: vertices in the mesh's order with every digit that `f32` needs, texture coordinates
-/// (v up, as OBJ has it), normals, triangles.
+/// Writes one object per mesh, in order: vertices in the mesh's order with all digits that `f32` needs, texture
+/// coordinates (v up, as in OBJ), normals, triangles.
 ///
 /// # Panics
-/// With other than one vertex a vertex of the mesh.
+/// If the number of vertices differs from the mesh's.
 pub fn obj(meshes: &[(&Mesh, &[Vertex])]) -> String {
     let mut text = String::new();
     let mut first = 1;
     for (mesh, vertices) in meshes {
-        // A space would end the name, a line the object.
+        // A space would end the name, and a line break the object.
         let name: String = mesh.name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
         let mut line = |args: std::fmt::Arguments<'_>| text.write_fmt(args).expect("strings take all");
         line(format_args!("o {name}\n"));

@@ -1,5 +1,5 @@
-//! What the vertices of a mesh do in clips: how far they reach, and how far fading takes them from where all of their
-//! influences have them. From these follows how a crowd may fade so that an error in pixels is never exceeded.
+//! The extent of a mesh in clips: a bounding sphere, and how far the fade of influences displaces vertices.
+//! They determine the distances at which a crowd may fade without exceeding an error in pixels.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -13,29 +13,33 @@ use crate::asset::Mesh;
 use crate::asset::Model;
 use crate::asset::influences::Influence;
 
-/// By how much [`Extent::stray`] is larger than what was found. A vertex whose way from one pose to the next were
-/// straight would be off most at one of the two: the margin is for what bends in between.
+/// The margin by which [`Extent::stray`] exceeds the sampled maximum. If the displacement of a vertex were
+/// linear between two poses, its maximum would be at one of them; the margin covers curvature in between.
 const STRAY_MARGIN: f32 = 1.01;
 
-/// A mesh in its clips, in the model's units. Blended linearly, with the weights of morph targets that the clips have.
+/// The extent of a mesh in its clips, in the model's units, with linear blending and with the clips' weights of
+/// morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// The middle of a ball around all vertices in all poses.
+    /// The centre of a sphere around all vertices in all poses.
     pub center: Vec3,
-    /// Its radius.
+    /// The radius of the sphere.
     pub radius: f32,
-    /// No vertex is further than λ times this from where full quality has it, at any λ of
-    /// [`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade): the largest distance that was found, divided by its λ.
+    /// The displacement per λ: at any λ of
+    /// [`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade), no vertex is further than λ
+    /// times this from its position at full quality. It is the maximum over samples of displacement divided by
+    /// λ.
     pub stray: f32,
 }
 
 impl Extent {
-    /// Looks at `poses` of each of these clips, evenly spaced from start to end; at rest, where there are no clips. Poses
-    /// between them may go 1 % further: [`poses_of`](super::poses_of) a clip are many enough. Poses of other clips, and
-    /// layers above these, are not known.
+    /// Samples `poses` of each of these clips, evenly spaced from start to end; the rest pose if there are no
+    /// clips. Between samples the values may be exceeded by 1 %; [`poses_of`](super::poses_of) gives a
+    /// sufficient number for a clip. Other clips, and layers above these, are not covered.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh or clips that the model lacks, no poses, and a mesh that does not fit its skin.
+    /// [`InputError`] for a mesh or clips that the model does not have, for 0 poses, and for a mesh that does
+    /// not match its skin.
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
         let mesh = &model.meshes[mesh];
@@ -44,12 +48,13 @@ impl Extent {
         Ok(Self { center, radius: radius(model, mesh, &moments, center), stray: STRAY_MARGIN * all.stray })
     }
 
-    /// All meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them: the ball's middle is that of
-    /// [`bounding_sphere_in_clips`], from which a scene counts how far away instances are; the ball holds the vertices of all meshes,
-    /// and none of these strays further. Otherwise as [`Extent::new`].
+    /// The extent of all meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them. The
+    /// sphere's centre is that of [`bounding_sphere_in_clips`], from which a scene measures distances; the
+    /// sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
+    /// [`Extent::new`].
     ///
     /// # Errors
-    /// As [`Extent::new`]; for a model without meshes.
+    /// As [`Extent::new`], and [`InputError`] for a model without meshes.
     pub fn of_model(model: &Model, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         if model.meshes.is_empty() {
             return Err(InputError::new("model.meshes", "none", "must be at least one"));
@@ -64,39 +69,31 @@ impl Extent {
         Ok(all)
     }
 
-    /// That of instances which are so many times as large.
+    /// The extent of instances that are scaled by `scale`.
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
         Self { center: scale * self.center, radius: scale * self.radius, stray: scale * self.stray }
     }
 
-    /// Where a crowd may begin to fade, and where it may be rigid
-    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no vertex is
-    /// more than `pixels` off on screen, wherever it is. Placements neither stretch nor shrink. 0 pixels allow no fade.
+    /// The projected distances at which a crowd may begin to fade and may be rigid
+    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no
+    /// vertex is drawn more than `pixels` from its place, wherever it is in the picture. Placements must not
+    /// scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
-    /// A point at depth z and distance d that is off by e shows focal·e·(d/z)/(z − e) pixels at most. Let q be what the
-    /// middle of an instance counts as ([`LodView::projected_distance`](super::lod::LodView::projected_distance)), its depth squared over its
-    /// distance. No point of its ball, of radius r, lies at less than Z = middle's depth − r or further than D = middle's
-    /// distance + r, and a = Z²/D ≥ (q − r)²/(q + r) ≥ q − 3r, since neither depth nor distance is below q. So it shows
-    /// focal·e·(Z/a)/(Z − e) at most, and since Z ≥ a no more than focal·e/(a − e): at most ε pixels where
-    /// a ≥ e·(focal + ε)/ε. This is so from q = 3r + e·(focal + ε)/ε on; and as λ grows evenly from q = 3r on, so may e,
-    /// up to [`Extent::stray`].
-    ///
-    /// What else is off adds to it: bones that a gate holds back by ε′ pixels, and a fade by ε, together show ε + ε′.
+    /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
     pub fn fade_range(&self, projection: &Projection, pixels: f32) -> [f32; 2] {
         let near = self.beyond(projection, pixels, 0.0);
         [near, self.beyond(projection, pixels, self.stray).max(near.next_up())]
     }
 
-    /// From where on levels of a mesh with these `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be
-    /// used ([`LevelRanges`](super::lod::LevelRanges)), so that no point of theirs is seen more than `pixels` from the
-    /// mesh's surface, and no point of that from theirs, as far as the errors hold at that point. Placements neither
-    /// stretch nor shrink. Where nothing may be off, levels with an error begin at the end of all numbers.
+    /// The projected distances from which on levels with these `errors`
+    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used
+    /// ([`LevelRanges`](super::lod::LevelRanges)), so that no point of a level is drawn more than `pixels` from
+    /// the mesh's surface, and no point of that surface from the level, as far as the errors hold at the point.
+    /// Placements must not scale. If 0 pixels are permitted, levels with an error begin at the largest number.
+    /// `docs/pixel-bounds.md` has the derivation.
     ///
-    /// By the formula of [`Extent::fade_range`], with an error as e: of two points of the two surfaces that lie so near
-    /// each other the one is off, the other its right place. Both are in the ball, as the vertices of triangles are.
-    ///
-    /// What else is off adds to it, a fade too: within ε pixels a crowd may fade by a share and have levels by the rest.
+    /// Other errors add up: split the permitted pixels between a fade and levels.
     pub fn level_ranges(
         &self,
         projection: &Projection,
@@ -106,17 +103,17 @@ impl Extent {
         errors.into_iter().map(|error| self.beyond(projection, pixels, error)).collect()
     }
 
-    /// How far away an instance must count for what is `off` in it to be so many pixels off at most; finite.
+    /// The distance at which an instance must count so that an error of `off` takes at most `pixels`; finite.
     fn beyond(&self, projection: &Projection, pixels: f32, off: f32) -> f32 {
         let [focal, pixels, radius, off] =
             [projection.focal_pixels, pixels.max(0.0), self.radius, off].map(f64::from);
         let projected_distance = 3.0 * radius + off * (focal + pixels) / pixels;
-        // Nothing is off, or nothing may be.
+        // With no error any distance will do; with no pixels permitted, none.
         projected_distance.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
     }
 }
 
-/// What is seen there.
+/// The state of a mesh at the sampled moments.
 #[derive(Clone, Copy)]
 struct Look {
     low: Vec3,
@@ -152,7 +149,7 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
     all
 }
 
-/// Of a ball around a place that holds all vertices.
+/// The radius of a sphere around a centre that contains all vertices.
 fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     let farthest = |moment: &Moment| {
         let points = Pose::new(model, mesh, *moment).positions(mesh);
@@ -161,8 +158,9 @@ fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
 }
 
-/// The largest of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, over i > 1 and all λ. In 1/λ the sum is straight between the values at
-/// which one of the minima changes sides, where λ is wᵢ/w₂, and so longest at one of them.
+/// The maximum of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ over i > 1 and all λ. As a function of 1/λ, the sum is linear
+/// between the values at which one of the minima switches, where λ is wᵢ/w₂; its length is therefore largest at
+/// one of them.
 fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     let Some(second) = influences.get(1) else { return 0.0 };
     let off = |fade: f32| {
@@ -203,7 +201,7 @@ mod tests {
         assert_eq!(field(0, &[0], 0), "poses");
     }
 
-    /// Every mesh is in the ball, whose middle is that of the ball that scenes look at.
+    /// The sphere contains every mesh, and its centre is that of the sphere that scenes use.
     #[test]
     fn models_have_one_extent() {
         let mut model = crate::samples::creature().expect("valid");
@@ -239,7 +237,7 @@ mod tests {
         let range = |extent: &Extent, pixels| extent.fade_range(&projection, pixels);
         let [near, far] = range(&extent, 0.5);
         assert_eq!(near, 4.5);
-        // Twice the pixels, half the way.
+        // Twice the pixels allow half the distance.
         let nearer = range(&extent, 1.0)[1];
         assert!(((nearer - near) / (far - near) - 0.5).abs() < 1e-3, "{nearer} {far}");
         assert_eq!([0.0, -1.0].map(|pixels| range(&extent, pixels)), [[4.5, f32::MAX]; 2]);
@@ -263,7 +261,7 @@ mod tests {
         assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
         assert!(ranges(1.0, &[]).is_empty());
 
-        // Off in every direction, at the places of the ball that are nearest, straight ahead and far to the side.
+        // Errors in every direction, at the nearest points of the sphere, straight ahead and far to the side.
         let focal = projection.focal_pixels;
         let screen = |point: Vec3| point.truncate() * (focal / point.z);
         let unit = |at: i32| {
@@ -275,7 +273,7 @@ mod tests {
             for pixels in [0.25, 1.0, 8.0] {
                 let mut largest = 0.0_f32;
                 for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
-                    // As far as counts as much.
+                    // A centre whose projected distance is the same.
                     let middle = towards * (begin / (towards.z * towards.z));
                     let bounding_sphere = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
                     for (point, off) in bounding_sphere

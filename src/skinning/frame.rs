@@ -1,4 +1,5 @@
-//! A crowd's skinning in one piece: everything between its bones' matrices and vertices that can be drawn.
+//! The skinning of a crowd in one object: everything between the bones' matrices and vertices that can be
+//! drawn.
 
 use super::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use super::clusters::Clusters;
@@ -13,36 +14,38 @@ use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
-/// Prepared skinning of all instances of one mesh.
+/// The prepared skinning of all instances of one mesh.
 #[derive(Debug, Clone)]
 pub struct SkinFrame {
     /// The mesh on the device.
     pub mesh: MeshBuffers,
-    /// Which vertex lies where in it.
+    /// The arrangement of its vertices.
     pub clusters: Clusters,
-    /// Reductions and weights of targets, which the caller may write.
+    /// InstanceLods and weights of morph targets, which the caller may write.
     pub crowd: SkinnedCrowd,
-    /// The bones that moved: those that the model matrices know to be updated, or where they do not, what the caller writes.
+    /// The updated bones: those that the model matrices record, or, if they record none, those that the caller
+    /// writes.
     pub select: SelectBuffers,
-    /// The clusters of the last [`SkinFrame::record_updated_bones`].
+    /// The clusters that the last [`SkinFrame::record_updated_bones`] selected.
     pub active: ActiveClusters,
-    /// `instance · vertices + place`. Those of clusters beyond an instance's level of detail are old.
+    /// Skinned vertices, at `instance · vertices + place`. Those of clusters beyond an instance's level of
+    /// detail are out of date.
     pub skinned: Buffer<Vertex>,
     palette: Job,
     selection: Job,
-    /// Morph targets, and vertices.
+    /// The jobs of morph targets and of vertices.
     all: [Job; 2],
-    /// The same, of clusters that are selected.
+    /// The same jobs for selected clusters.
     some: Vec<IndirectJob>,
 }
 
 impl SkinFrame {
-    /// Prepares a model's mesh for so many instances, which stand where `matrices` has their bones.
+    /// Prepares a model's mesh for `instances` instances, whose bones are posed by `matrices`.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that the model lacks or that does not fit it, no instances, fewer matrices or bits of
-    /// updated bones than they need, and dual quaternions over matrices of a crowd under
-    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending alone;
+    /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for
+    /// fewer matrices or bits of updated bones than needed, and for dual quaternions over matrices of a crowd
+    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending only;
     /// [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
@@ -73,7 +76,7 @@ impl SkinFrame {
             [morph.prepare(gpu, &mesh, &crowd)?, pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?];
         let skin = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
         let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
-        // Last: it claims the matrices for its kind of blending, which what is refused must not.
+        // This comes last: it claims the matrices for its kind of blending, which a refused frame must not do.
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
         Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selection, all, some })
     }
@@ -83,19 +86,21 @@ impl SkinFrame {
         [&self.palette].into_iter().chain(&self.all).for_each(|job| job.record(encoder));
     }
 
-    /// Records the skinning of instances that are seen, at their level of detail: of clusters with a bone that moved or a
-    /// vertex that targets move otherwise than in the frame before, of those beyond the level of the frame before, and of
-    /// all clusters where influences count otherwise, as those of what was not seen do. The first time that is all that is
-    /// seen. Frames are counted here ([`SelectBuffers::skinned`]): record it once a frame.
+    /// Records the skinning of instances that are seen, at their level of detail, for these clusters: those
+    /// with an updated bone or a changed morph weight, those beyond the level of the frame before, and all
+    /// clusters of instances whose influences changed or that were not seen in the frame before. The first
+    /// recording thus skins everything that is seen. It counts frames ([`SelectBuffers::skinned`]): record it
+    /// once per frame.
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
         [&self.palette, &self.selection].into_iter().for_each(|job| job.record(encoder));
         self.some.iter().for_each(|job| job.record(encoder));
     }
 
-    /// The vertices of an instance, in the mesh's own order; old ones beyond its level of detail. Waits for the device.
+    /// Reads the vertices of an instance, in the mesh's own order; those beyond its level of detail are out of
+    /// date. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that there is not; [`crate::gpu::GpuError`].
+    /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
     pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Vertex>, Error> {
         if instance >= self.crowd.instances {
             let bound = format!("must be below {}", self.crowd.instances);

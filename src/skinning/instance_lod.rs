@@ -1,32 +1,32 @@
-//! Which influences count, and which vertices (A section 8.4).
+//! Level of detail of an instance: which influences count, and which vertices are skinned (A section 8.4).
 
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 
-/// Which influences count, and which vertices.
+/// The level of detail of one instance: its influences and its vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct InstanceLod {
     /// The λ of `fade`, 0 to 1.
     pub fade: f32,
-    /// The k of `truncate`, at least 1; 0 of instances that are not seen, which are not skinned.
+    /// The k of `truncate`, at least 1; 0 for an instance that is not seen, which is not skinned.
     pub most: u32,
-    /// The character's level of detail: 0 is its meshes themselves; at level n each has the coarsest of
-    /// [`Mesh::levels`](crate::asset::Mesh::levels) that is off by no more than the n-th of
-    /// [`level_errors`](super::level_errors). Of one that there is not, the last.
+    /// The character's level of detail. Level 0 stands for the meshes themselves; at level n each mesh uses the
+    /// coarsest of its [`Mesh::levels`](crate::asset::Mesh::levels) whose error is at most the n-th of
+    /// [`level_errors`](super::level_errors). A number beyond the last level means the last.
     pub level: u32,
 }
 
 impl InstanceLod {
-    /// Every influence of every vertex.
+    /// All influences of all vertices.
     pub const FULL: Self = Self { fade: 0.0, most: MAX_INFLUENCES as u32, level: 0 };
 
-    /// Of instances that are not seen: nothing is skinned.
+    /// For an instance that is not seen: nothing is skinned.
     pub const UNSEEN: Self = Self { fade: 0.0, most: 0, level: 0 };
 
-    /// The strongest influences.
+    /// The `most` strongest influences.
     ///
     /// # Errors
     /// [`InputError`] unless `most` is in 1 to [`MAX_INFLUENCES`].
@@ -35,7 +35,7 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// From full quality at 0 to rigid at 1.
+    /// A fade from full quality at 0 to rigid at 1.
     ///
     /// # Errors
     /// [`InputError`] unless `fade` is in 0 to 1.
@@ -44,7 +44,7 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Every influence of the vertices of a level.
+    /// All influences of the vertices of a level.
     ///
     /// # Errors
     /// [`InputError`] unless `level` is below [`MAX_LEVELS`].
@@ -53,10 +53,10 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Full quality up to `near`, rigid from `far` on, fading in between.
+    /// Full quality up to `near`, rigid from `far` on, and a fade in between.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and unless `near` is below `far`.
+    /// [`InputError`] for values that are not finite, and if `near` is not below `far`.
     pub fn at_distance(distance: f32, [near, far]: [f32; 2]) -> Result<Self, InputError> {
         for (field, value) in [("distance", distance), ("near", near), ("far", far)] {
             if !value.is_finite() {
@@ -73,7 +73,7 @@ impl InstanceLod {
         Self::fade(((distance - near) / (far - near)).clamp(0.0, 1.0))
     }
 
-    /// Checks the ranges of an instance that is seen.
+    /// Checks the ranges; the instance must be one that is seen.
     ///
     /// # Errors
     /// [`InputError`] that names the field.

@@ -1,5 +1,5 @@
-//! Levels of detail of skinned meshes: the mesh simplified for all that its clips do, and how far each level's surface
-//! is off, measured (A sections 9.3 and 9.4: all poses of the animation count).
+//! Levels of detail of skinned meshes: the mesh is simplified for all poses of its clips, and the error of each
+//! level is measured (A sections 9.3 and 9.4: all poses of the animation count).
 
 use std::iter::successors;
 
@@ -19,46 +19,48 @@ mod keys;
 mod near;
 mod welded;
 
-/// The most that the finest level may be off, of the mesh's size ([`Keys::size`]).
+/// The error of the finest level, as a fraction of the mesh's size ([`Keys::size`]).
 const FIRST: f32 = 1e-3;
 
-/// How much more each level may be off than the one before. Triangles go with about its inverse.
+/// The ratio of the errors of successive levels. Numbers of triangles fall by about its inverse.
 const STEP: f32 = std::f32::consts::SQRT_2;
 
-/// A level has at most so many of the triangles of the one before; otherwise it is left out.
+/// A level is kept only if its triangles are at most this fraction of the level before.
 const WORTHWHILE: f64 = 0.9;
 
-/// What a normal that is off by 1 counts, of the mesh's size.
+/// The cost of a difference of 1 in a normal, as a fraction of the mesh's size.
 const NORMAL: f32 = 5e-3;
 
-/// By how much [`MeshLevel::error`] is larger than what was found, for what lies between the poses.
+/// The margin by which [`MeshLevel::error`] exceeds the sampled maximum, for what lies between poses.
 const ERROR_MARGIN: f32 = 1.01;
 
-/// Coarser forms of one of a model's meshes.
+/// Coarser levels of one of a model's meshes.
 #[derive(Debug, Clone)]
 pub struct MeshLevels {
-    /// For [`Mesh::levels`]: the first is off by a thousandth of the mesh's size, each by 1.4 times as much as the one
-    /// before, and has 0.9 times its triangles at most. None where nothing can be left out. The size is the diagonal of
-    /// the box around its triangles at rest; where clips make it more than twice as large or small, in the pose in which
-    /// they make it largest. Units in which a mesh was bound do not matter.
+    /// The levels for [`Mesh::levels`]. The first has an error of a thousandth of the mesh's size, and each
+    /// later one 1.4 times the error of the one before and at most 0.9 times its triangles. Empty if nothing
+    /// can be removed. The size is the diagonal of the box around the triangles at rest or, if clips make the
+    /// mesh more than twice as large or small, in the pose in which they make it largest. The units in which a
+    /// mesh was bound do not matter.
     pub levels: Vec<MeshLevel>,
     near: Vec<Near>,
 }
 
 impl MeshLevels {
-    /// Simplifies a mesh for these clips and its rest pose, and measures each level in `poses` of each clip, evenly spaced
-    /// from start to end; [`poses_of`](super::poses_of) a clip are many enough. Without clips at rest alone. Blended
-    /// linearly, with the weights of morph targets that the clips have. Edges that are hard in normals alone do not
-    /// matter: what is left keeps vertices that face as they did.
+    /// Simplifies a mesh for these clips and its rest pose, and measures each level in `poses` of each clip,
+    /// evenly spaced from start to end; [`poses_of`](super::poses_of) gives a sufficient number for a clip.
+    /// Without clips only the rest pose counts. Blending is linear, with the clips' weights of morph targets.
+    /// Edges that are hard in normals only do not hinder simplification: each remaining corner keeps a vertex
+    /// whose normal is close to its own.
     ///
-    /// The error of a level is the largest distance, in all of these poses, from a vertex of the mesh to the level's
-    /// triangles near it, and from the middles of the level's triangles and their edges to the mesh's triangles that
-    /// they stand for; 1 % more, for poses between these. Other places on the surfaces may be further apart: of a creature
-    /// and a cow up to 1.4 times as far, where a mesh is as coarse as its bumps up to 10 times.
+    /// The error of a level is the largest distance, in all of these poses, between a vertex of the mesh and
+    /// the level's triangles close to it, and between midpoints of the level's triangles and edges and the
+    /// mesh's triangles for which they stand. It is increased by 1 % for poses in between. Other points of the
+    /// surfaces may be further apart: up to 1.4 times as far for a creature and a cow, and up to 10 times for a
+    /// mesh that is as coarse as its bumps.
     ///
-    /// A model that is as many times as large as another has the same levels, and errors as many times as large,
-    /// whatever makes it so: exactly for powers of two; otherwise rounding may decide between collapses that cost the
-    /// same.
+    /// A model that is scaled has the same levels, with errors scaled alike, however it is scaled: exactly for
+    /// powers of two; for other factors rounding may decide between collapses of equal cost.
     ///
     /// # Errors
     /// [`InputError`] as [`Extent::new`](super::Extent::new).
@@ -92,18 +94,18 @@ impl MeshLevels {
         })
     }
 
-    /// The place on level `level + 1` of the mesh that is nearest to where a vertex of the mesh should be, among the
-    /// triangles that were nearest in some pose; `point` of a level's vertices says where they are. A vertex that the
-    /// level has is at its own place.
+    /// The point on level `level + 1` of the mesh that is nearest to `wanted`, the correct position of a vertex
+    /// of the mesh, among the triangles that were nearest in some pose. `point` gives the positions of the
+    /// level's vertices. A vertex that the level has is at its own position.
     ///
     /// # Panics
-    /// For levels and vertices that there are not.
+    /// For levels and vertices that do not exist.
     pub fn nearest(&self, level: usize, vertex: usize, wanted: Vec3, point: impl Fn(u32) -> Vec3) -> Vec3 {
         self.near[level].nearest(vertex, wanted, &point).unwrap_or_else(|| point(vertex as u32))
     }
 }
 
-/// Gives all meshes of a model their levels ([`MeshLevels::new`]), and says what each was found to be.
+/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them.
 ///
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].
@@ -117,7 +119,7 @@ pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Ve
     Ok(all)
 }
 
-/// Where all vertices are, in multiples of `unit`.
+/// The positions of all vertices, in multiples of `unit`.
 fn points(model: &Model, mesh: &Mesh, moment: Moment, unit: f32) -> Vec<Vec3> {
     let all = Pose::new(model, mesh, moment).positions(mesh);
     all.into_iter().map(|point| point / unit).collect()
@@ -135,14 +137,14 @@ fn simplified(mesh: &Mesh, welded: &Welded, keys: &Keys) -> Result<Simplified, I
     simplify_within(&surface, &Options::default(), &distances)
 }
 
-/// A level on its way.
+/// A level under construction.
 struct Found {
-    /// What each vertex has become.
+    /// The vertex into which each vertex has collapsed.
     remap: Vec<u32>,
     indices: Vec<u32>,
 }
 
-/// Of vertices of the one before each.
+/// The levels, each using a subset of the vertices of the one before.
 fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
     let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
     distances.dedup();
@@ -167,7 +169,8 @@ mod tests {
     use super::*;
     use crate::asset::{Influence, Influences};
 
-    /// What is measured is what was kept, where the simplifier saw all moments: nothing near is overlooked.
+    /// If the simplifier saw all moments, the measured errors equal the distances that it kept: no near
+    /// triangle is overlooked.
     #[test]
     fn errors_are_the_distances_that_were_kept() {
         let plain = crate::samples::creature().expect("valid");
@@ -175,7 +178,7 @@ mod tests {
             let mut model = plain.clone();
             let mesh = &mut model.meshes[0];
             mesh.positions.as_flattened_mut().iter_mut().for_each(|x| *x *= scale);
-            // All of it follows one bone, or bones would have to be as large.
+            // All vertices follow one bone; otherwise the bones would have to be scaled too.
             let follows = (0..mesh.vertices()).map(|_| vec![Influence { bone: 0, weight: 1.0 }]);
             mesh.influences = Influences::new("w", model.skins[0].bones.len(), follows).expect("valid");
             let mesh = &model.meshes[0];
@@ -198,8 +201,8 @@ mod tests {
         }
     }
 
-    /// A ninth of the triangles within a hundredth of its height, and every level as good as it says in moments that nobody
-    /// looked at.
+    /// A ninth of the triangles remain within a hundredth of the height, and at moments that were not sampled
+    /// every level keeps its error too.
     #[test]
     fn creatures_lose_triangles_by_distance() {
         let model = crate::samples::creature().expect("valid");
@@ -229,7 +232,8 @@ mod tests {
         }
     }
 
-    /// Every triangle with vertices of its own, which face as it does: what is left of it still does.
+    /// A mesh in which every triangle has vertices of its own, with its face normal; the remaining triangles
+    /// keep such normals.
     #[test]
     fn hard_edges_do_not_matter() {
         let mut model = crate::samples::creature().expect("valid");
@@ -253,7 +257,7 @@ mod tests {
         assert_eq!(model.meshes[0].validate(&model.skins), Ok(()));
         assert_eq!(found.levels.len(), smooth.levels.len());
         for (hard, smooth) in found.levels.iter().zip(&smooth.levels) {
-            // Where normals are means of others, other collapses come first.
+            // Where normals are averages of others, other collapses come first.
             let ratio = hard.indices.len() as f64 / smooth.indices.len() as f64;
             assert!((0.9..1.1).contains(&ratio), "{ratio}");
         }

@@ -1,4 +1,5 @@
-//! Meshes that follow skeletons: their vertices, what moves them, and how far they reach (A sections 8.4 and 9).
+//! Skinning: meshes that follow skeletons, their levels of detail, and bounds of their motion (A sections 8.4
+//! and 9).
 
 #[cfg(feature = "verify")]
 pub mod bench;

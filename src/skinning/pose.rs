@@ -1,4 +1,4 @@
-//! A mesh at moments of clips and at rest, blended linearly: what load-time steps look at.
+//! A mesh at moments of clips and at rest, with linear blending, for computations at load time.
 
 use glam::Vec3;
 
@@ -16,17 +16,18 @@ use crate::skinning::palette::reference::palette;
 use crate::skinning::skin::reference::{skin, transformed};
 use crate::skinning::vertex::Vertex;
 
-/// Poses a second of a clip that are enough for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent).
+/// Poses per second of a clip that are enough for [`MeshLevels`](super::MeshLevels) and
+/// [`Extent`](super::Extent).
 const POSES_A_SECOND: f32 = 60.0;
 
-/// The longest clip, in seconds, that is looked at so often: an hour, of 216,001 poses.
+/// The longest clip, in seconds, that may be sampled that often: an hour, with 216,001 poses.
 pub const LONGEST_LOOK: f32 = 3600.0;
 
-/// How many poses [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) have to look at so that a clip is seen
-/// 60 times a second, its start and its end included; at least 2.
+/// The number of poses with which [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) sample a clip
+/// 60 times a second, start and end included; at least 2.
 ///
 /// # Errors
-/// [`InputError`] for a clip that is longer than an hour.
+/// [`InputError`] for a clip of more than an hour.
 pub fn poses_of(clip: &Clip) -> Result<usize, InputError> {
     let seconds = clip.duration();
     if seconds > LONGEST_LOOK {
@@ -42,19 +43,20 @@ pub(super) struct Pose {
     vertices: Vec<Vertex>,
 }
 
-/// When a mesh is looked at.
+/// A moment at which a mesh is sampled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Moment {
-    /// Where no clip plays.
+    /// At rest, without a clip.
     Rest,
-    /// In a clip, after this share of its duration.
+    /// In a clip, after this fraction of its duration.
     In(usize, f32),
 }
 
-/// `poses` moments of each clip, evenly spaced from start to end; at rest, where there are no clips.
+/// `poses` moments of each clip, evenly spaced from start to end; the rest pose if there are no clips.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or clips that the model lacks, no poses, and a mesh that does not fit its skin.
+/// [`InputError`] for a mesh or clips that the model does not have, for 0 poses, and for a mesh that does not
+/// match its skin.
 pub(super) fn moments(
     model: &Model,
     mesh: usize,
@@ -97,7 +99,7 @@ impl Pose {
         Self { palette: palette(&model.skins[mesh.skin], &models), vertices: morph(mesh, weights) }
     }
 
-    /// Where each of a vertex's bones alone would have it.
+    /// The position of a vertex under each of its bones alone.
     pub(super) fn points(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
         let point = |influence: &Influence| {
             let bone = &self.palette[influence.bone as usize];
@@ -106,7 +108,7 @@ impl Pose {
         influences.iter().map(point).collect()
     }
 
-    /// Where all vertices are.
+    /// The positions of all vertices.
     pub(super) fn positions(&self, mesh: &Mesh) -> Vec<Vec3> {
         let position = |vertex: usize| {
             let influences = mesh.influences.of(vertex);
@@ -115,7 +117,7 @@ impl Pose {
         (0..self.vertices.len()).map(position).collect()
     }
 
-    /// Where all vertices face: unit vectors, or 0.
+    /// The normals of all vertices: unit vectors, or 0.
     pub(super) fn normals(self, mesh: &Mesh) -> Vec<[f32; 3]> {
         let palette = Palette::Linear(self.palette);
         let placed = skin(&self.vertices, &mesh.influences, &palette, InstanceLod::FULL);
@@ -143,7 +145,7 @@ mod tests {
             poses_of(&clip)
         };
         assert_eq!([0.0, 0.01, 1.0, 1.01].map(poses), [2, 2, 61, 62].map(Ok));
-        // None is too long for that, but those that are refused.
+        // Every clip up to the limit gives a number of poses; only longer ones are refused.
         assert_eq!([16.75, 60.0, 3600.0].map(poses), [1006, 3601, 216_001].map(Ok));
         assert_eq!(poses(3601.0).expect_err("refused").field, "clip.duration");
     }
@@ -153,7 +155,7 @@ mod tests {
         let model = crate::samples::creature().expect("valid");
         assert_eq!(moments(&model, 0, &[], 9), Ok(vec![Moment::Rest]));
         let mesh = &model.meshes[0];
-        // It was bound as it rests.
+        // The mesh was bound in its rest pose.
         let points = Pose::new(&model, mesh, Moment::Rest).positions(mesh);
         let off = points.iter().zip(&mesh.positions).map(|(a, b)| a.distance(Vec3::from(*b)));
         assert!(off.fold(0.0, f32::max) < 1e-5);

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/`.
+//! What the parity cases of `kernels/skinning/` share.
 
 use crate::InputError;
 use crate::animation::local_to_model::reference::{affine, product};
@@ -12,23 +12,23 @@ use crate::harness::poison::POISON;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::Vertex;
 
-/// A random mesh, and the skeleton and skin that it follows.
+/// The sizes of a random mesh and of the skeleton that it follows.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
-    /// Of the skeleton; the skin has half of them, at least one.
+    /// Bones of the skeleton; the skin has half of them, at least one.
     pub bones: usize,
-    /// Of the mesh.
+    /// Vertices of the mesh.
     pub vertices: usize,
-    /// At most, of a vertex.
+    /// The largest number of influences of a vertex.
     pub influences: usize,
-    /// Morph targets.
+    /// Number of morph targets.
     pub targets: usize,
-    /// Of detail, besides the mesh itself; needs three vertices.
+    /// Number of levels of detail besides the mesh itself; they need three vertices.
     pub levels: usize,
 }
 
-/// Vertices around the boundaries of clusters; bones around those of sets; one influence to eight; no levels, some and
-/// as many as there may be.
+/// Shapes with numbers of vertices around the boundaries of clusters and of bones around those of sets, one to
+/// eight influences, and no levels, some, and the largest number.
 pub const SHAPES: [Shape; 8] = [
     Shape { bones: 1, vertices: 1, influences: 1, targets: 0, levels: 0 },
     Shape { bones: 9, vertices: 63, influences: 2, targets: 1, levels: 1 },
@@ -43,7 +43,7 @@ pub const SHAPES: [Shape; 8] = [
 /// A model of this shape, with one mesh and no clip.
 ///
 /// # Errors
-/// None: it is checked like any other.
+/// None in practice: the model is checked like any other.
 pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
     let mut draw = Draw::new(case ^ 0x5c1);
     let skeleton = random_skeleton(case, shape.bones)?;
@@ -72,12 +72,12 @@ pub fn random_model(case: u32, shape: Shape) -> Result<Model, InputError> {
     Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images })
 }
 
-/// All vertices but two at most have a triangle.
+/// All vertices but at most two belong to a triangle.
 pub(crate) fn triangles(shape: Shape) -> std::ops::Range<u32> {
     0..shape.vertices as u32 / 3 * 3
 }
 
-/// Half of the triangles, a quarter and so on; one in the end.
+/// Levels with half of the triangles, a quarter and so on, down to one.
 pub(crate) fn levels(draw: &mut Draw, shape: Shape) -> Vec<MeshLevel> {
     let mut left: Vec<u32> = triangles(shape).step_by(3).collect();
     let mut level = |at| {
@@ -101,7 +101,7 @@ pub(crate) fn tangent(draw: &mut Draw) -> [f32; 4] {
     [x, y, z, if draw.word().is_multiple_of(2) { 1.0 } else { -1.0 }]
 }
 
-/// Few or many, uneven or equal.
+/// Random influences, few or many, uneven or equal.
 pub(crate) fn influences(draw: &mut Draw, shape: Shape, bones: usize) -> Result<Influences, InputError> {
     let vertex = |_| {
         let count = 1 + draw.word() as usize % shape.influences;
@@ -127,7 +127,7 @@ pub(crate) fn target(draw: &mut Draw, vertices: usize) -> MorphTarget {
     MorphTarget::new(&(0..vertices).map(delta).collect::<Vec<_>>())
 }
 
-/// A small turn, an uneven stretch and a move.
+/// A small rotation, an uneven stretch and a translation.
 pub(crate) fn near_identity(draw: &mut Draw) -> Affine {
     let [x, y, z] = [0; 3].map(|_| 0.2 * draw.signed());
     let w = (1.0 - x * x - y * y - z * z).sqrt();
@@ -139,8 +139,8 @@ pub(crate) fn near_identity(draw: &mut Draw) -> Affine {
     })
 }
 
-/// Matrices that lie near each other, so that their means are no worse than they are: for each instance a turn of its
-/// own, some mirrored.
+/// Matrices that are close to each other within an instance, so that their means are as well conditioned as
+/// they are. Each instance has a rotation of its own, and some are mirrored.
 pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine> {
     let mut draw = Draw::new(case ^ 0xba1e);
     let mut matrices = Vec::with_capacity(bones * instances);
@@ -154,7 +154,8 @@ pub fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<Affine>
     matrices
 }
 
-/// Full, truncated, fading and unseen ones in turn, half of them at coarse levels, which the mesh may lack.
+/// Full, truncated, fading and unseen InstanceLods in turn, half of them at coarse levels, which the mesh may
+/// not have.
 pub fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceLod> {
     let mut draw = Draw::new(case ^ 0xfade);
     let instance_lod = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
@@ -175,7 +176,7 @@ pub(crate) fn column_major(matrix: &Affine) -> [f32; 16] {
     crate::asset::transform::column_major(matrix)
 }
 
-/// What a kernel has not written, of any type.
+/// The value of an element that a kernel has not written, for any type.
 pub(crate) fn poisoned<T: bytemuck::Pod>() -> T {
     bytemuck::pod_read_unaligned(&POISON.to_ne_bytes().repeat(size_of::<T>() / 4))
 }

@@ -1,33 +1,33 @@
-//! What skinning reads and writes, and how it blends.
+//! The vertex that skinning reads and writes, and the kinds of blending.
 
 use crate::asset::Mesh;
 
-/// A vertex as skinning reads and writes it: 40 bytes, laid out for vertex buffers.
+/// A vertex as skinning reads and writes it: 40 bytes, in the layout of vertex buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Vertex {
-    /// In the space that it was bound in, then in the model's.
+    /// Position, before skinning in the space of binding, afterwards in the model's space.
     pub position: [f32; 3],
-    /// Unit length.
+    /// Normal of unit length.
     pub normal: [f32; 3],
-    /// Unit length, and ±1: see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
+    /// Tangent of unit length, and ±1; see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
     pub tangent: [f32; 4],
 }
 
 /// How the influences of a vertex are blended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Blend {
-    /// The mean of matrices, as glTF asks.
+    /// The mean of matrices, as glTF requires.
     #[default]
     Linear,
-    /// The mean of rigid motions. What is promised of linear blending does not hold for it: the bound of
-    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), with which it is refused, the fades and levels of
-    /// [`Extent`](super::Extent), and boxes and balls around all that bones reach.
+    /// The mean of rigid motions. The guarantees of linear blending do not hold for it: the bound of
+    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), with which it is refused; the fades and levels of
+    /// [`Extent`](super::Extent); and boxes and spheres around everything that bones move.
     DualQuaternion,
 }
 
-/// A mesh's vertices in the space that they were bound in, without its morph targets.
+/// A mesh's vertices in the space of binding, without its morph targets.
 ///
 /// # Panics
 /// For a mesh that [`Mesh::validate`] refuses.

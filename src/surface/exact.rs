@@ -1,20 +1,21 @@
-//! The exact intersection, in f64: the ray against the bilinear patch of each cell that it crosses, in order, first
-//! root. What every method's error is measured against. Shares no code with the methods.
+//! The exact intersection in f64: solves for the first root of the ray against the bilinear patch of each cell
+//! that it crosses, in order. The error of every method is measured against it, and it shares no code with the
+//! methods.
 
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{Hit, Ray};
 
-/// Where a ray first meets the surface.
+/// The first intersection of a ray with the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exact {
-    /// Texture coordinates, beyond the tile where the ray left it.
+    /// Texture coordinates; outside the tile if the ray left it.
     pub uv: [f64; 2],
-    /// The ray's parameter; the height is 1 less it.
+    /// The ray's parameter; the height is 1 minus it.
     pub parameter: f64,
 }
 
 impl Exact {
-    /// Distance of a hit from it, in texels.
+    /// The distance of a hit from the exact one, in texels.
     pub fn error(&self, hit: &Hit, map: &HeightMap) -> f64 {
         let du = (f64::from(hit.uv[0]) - self.uv[0]) * f64::from(map.width());
         let dv = (f64::from(hit.uv[1]) - self.uv[1]) * f64::from(map.height());
@@ -22,8 +23,8 @@ impl Exact {
     }
 }
 
-/// The first intersection of a ray, or none for one from behind. Heights are at least 0, so that every other ray
-/// meets the surface by its parameter 1.
+/// The first intersection of a ray, or `None` for a ray that comes from behind. Heights are at least 0, so that
+/// every other ray meets the surface at a parameter of at most 1.
 pub fn exact(map: &HeightMap, ray: &Ray, address: Address) -> Option<Exact> {
     if ray.cosine.is_nan() || ray.cosine <= 0.0 {
         return None;
@@ -34,7 +35,7 @@ pub fn exact(map: &HeightMap, ray: &Ray, address: Address) -> Option<Exact> {
     let mut cell = start.map(|at| at.floor() as i64);
     let mut enter = 0.0;
     let parameter = loop {
-        // Where the ray crosses the next line of texel centres, x and y.
+        // The parameters at which the ray crosses the next line of texel centres, in x and in y.
         let exits = [0, 1].map(|i| match travel[i] {
             0.0 => f64::INFINITY,
             forward if forward > 0.0 => ((cell[i] + 1) as f64 - start[i]) / forward,
@@ -55,7 +56,7 @@ pub fn exact(map: &HeightMap, ray: &Ray, address: Address) -> Option<Exact> {
     Some(Exact { uv, parameter })
 }
 
-/// The first parameter in enter..=leave at which the ray is at or under the patch of a cell.
+/// The first parameter in enter..=leave at which the ray is on or below the patch of a cell.
 fn patch(
     map: &HeightMap,
     address: Address,
@@ -67,7 +68,7 @@ fn patch(
     let texel =
         |dx: i64, dy: i64| f64::from(map.texel((cell[0] + dx) as i32, (cell[1] + dy) as i32, address));
     let (h00, h10, h01, h11) = (texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1));
-    // The height above the surface at enter + τ.
+    // Coefficients of the ray's height above the surface at enter + τ.
     let [x, y] = [0, 1].map(|i| start[i] + enter * travel[i] - cell[i] as f64);
     let (along_x, along_y, twist) = (h10 - h00, h01 - h00, h11 - h10 - h01 + h00);
     let c = 1.0 - enter - (h00 + along_x * x + along_y * y + twist * x * y);
@@ -81,13 +82,13 @@ fn patch(
     [first, second].into_iter().filter(|root| inside(*root)).reduce(f64::min).map(|root| enter + root)
 }
 
-/// Real roots of a·x² + b·x + c; infinity where there is none.
+/// The real roots of a·x² + b·x + c; infinity in place of a missing root.
 fn roots(a: f64, b: f64, c: f64) -> (f64, f64) {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
         return (f64::INFINITY, f64::INFINITY);
     }
-    // No difference of nearly equal numbers.
+    // This form avoids the difference of nearly equal numbers.
     let q = -0.5 * (b + discriminant.sqrt().copysign(b));
     let divide = |over: f64, under: f64| if under == 0.0 { f64::INFINITY } else { over / under };
     (divide(q, a), divide(c, q))
@@ -112,16 +113,16 @@ mod tests {
         }
     }
 
-    /// A ramp from 0 at texel 0 to 1 at texel 4: ray and ramp are straight lines.
+    /// On a ramp from 0 at texel 0 to 1 at texel 4, ray and ramp are straight lines.
     #[test]
     fn a_ramp_is_met_where_the_lines_cross() {
         let map = HeightMap::new(5, 1, (0..5).map(|x| x as f32 / 4.0).collect()).expect("a map");
-        // From above texel 0, towards texel 4 while it falls by 1: they meet halfway.
+        // The ray starts above texel 0 and moves to texel 4 while it falls by 1, so they meet halfway.
         let hit = exact(&map, &ray([0.1, 0.5], [0.8, 0.0]), Address::Clamp).expect("a hit");
         assert!((hit.parameter - 0.5).abs() < 1e-7 && (hit.uv[0] - 0.5).abs() < 1e-7, "{hit:?}");
     }
 
-    /// One high corner: along the cell's diagonal the patch is the square of the way.
+    /// With one high corner, the patch along the cell's diagonal is the square of the distance travelled.
     #[test]
     fn a_twisted_patch_is_met_at_its_quadratic_root() {
         let map = HeightMap::new(2, 2, vec![0.0, 0.0, 0.0, 1.0]).expect("a map");
@@ -130,7 +131,7 @@ mod tests {
         assert!((hit.parameter - (5.0_f64.sqrt() - 1.0) / 2.0).abs() < 1e-7, "{hit:?}");
     }
 
-    /// The surface is never above the ray before the hit, and there it is at the ray's height.
+    /// The surface is never above the ray before the hit, and at the hit it has the ray's height.
     #[test]
     fn nothing_is_met_before_the_hit() {
         let heights = (0..35).map(|i| ((i * 37 + 11) % 35) as f32 / 35.0).collect();

@@ -4,14 +4,14 @@ use super::map::HeightMap;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 
-/// Height maps of one size, one after another.
+/// A batch of height maps of one size.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     /// Heights, row by row, map by map; padded to a multiple of four.
     pub heights: Buffer<f32>,
-    /// Texels of each along x and y.
+    /// Texels of each map along x and y.
     pub size: [u32; 2],
-    /// How many.
+    /// Number of maps.
     pub count: u32,
 }
 
@@ -19,7 +19,7 @@ impl HeightBatch {
     /// Uploads maps of one size.
     ///
     /// # Errors
-    /// [`InputError`] for none or different sizes; [`GpuError`].
+    /// [`InputError`] for an empty list or different sizes; [`GpuError`].
     pub fn new(gpu: &Gpu, maps: &[HeightMap]) -> Result<Self, Error> {
         let size_of = |map: &HeightMap| [map.width(), map.height()];
         let Some(size) = maps.first().map(size_of) else {
@@ -44,7 +44,7 @@ impl HeightBatch {
     }
 }
 
-/// What helps where a map is larger than a binding.
+/// Adds advice for maps that are larger than a binding to an error of the device.
 pub(crate) fn with_remedy(error: GpuError) -> GpuError {
     match error {
         GpuError::Limit { pass, limit, needed, available, .. } => {

@@ -1,18 +1,19 @@
-//! Images of linear light: what is averaged before it is encoded as sRGB.
+//! Images in linear light, which are averaged before they are encoded as sRGB.
 
 use crate::srgb;
 
 /// Linear red, green and blue, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearImage {
-    /// Columns and rows.
+    /// Pixels along x and y.
     pub size: [u32; 2],
-    /// Pixels.
+    /// The pixels.
     pub pixels: Vec<[f32; 3]>,
 }
 
 impl LinearImage {
-    /// The mean of each `factor` × `factor` pixels; edges that do not divide are cut off.
+    /// The image reduced by `factor`: each pixel is the mean of `factor` × `factor` pixels; a remainder at the
+    /// edges is cut off.
     pub fn reduced(&self, factor: u32) -> Self {
         let size = self.size.map(|edge| edge / factor);
         let fraction = 1.0 / (factor * factor) as f32;
@@ -28,7 +29,7 @@ impl LinearImage {
         Self { size, pixels: pixels.collect() }
     }
 
-    /// The image as sRGB, opaque.
+    /// The image encoded as opaque sRGB.
     pub fn encoded(&self) -> image::RgbaImage {
         let [width, height] = self.size;
         image::RgbaImage::from_fn(width, height, |x, y| {

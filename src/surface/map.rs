@@ -1,4 +1,4 @@
-//! Height maps: what every method marches over.
+//! Height maps, over which all methods march.
 
 use std::path::Path;
 
@@ -7,14 +7,14 @@ use crate::{Error, InputError};
 /// The longest edge of a map in texels: WebGPU's default limit for a texture.
 pub const MAP_EDGE: u32 = 8192;
 
-/// What lies beyond a map's edge.
+/// What lies beyond the edge of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Address {
-    /// The map again: it tiles.
+    /// The map repeats.
     #[default]
     Wrap,
-    /// The texels of the edge, for ever.
+    /// The texels at the edge continue without end.
     Clamp,
 }
 
@@ -27,14 +27,14 @@ impl Address {
         }
     }
 
-    /// Its number in the shaders: `SURFACE_WRAP` and `SURFACE_CLAMP` of `wgsl/surface/ray.wgsl`.
+    /// The value for the shaders: `SURFACE_WRAP` or `SURFACE_CLAMP` of `wgsl/surface/ray.wgsl`.
     pub fn code(self) -> u32 {
         self as u32
     }
 }
 
-/// Heights of a tile: row by row from the top left, 0 (lowest) to 1, finite. Texel (i, j) has its centre at
-/// uv ((i + ½) / width, (j + ½) / height); between centres heights are bilinear.
+/// The heights of a tile, row by row from the top left, finite, 0 (lowest) to 1. The centre of texel (i, j) is
+/// at uv ((i + ½) / width, (j + ½) / height); between centres heights are interpolated bilinearly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightMap {
     width: u32,
@@ -46,7 +46,8 @@ impl HeightMap {
     /// A map of `width` × `height` texels.
     ///
     /// # Errors
-    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`], another number of heights, or one outside 0..=1.
+    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`], for a wrong number of heights, and for a height
+    /// outside 0..=1.
     pub fn new(width: u32, height: u32, heights: Vec<f32>) -> Result<Self, InputError> {
         for (field, edge) in [("heights.width", width), ("heights.height", height)] {
             if !(1..=MAP_EDGE).contains(&edge) {
@@ -63,16 +64,16 @@ impl HeightMap {
         }
     }
 
-    /// The brightness of an image file, black 0, white 1; with all the depth that the file has.
+    /// Reads the brightness of an image file, black as 0 and white as 1, in the file's full bit depth.
     ///
     /// # Errors
-    /// [`Error::File`] when it cannot be read, [`InputError`] for its size.
+    /// [`Error::File`] when the file cannot be read, [`InputError`] for its size.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let image = open(path)?;
         Self::from_samples(path, image.width(), image.height(), image.into_luma16().into_raw())
     }
 
-    /// The alpha channel of an image file, and the image.
+    /// Reads the alpha channel of an image file as heights; also returns the image.
     ///
     /// # Errors
     /// As [`HeightMap::from_file`], and [`Error::File`] for an image without alpha.
@@ -90,7 +91,7 @@ impl HeightMap {
         Self::new(width, height, heights).map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// Texels a row.
+    /// Texels per row.
     pub fn width(&self) -> u32 {
         self.width
     }
@@ -105,8 +106,8 @@ impl HeightMap {
         &self.heights
     }
 
-    /// The next mip level: half the edges, rounded down but at least 1; each texel the mean of the four that it
-    /// covers.
+    /// The next mip level: both edges halved, rounded down but at least 1. Each texel is the mean of the four
+    /// texels that it covers.
     pub fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mean = |x: u32, y: u32| {
@@ -119,7 +120,7 @@ impl HeightMap {
         Self { width, height, heights: heights.collect() }
     }
 
-    /// The height of a texel; beyond the edge as `address` says.
+    /// The height of a texel; beyond the edge `address` decides.
     pub fn texel(&self, x: i32, y: i32, address: Address) -> f32 {
         let at = |index: i32, edge: u32| match address {
             Address::Wrap => index.rem_euclid(edge as i32),
@@ -129,7 +130,7 @@ impl HeightMap {
     }
 }
 
-/// Reads an image file, having looked at its size first: no edge may be longer than [`MAP_EDGE`].
+/// Reads an image file after checking its size: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read.

@@ -1,4 +1,4 @@
-//! What a relief is drawn with: depth, plane, light, the width of its shadows.
+//! Parameters of a relief's material: depth, plane, light, and the width of shadows.
 
 use crate::InputError;
 use crate::surface::relief::MAX_SCALE;
@@ -7,12 +7,12 @@ use crate::surface::relief::MAX_SCALE;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Shadow {
-    /// Not at all.
+    /// The surface casts no shadow on itself.
     #[default]
     None,
-    /// The light's ray, traced with the method of the eye's.
+    /// A ray from the light, traced with the same method as the eye's ray.
     Hard,
-    /// Penumbras from samples on the way to the light.
+    /// Penumbras, from samples along the way to the light.
     Soft,
 }
 
@@ -27,32 +27,33 @@ impl Shadow {
     }
 }
 
-/// Where green of a normal map points.
+/// The direction to which the green channel of a normal map points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Green {
-    /// Up the image, against v: glTF and OpenGL.
+    /// Up the image, against v, as in glTF and OpenGL.
     #[default]
     Up,
-    /// Down the image, along v: Direct3D.
+    /// Down the image, along v, as in Direct3D.
     Down,
 }
 
-/// What a relief is drawn with, beside its maps: what may change without another pipeline. Whether there are shadows
-/// and silhouettes is not part of it (`render::ReliefOptions`, `reference::surface::picture::Scene`).
+/// The parameters of a relief, besides its maps, that may change without a new pipeline. Whether there are
+/// shadows and silhouettes is not among them (`render::ReliefOptions`, `reference::surface::picture::Scene`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].
     pub scale: f32,
-    /// Height of the polygon in the relief, 0 (bottom) to 1 (top).
+    /// Height of the polygon within the relief, 0 (bottom) to 1 (top).
     pub plane: f32,
-    /// Unit vector towards the light, world space.
+    /// Unit vector towards the light, in world space.
     pub light: [f32; 3],
-    /// What is in shadow still gets, 0 to 1.
+    /// Light that shadowed points still receive, 0 to 1.
     pub ambient: f32,
-    /// Heights on the way to the light that a soft shadow looks at, 1 to 1024.
+    /// Number of heights that a soft shadow samples on the way to the light, 1 to 1024.
     pub shadow_steps: u32,
-    /// How far the surface rises above the way to the light, over its distance, where a soft shadow is full; > 0.
+    /// The ratio of the surface's height above the way to the light to its distance at which a soft shadow is
+    /// full; > 0.
     pub softness: f32,
 }
 

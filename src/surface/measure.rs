@@ -1,4 +1,5 @@
-//! Error and cost of a method: against the exact intersection, and in texels loaded.
+//! Error and cost of a method: its distance from the exact intersection, and the number of texels that it
+//! loads.
 
 use rayon::prelude::*;
 
@@ -6,22 +7,23 @@ use crate::surface::exact::exact;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{Hit, Outcome, Ray};
 
-/// What tracing a list of rays came to.
+/// Statistics of a list of traced rays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Measured {
-    /// Rays that the exact intersection has a hit for.
+    /// Number of rays that have an exact intersection.
     pub rays: usize,
-    /// Mean distance of the results from the exact ones, in texels.
+    /// Mean distance of the results from the exact intersections, in texels.
     pub mean_error_texels: f64,
-    /// What 99 of 100 are below.
+    /// The 99th percentile of that distance, in texels.
     pub p99_error_texels: f64,
-    /// The largest.
+    /// The largest distance, in texels.
     pub max_error_texels: f64,
-    /// Rays that ended without a hit though the exact one has one: misses, and methods that ran out of steps.
+    /// Rays without a hit although an exact intersection exists: misses, and rays for which the method ran out
+    /// of steps.
     pub misses: usize,
-    /// Mean texels loaded a ray, those of acceleration maps included.
+    /// Mean number of texels loaded per ray, including those of acceleration maps.
     pub mean_samples: f64,
-    /// The most that one ray loaded.
+    /// The largest number of texels that one ray loaded.
     pub max_samples: u32,
 }
 

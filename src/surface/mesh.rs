@@ -1,20 +1,20 @@
-//! Meshes that carry relief: vertices with tangent frames, and triangles.
+//! Meshes that carry a relief: vertices with tangent frames, and triangles.
 
 use crate::InputError;
 
-/// A vertex, as the relief pass reads it.
+/// A vertex in the layout of the relief pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct SurfaceVertex {
-    /// World units.
+    /// Position in world units.
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Unit tangent along u, and ±1: the bitangent along v is that times normal × tangent. In glTF the bitangent
-    /// points against v, up the image: glTF's fourth component has the other sign.
+    /// Unit tangent along u, and ±1. The bitangent, along v, is this sign times normal × tangent. In glTF the
+    /// bitangent points against v, up the image, so that glTF's fourth component has the opposite sign.
     pub tangent: [f32; 4],
-    /// Texture coordinates; a tile of relief covers 1.
+    /// Texture coordinates; one tile of the relief covers 1.
     pub uv: [f32; 2],
 }
 
@@ -23,13 +23,13 @@ pub struct SurfaceVertex {
 pub struct SurfaceMesh {
     /// Vertices.
     pub vertices: Vec<SurfaceVertex>,
-    /// Three a triangle.
+    /// Three indices per triangle.
     pub indices: Vec<u32>,
 }
 
 impl SurfaceMesh {
-    /// A square of one world unit around the origin, seen from +Z; u runs along +X and v along −Y, from 0 to
-    /// `tiles`.
+    /// A square with an edge of one world unit, centred at the origin and facing +Z. u runs along +X and v
+    /// along −Y, both from 0 to `tiles`.
     pub fn square(tiles: f32) -> Self {
         let vertex = |x: f32, y: f32| SurfaceVertex {
             position: [x - 0.5, 0.5 - y, 0.0],
@@ -41,7 +41,7 @@ impl SurfaceMesh {
         Self { vertices, indices: vec![0, 2, 1, 1, 2, 3] }
     }
 
-    /// Refuses indices of no vertex.
+    /// Refuses indices of vertices that do not exist.
     ///
     /// # Errors
     /// [`InputError`].

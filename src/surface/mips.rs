@@ -4,12 +4,12 @@ use image::RgbaImage;
 
 use crate::srgb;
 
-/// An image with all its mip levels, each texel the mean of those it covers.
+/// An image with all its mip levels. Each texel is the mean of those that it covers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mips {
-    /// The image first, a single texel last.
+    /// The levels, from the image itself to a single texel.
     pub levels: Vec<RgbaImage>,
-    /// Whether red, green and blue are sRGB, and were averaged as light.
+    /// Whether red, green and blue are sRGB; if so, they were averaged in linear light.
     pub is_srgb: bool,
 }
 
@@ -19,7 +19,7 @@ impl Mips {
         Self::new(image, true)
     }
 
-    /// The levels of an image that holds no colours.
+    /// The levels of an image whose channels are data and not colours.
     pub fn of_data(image: RgbaImage) -> Self {
         Self::new(image, false)
     }
@@ -34,7 +34,7 @@ impl Mips {
     }
 }
 
-/// The next level, or none for a single texel.
+/// The next level, or `None` after a single texel.
 fn halved(image: &RgbaImage, is_srgb: bool, light: &[f32]) -> Option<RgbaImage> {
     let (width, height) = image.dimensions();
     if width * height <= 1 {

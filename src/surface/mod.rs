@@ -1,4 +1,4 @@
-//! Surface mapping: every ray-height method over one result, the maps that accelerate them, and tangent frames
+//! Surface mapping: ray-height methods with a common result, the maps that accelerate them, and tangent frames
 //! (B sections 3.1 and 4.2).
 
 #[cfg(feature = "verify")]

@@ -1,4 +1,4 @@
-//! The picture of a square of relief: reference of `wgsl/render/relief.wgsl` under a parallel projection.
+//! A picture of a square of relief: the CPU reference of `wgsl/render/relief.wgsl` under a parallel projection.
 
 use rayon::prelude::*;
 
@@ -13,33 +13,33 @@ use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
 use crate::surface::relief::{Hit, March, Method, Ray};
 use crate::surface::view::SquareView;
 
-/// What is drawn.
+/// The scene of a picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     /// Heights and acceleration maps.
     pub surface: &'a Surface<'a>,
-    /// How the surface is found.
+    /// The method that finds the surface.
     pub method: Method,
-    /// How it is marched.
+    /// The parameters of its march.
     pub march: &'a March,
-    /// Colours.
+    /// Base colours.
     pub albedo: &'a Mips,
-    /// Tangent-space normals; else those of the heights.
+    /// Tangent-space normals; if `None`, normals follow from the heights.
     pub normals: Option<&'a Mips>,
-    /// Where green of the normals points.
+    /// The direction to which the green channel of the normals points.
     pub green: Green,
     /// Self-shadow.
     pub shadow: Shadow,
-    /// Cuts away what leaves the square.
+    /// Whether points beyond the square are cut away.
     pub silhouette: bool,
-    /// Depth and light. The light is in tangent space here.
+    /// Depth and light; here the light is in tangent space.
     pub material: &'a Material,
-    /// Where it is seen from.
+    /// The view of the square.
     pub view: SquareView,
 }
 
 impl Scene<'_> {
-    /// The picture over a linear `background`.
+    /// Draws the picture over a linear `background`.
     pub fn draw(&self, background: [f32; 3]) -> LinearImage {
         let [width, height] = self.view.size;
         let pixels = (0..width * height).into_par_iter().map(|index| {
@@ -50,7 +50,7 @@ impl Scene<'_> {
         LinearImage { size: self.view.size, pixels: pixels.collect() }
     }
 
-    /// The linear colour that a ray sees; none beyond the silhouette.
+    /// The linear colour that a ray sees, or `None` beyond the silhouette.
     fn shade(&self, ray: &Ray) -> Option<[f32; 3]> {
         let hit = self.surface.trace(self.method, ray, self.march);
         let tiles = self.view.tiles as f32;
@@ -107,7 +107,7 @@ impl Scene<'_> {
     }
 }
 
-/// Trilinear: the levels whose texels are about as long as the longer of the pixel's steps.
+/// Trilinear sampling of the mip levels whose texels are about as long as the longer of the pixel's two steps.
 fn sampled(mips: &Mips, uv: [f32; 2], steps: [[f64; 2]; 2], address: Address) -> [f32; 3] {
     let size = [mips.levels[0].width(), mips.levels[0].height()].map(f64::from);
     let texels = steps.map(|step| (step[0] * size[0]).hypot(step[1] * size[1]));

@@ -1,27 +1,29 @@
-//! A square of relief under a parallel projection: every pixel sees it at the same angle, so that errors and costs
-//! belong to that angle.
+//! A square of relief under a parallel projection: every pixel sees it at the same angle, so that errors and
+//! costs can be attributed to that angle.
 
 use crate::InputError;
 use crate::surface::relief::Ray;
 
-/// How a textured square is seen. Tangent space: u to the right, v down the image, the normal towards the viewer.
+/// The view of a textured square. In tangent space u points right, v down the image, and the normal towards the
+/// viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SquareView {
-    /// Degrees between the eye and the square's normal, 0 to below 90.
+    /// Angle between the eye and the square's normal in degrees, 0 to below 90.
     pub angle: f64,
-    /// Degrees of the eye around the normal: 0 below the image's bottom edge, 90 at its right.
+    /// Angle of the eye around the normal in degrees: at 0 the eye is below the image's bottom edge, at 90 to
+    /// its right.
     pub azimuth: f64,
     /// Tiles along an edge of the square, > 0.
     pub tiles: f64,
-    /// Pixels of the picture.
+    /// Pixels of the picture along x and y.
     pub size: [u32; 2],
 }
 
-/// The share of the picture that the square fills at the most.
+/// The largest fraction of the picture that the square fills.
 const FILLED: f64 = 0.94;
 
 impl SquareView {
-    /// Refuses angles from behind, and pictures of nothing.
+    /// Refuses views from behind, and pictures without pixels.
     ///
     /// # Errors
     /// [`InputError`].
@@ -43,24 +45,24 @@ impl SquareView {
         Ok(())
     }
 
-    /// The same view with more or fewer pixels.
+    /// The same view with `factor` times the pixels along each edge.
     pub fn scaled(self, factor: u32) -> Self {
         Self { size: self.size.map(|edge| edge * factor), ..self }
     }
 
-    /// The unit vector towards the eye, tangent space.
+    /// The unit vector towards the eye, in tangent space.
     pub fn towards(&self) -> [f64; 3] {
         let ((sine, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         [sine * east, sine * south, cosine]
     }
 
-    /// The unit vectors to the right and up the picture, tangent space.
+    /// The unit vectors to the right and up in the picture, in tangent space.
     pub fn axes(&self) -> [[f64; 3]; 2] {
         let ((sine, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         [[south, -east, 0.0], [-cosine * east, -cosine * south, sine]]
     }
 
-    /// Pixels a length of the square.
+    /// Pixels per edge length of the square.
     pub fn zoom(&self) -> f64 {
         let [right, up] = self.axes();
         let extent = |axis: [f64; 3]| axis[0].abs() + axis[1].abs();
@@ -68,7 +70,8 @@ impl SquareView {
         FILLED * (width / extent(right)).min(height / extent(up))
     }
 
-    /// Texture coordinates where a point of the picture (pixels from the top left) sees the square.
+    /// The texture coordinates at which a point of the picture (pixels from the top left) sees the square;
+    /// `None` beyond it.
     pub fn uv(&self, x: f64, y: f64) -> Option<[f64; 2]> {
         let zoom = self.zoom();
         let [width, height] = self.size.map(f64::from);
@@ -79,21 +82,21 @@ impl SquareView {
         is_inside.then(|| place.map(|axis| axis * self.tiles))
     }
 
-    /// uv from one pixel to the next, along x and y.
+    /// The change of uv from one pixel to the next, along x and along y.
     pub fn uv_steps(&self) -> [[f64; 2]; 2] {
         let ((_, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         let step = self.tiles / self.zoom();
         [[south * step, -east * step], [east / cosine * step, south / cosine * step]]
     }
 
-    /// The ray of a point of the picture, where it sees the square: relief of depth `scale` (uv units), the square
-    /// at height `plane` in it.
+    /// The ray through a point of the picture, if that sees the square. The relief has a depth of `scale` (uv
+    /// units), and the square lies at height `plane` in it.
     pub fn ray(&self, x: f64, y: f64, scale: f32, plane: f32) -> Option<Ray> {
         let view = self.towards().map(|axis| axis as f32);
         self.uv(x, y).map(|uv| Ray::new(uv.map(|axis| axis as f32), view, scale, plane))
     }
 
-    /// The rays of all pixels' centres, row by row.
+    /// The rays through the centres of all pixels, row by row.
     pub fn rays(&self, scale: f32, plane: f32) -> Vec<Option<Ray>> {
         let [width, height] = self.size;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -101,7 +104,7 @@ impl SquareView {
     }
 }
 
-/// Sine and cosine of degrees; exact at multiples of 90.
+/// Sine and cosine of an angle in degrees; exact at multiples of 90.
 fn sin_cos(degrees: f64) -> (f64, f64) {
     match degrees.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),
@@ -112,7 +115,8 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// The unit vector towards a light, tangent space: `azimuth` as in [`SquareView`], `elevation` above the square.
+/// The unit vector towards a light, in tangent space. `azimuth` is as in [`SquareView`], and `elevation` the
+/// angle above the square, both in degrees.
 ///
 /// # Errors
 /// [`InputError`] for an elevation outside 0 to 90 degrees.
@@ -145,7 +149,7 @@ mod tests {
         assert_eq!(view.uv(left - 1.0, top), None);
     }
 
-    /// A pixel's point on the square, moved along the eye's direction, projects to the pixel.
+    /// A pixel's point on the square projects back to the pixel after moving along the eye's direction.
     #[test]
     fn pixels_see_what_projects_to_them() {
         for (angle, azimuth) in [(0.0, 0.0), (30.0, 0.0), (60.0, 50.0), (80.0, -120.0), (45.0, 180.0)] {

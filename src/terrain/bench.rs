@@ -5,7 +5,7 @@ use crate::baseline::copy::CopyPass;
 use crate::gpu::{Buffer, Gpu, Job};
 use crate::terrain::verify::random_heights;
 
-/// A copy of `words` words, rounded up to a vector, as a baseline.
+/// The device's own copy of `words` words, rounded up to a multiple of four, as a baseline.
 pub(crate) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
     let words = words.next_multiple_of(4);
     let (source, destination) =
@@ -13,9 +13,10 @@ pub(crate) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
     CopyPass::new(gpu)?.prepare(gpu, words, &source, &destination)
 }
 
-/// Plausible heights of a batch.
+/// Plausible random heights for a batch of `points` samples, in 1/65536 units.
 pub(crate) fn some_heights(points: usize) -> Vec<i32> {
-    // A pattern is repeated: drawing millions of heights one by one takes longer than the benchmark.
+    // A pattern of 4096 heights is repeated: drawing millions of heights one by one takes longer than the
+    // benchmark.
     let pattern = random_heights(1, 4096, 1 << 22);
     pattern.into_iter().cycle().take(points).collect()
 }

@@ -1,4 +1,4 @@
-//! Heights in files: raw `i32`, 16-bit PNG (both ways), hashes, and features sampled from a PNG.
+//! Heights in files: raw `i32`, 16-bit PNG (written and read), SHA-256 hashes, and features sampled from a PNG.
 
 use std::io::{BufReader, BufWriter, Write};
 use std::path::Path;
@@ -9,8 +9,8 @@ use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::features::FeatureFile;
 use crate::{Error, InputError};
 
-/// The mapping of a height PNG: sample 0 is `low`, sample 65535 is `high`, linear between, in height units.
-/// Kept in the PNG's text chunk `relievo-heights` as `low high`.
+/// The mapping of a height PNG, in height units: sample 0 is `low`, sample 65535 is `high`, and those between
+/// are linear. The PNG's text chunk `relievo-heights` stores it as `low high`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct HeightRange {
     /// Height of sample 0.
@@ -22,14 +22,14 @@ pub struct HeightRange {
 const CHUNK: &str = "relievo-heights";
 
 impl HeightRange {
-    /// The range of heights in 1/65536 units.
+    /// The smallest range that holds all of `heights`, which are in 1/65536 units.
     pub fn of(heights: &[i32]) -> Self {
         let low = heights.iter().min().copied().unwrap_or(0);
         let high = heights.iter().max().copied().unwrap_or(0);
         Self { low: f64::from(low) / HEIGHT_ONE, high: f64::from(high) / HEIGHT_ONE }
     }
 
-    /// The smallest range that holds both.
+    /// The smallest range that holds both ranges.
     pub fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
@@ -42,7 +42,7 @@ impl HeightRange {
         ((f64::from(height) / HEIGHT_ONE - self.low) / span * 65_535.0).round().clamp(0.0, 65_535.0) as u16
     }
 
-    /// The height of a sample.
+    /// The height of a PNG sample, in height units.
     pub fn height(&self, sample: u16) -> f64 {
         self.low + (self.high - self.low) * f64::from(sample) / 65_535.0
     }
@@ -58,7 +58,7 @@ pub fn sha256(heights: &[i32]) -> String {
     Sha256::digest(to_bytes(heights)).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The rim of `samples` cut off a field of `width` samples a row.
+/// A copy of a field with `width` samples per row, without its outermost `samples` rings.
 pub fn cropped(field: &[i32], width: usize, samples: usize) -> Vec<i32> {
     let inner = width - 2 * samples;
     let rows = field.chunks_exact(width).skip(samples).take(inner);
@@ -68,7 +68,7 @@ pub fn cropped(field: &[i32], width: usize, samples: usize) -> Vec<i32> {
 /// Writes heights, rows of `width`, as a 16-bit greyscale PNG.
 ///
 /// # Errors
-/// [`Error::Output`].
+/// [`Error::Output`] when the file cannot be written.
 pub fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -> Result<(), Error> {
     let failed = |error: &dyn std::fmt::Display| Error::output(path, error);
     let file = std::fs::File::create(path).map_err(|error| failed(&error))?;
@@ -83,7 +83,7 @@ pub fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -
     writer.finish().map_err(|error| failed(&error))
 }
 
-/// Samples of a 16-bit greyscale PNG, and its mapping where it states one.
+/// The samples of a 16-bit greyscale PNG, and its mapping if the file states one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightImage {
     /// Columns.
@@ -92,7 +92,7 @@ pub struct HeightImage {
     pub height: u32,
     /// Samples, row by row.
     pub samples: Vec<u16>,
-    /// The mapping that relievo wrote.
+    /// The mapping, if relievo wrote the file.
     pub range: Option<HeightRange>,
 }
 
@@ -100,7 +100,7 @@ impl HeightImage {
     /// Reads a PNG.
     ///
     /// # Errors
-    /// [`Error::File`] for what is not a 16-bit greyscale PNG.
+    /// [`Error::File`] for a file that cannot be read or is not a 16-bit greyscale PNG.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let file = std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
         let decoder = png::Decoder::new(BufReader::new(file));
@@ -129,8 +129,9 @@ impl HeightImage {
         Ok(Self { width, height, samples, range })
     }
 
-    /// Features from every `every`-th sample: column i and row j of the image are sample (i, j) counted from
-    /// the first sample of patch `origin`, over a grid of `patches`. What exceeds either is left out.
+    /// Features from every `every`-th sample: column i and row j of the image stand for sample (i, j), counted
+    /// from the first sample of patch `origin`, over a grid of `patches`. Samples beyond the image or the grid
+    /// are left out.
     ///
     /// # Errors
     /// [`InputError`] for an `every` of 0.
@@ -169,7 +170,7 @@ impl HeightImage {
 /// Writes bytes to a new file.
 ///
 /// # Errors
-/// [`Error::Output`].
+/// [`Error::Output`] when the file cannot be written.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let write = || std::fs::File::create(path)?.write_all(bytes);
     write().map_err(|error: std::io::Error| Error::output(path, error))

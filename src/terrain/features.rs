@@ -1,4 +1,4 @@
-//! Injected heights (B section 3.3.1 and 4.4): reading them, and finding those that a window sees.
+//! Injected heights (B sections 3.3.1 and 4.4): reading them, and finding those that a window sees.
 
 #[cfg(feature = "gpu")]
 mod index;
@@ -20,13 +20,14 @@ use crate::{Error, InputError};
 #[cfg(feature = "gpu")]
 pub use index::{FeatureGrid, FeatureIndex};
 
-/// One feature file: B's JSON.
+/// One feature file, in B's JSON.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct FeatureFile {
-    /// The patch.
+    /// Coordinates of the patch.
     pub patch_coordinates: [i32; 2],
-    /// x, y and height of one point after the other; x and y count samples of the patch.
+    /// x, y and height of one point after the other. x and y count samples of the patch; heights are in height
+    /// units.
     pub precomputed_heights: Vec<f64>,
 }
 
@@ -42,13 +43,13 @@ impl FeatureFile {
     /// Reads a JSON file.
     ///
     /// # Errors
-    /// [`Error::File`] or [`Error::InputFile`].
+    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] when it is not such JSON.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::from_json(&read_text(path)?)
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// The points, checked against the patch.
+    /// The points as (X, Y, height in 1/65536 units), checked against the patch.
     fn points(&self, config: &Config) -> Result<Vec<(i32, i32, i32)>, InputError> {
         let values = &self.precomputed_heights;
         if !values.len().is_multiple_of(3) {
@@ -76,13 +77,13 @@ impl FeatureFile {
     }
 }
 
-/// Injected heights of a world, keyed so that a window finds its own.
+/// The injected heights of a world, indexed so that a window finds those that it sees.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
-    /// What injection does.
+    /// What injection does to a computed height.
     pub mode: FeatureMode,
-    // In `seamless` the one world is (0, 0); otherwise each patch is a world of its own. Points are keyed
-    // (Y, X) in world coordinates, which start at the patch in the latter case.
+    // In `seamless` there is one world, (0, 0); in the other modes each patch is a world of its own. Points are
+    // indexed by (Y, X) in world coordinates, which in those modes start at the patch.
     worlds: BTreeMap<[i32; 2], BTreeMap<(i64, i64), i32>>,
 }
 
@@ -90,8 +91,8 @@ impl Features {
     /// Checks and collects feature files.
     ///
     /// # Errors
-    /// [`InputError`] for a coordinate outside the patch, a list whose length is no multiple of 3, heights
-    /// that are not finite or could overflow, and a lattice point that is given two heights.
+    /// [`InputError`] for a coordinate outside the patch, a list whose length is not a multiple of 3, heights
+    /// that are not finite or could overflow, and a lattice point with two different heights.
     pub fn new(config: &Config, files: &[FeatureFile], mode: FeatureMode) -> Result<Self, InputError> {
         config.validate()?;
         let mut features = Self { mode, worlds: BTreeMap::new() };
@@ -108,7 +109,7 @@ impl Features {
     /// As [`Features::new`].
     pub fn add(&mut self, config: &Config, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
-        // A place that no patch can have could never be seen.
+        // Patch coordinates that no window can have would never be seen.
         Window { patch, apron: 0 }.validate(config)?;
         let spacing = config.sample_spacing();
         let seamless = config.border == Border::Seamless;
@@ -131,7 +132,7 @@ impl Features {
         Ok(())
     }
 
-    /// Refuses heights that could overflow together with the configuration's ranges.
+    /// Refuses heights that could overflow when the offsets of the configuration are added.
     ///
     /// # Errors
     /// [`InputError`] as [`Config::check_overflow`].
@@ -139,7 +140,7 @@ impl Features {
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
 
-    /// Whether nothing is injected anywhere.
+    /// Whether there are no injected points at all.
     pub fn is_empty(&self) -> bool {
         self.worlds.values().all(BTreeMap::is_empty)
     }
@@ -149,7 +150,7 @@ impl Features {
         self.worlds.values().map(BTreeMap::len).sum()
     }
 
-    /// How features are injected, if there are any.
+    /// The mode of injection, or `None` if there are no features.
     pub fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
     }
@@ -163,9 +164,9 @@ impl Features {
             .unwrap_or(0)
     }
 
-    /// The injected points of a square lattice: first sample `origin`, `width` samples `spacing` apart, in
-    /// world coordinates of `world`; as (column, row, height), row by row. Points that lie on the lattice of
-    /// twice the spacing are left out if `new_only`.
+    /// The injected points of a square lattice in the world coordinates of `world`, as (column, row, height),
+    /// sorted by row and column. With `new_only`, points that also lie on the lattice of twice the spacing are
+    /// left out.
     pub fn on_lattice(&self, world: [i32; 2], lattice: Lattice, new_only: bool) -> Vec<(u32, u32, i32)> {
         let Some(points) = self.worlds.get(&world) else { return Vec::new() };
         let Lattice { origin, width, spacing } = lattice;
@@ -183,8 +184,9 @@ impl Features {
         found
     }
 
-    /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend` a
-    /// window's rim shows other patches, or the other side of its own, and their features with them.
+    /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend`,
+    /// the samples around a patch belong to other patches, or to the other side of the patch itself, and so do
+    /// their features.
     pub fn in_windows(&self, config: &Config, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         if config.border == Border::Seamless || self.is_empty() {
             let points = |patch: &[i32; 2]| {
@@ -216,7 +218,7 @@ impl Features {
             .collect()
     }
 
-    /// The world that a patch lives in: see [`Features::on_lattice`].
+    /// The world in which a patch lies; see [`Features::on_lattice`].
     pub fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }

@@ -1,4 +1,4 @@
-//! Whole fields on the CPU: the references in the order of a recipe.
+//! Whole fields on the CPU: the references of the operations, applied in the order of a recipe.
 
 use rayon::prelude::*;
 
@@ -11,8 +11,8 @@ use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::window::Window;
 
-/// The final heights of `patches`, each with `margin` samples around it: rows of patchSize + 2·margin.
-/// Patches are made in parallel on rayon's threads.
+/// The final heights of `patches` in 1/65536 units, each with `margin` samples around it, in rows of patchSize
+/// + 2·margin. Patches are generated in parallel on rayon's threads.
 ///
 /// # Errors
 /// [`InputError`] as [`Recipe::validate`].
@@ -20,7 +20,7 @@ pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<V
     field_with(recipe, patches, margin, &|| ())
 }
 
-/// [`field`]; `progress` hears of every patch that is done, on whichever thread made it.
+/// As [`field`]; calls `progress` after every patch, on the thread that generated it.
 ///
 /// # Errors
 /// [`InputError`] as [`Recipe::validate`].
@@ -40,7 +40,7 @@ pub fn field_with(
         field
     };
     let injected = recipe.injected(patches, apron);
-    // The patches of `blend` depend on each other; the others are made one by one from start to end.
+    // Patches of `blend` depend on each other; all others are generated independently, each from start to end.
     if let Border::Blend(_) = config.border {
         let windows = generate(config, features, patches, apron);
         return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
@@ -80,7 +80,7 @@ pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], apro
         .collect()
 }
 
-/// Despikes and erodes a window; `injected` are (column, row) of its features, sorted by row.
+/// Despikes and erodes a window; `injected` lists (column, row) of its features, sorted by row.
 fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window: Vec<i32>) -> Vec<i32> {
     if let Some(despike) = recipe.despike {
         window = despike::reference::despike(&window, width, despike.fixed_threshold(), |x, y| {

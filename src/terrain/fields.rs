@@ -1,4 +1,4 @@
-//! Square height fields of a batch on the device, one after the other.
+//! Batches of square height fields on the device, stored one after the other.
 
 use crate::InputError;
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -14,16 +14,16 @@ pub struct Fields {
     pub count: u32,
 }
 
-/// Where one of the fields of several parts lies.
+/// Where one field of a batch lies, when the batch is split into parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Place {
-    /// The part.
+    /// Index of the part.
     pub part: usize,
     /// The field's index in the part.
     pub index: u32,
 }
 
-/// Where the fields of `parts` lie, one part after the other, all `width` samples wide.
+/// The places of all fields of `parts`, in order; all fields are `width` samples wide.
 ///
 /// # Errors
 /// [`InputError`] that names a part of another width, or one whose buffer is too short.
@@ -41,7 +41,7 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
 }
 
 impl Fields {
-    /// Zeroed fields.
+    /// Allocates fields of zeros.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -50,27 +50,27 @@ impl Fields {
         Ok(Self { heights: Buffer::new(gpu, label, points)?, width, count })
     }
 
-    /// Fields of `width` to a part: as many as fit a binding of WebGPU's default size, 128 MiB, and one
-    /// dispatch; at least one. Batches are split there even where the device allows more, so that one part's
-    /// work stays short.
+    /// The largest number of fields of `width` in one part: as many as fit a binding of WebGPU's default size,
+    /// 128 MiB, and one dispatch; at least one. Batches are split there even on devices that allow more, so
+    /// that the work on one part stays short.
     pub fn most(gpu: &Gpu, width: u32) -> usize {
         let bytes = 4 * u64::from(width) * u64::from(width);
         let binding = gpu.max_binding().min(wgpu::Limits::default().max_storage_buffer_binding_size);
         (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
-    /// The same memory seen as fields that are `samples` smaller on every side; without a sample where
+    /// The same memory, described as fields that are `samples` smaller on every side. Their width is 0 where
     /// nothing is left.
     pub fn cropped(&self, samples: u32) -> Self {
         Self { width: self.inner_width(samples), ..self.clone() }
     }
 
-    /// Samples along an edge of fields that are `crop` samples smaller on every side.
+    /// Samples along an edge of the fields when they are `crop` samples smaller on every side.
     fn inner_width(&self, crop: u32) -> u32 {
         self.width.saturating_sub(crop.saturating_mul(2))
     }
 
-    /// Samples in all fields, `crop` samples smaller on every side.
+    /// Number of samples in all fields when they are `crop` samples smaller on every side.
     pub(crate) fn points(&self, crop: u32) -> usize {
         (self.inner_width(crop) as usize).pow(2) * self.count as usize
     }
@@ -88,7 +88,8 @@ impl Fields {
         self.heights.check_holds(&format!("{field}.heights"), self.points(0))
     }
 
-    /// Workgroups for one thread a sample of fields that are `crop` samples smaller on every side.
+    /// The workgroups that give every sample a thread, when the fields are `crop` samples smaller on every
+    /// side.
     pub(crate) fn workgroups(&self, kernel: &crate::gpu::Kernel, crop: u32) -> [u32; 3] {
         let width = self.inner_width(crop);
         [kernel.groups_for(width), width, self.count]

@@ -1,21 +1,21 @@
-//! Exact arithmetic of heights: reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
+//! Exact arithmetic of heights: the CPU reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
 use crate::terrain::config::{Config, Offset};
 
-/// The mean of four, rounded half up.
+/// The mean of four heights, rounded half up.
 #[inline(always)]
 pub fn mean_of_four(a: i32, b: i32, c: i32, d: i32) -> i32 {
     (a >> 2) + (b >> 2) + (c >> 2) + (d >> 2) + (((a & 3) + (b & 3) + (c & 3) + (d & 3) + 2) >> 2)
 }
 
-/// The high word of the 64-bit product.
+/// The high word of the 64-bit product of two words.
 #[inline(always)]
 pub fn multiply_high(a: u32, b: u32) -> u32 {
     ((u64::from(a) * u64::from(b)) >> 32) as u32
 }
 
-/// Random offsets of one seed and distribution.
+/// Draws the random offsets of one seed and one distribution.
 #[derive(Debug, Clone, Copy)]
 pub struct Draw {
     key: [u32; 2],
@@ -23,12 +23,12 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// Those of a configuration.
+    /// The offsets of a configuration.
     pub fn new(config: &Config) -> Self {
         Self { key: config.key(), offset: config.offset }
     }
 
-    /// Adds to `heights[i]` the offset of the point (x + i·step, y), in world coordinates.
+    /// Adds to each `heights[i]` the offset of the point (x + i·step, y), in world coordinates.
     pub fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
         for (chunk, row) in heights.chunks_mut(LANES).enumerate() {
             let start = x.wrapping_add(step.wrapping_mul((chunk * LANES) as u32));
@@ -56,19 +56,19 @@ impl Draw {
     }
 }
 
-/// What injection does to a point.
+/// What injection does to a computed height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FeatureMode {
-    /// Injected points stay as they are.
+    /// An injected point has the feature's height.
     #[default]
     Keep,
-    /// The computed value is added to them.
+    /// An injected point has the sum of the computed height and the feature's.
     Additive,
 }
 
 impl FeatureMode {
-    /// The value of the shaders' `FEATURES`; 0 stands for no features.
+    /// The value of the shaders' `FEATURES` for this mode; 0 means that there are no features.
     pub fn code(self) -> u32 {
         match self {
             Self::Keep => 1,
@@ -77,7 +77,7 @@ impl FeatureMode {
     }
 }
 
-/// Injects a feature into a computed height.
+/// The height of a point after injection.
 pub fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
     match mode {
         FeatureMode::Keep => feature,

@@ -1,8 +1,9 @@
-//! Whole fields on the device: the kernels in the order of a recipe. The GPU side of
+//! Whole fields on the device: the kernels in the order of a recipe. This is the GPU side of
 //! [`crate::terrain::field`].
 //!
-//! At no time do its buffers hold more than two `i32` for a sample of the enlarged windows, results included: each stage
-//! drops what the next does not read. An index of features holds two bits a sample and level beside that.
+//! At no time do its buffers hold more than two `i32` per sample of the enlarged windows, results included:
+//! each stage frees what the next one does not read. An index of features takes a further two bits per sample
+//! and level.
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION};
@@ -19,7 +20,7 @@ use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
 use crate::terrain::wrap::{WrapJob, WrapPass};
 
-/// Makes the fields of one recipe.
+/// Generates the fields of one recipe.
 #[derive(Debug, Clone)]
 pub struct Generator {
     recipe: Recipe,
@@ -50,14 +51,14 @@ impl Generator {
         })
     }
 
-    /// Patches that one part of the result may hold.
+    /// The number of patches that one part of the result may hold.
     pub fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
         Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
     }
 
-    /// The final heights of `patches` with `margin` samples around each, in parts that fit one storage binding;
-    /// `progress` hears of the patches done. Waits for the device. At most two `i32` for a sample of the enlarged
-    /// windows are allocated at once, features aside.
+    /// The final heights of `patches` with `margin` samples around each, in parts that each fit one storage
+    /// binding. Calls `progress` with the number of patches of each part that is done. Waits for the device. At
+    /// most two `i32` per sample of the enlarged windows are allocated at once, apart from features.
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -74,7 +75,7 @@ impl Generator {
             return Ok(Vec::new());
         }
         if let Border::Blend(_) = self.recipe.config.border {
-            // Patches of one part read those of another.
+            // Patches of one part may read those of another, so all are generated at once.
             let fields = self.by_themselves(gpu, patches, apron)?;
             progress(patches.len());
             return Ok(fields);
@@ -106,7 +107,8 @@ impl Generator {
         Ok(windows)
     }
 
-    /// Features that a window sees, halos included: those within its base lattice and a point around it.
+    /// The number of features that a window sees, halos included: those within its base lattice and one point
+    /// around it.
     fn seen_features(&self, window: Window) -> usize {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         if features.is_empty() {
@@ -115,7 +117,7 @@ impl Generator {
         let spacing = config.sample_spacing();
         let finer = 1 << config.levels();
         let base = window.levels(config)[0];
-        // One cell more than any alignment of the windows needs.
+        // The region is one cell larger than any alignment of the windows needs.
         let origin = base.map(|span| (span.first - 2) * finer * spacing);
         let width = base.map(|span| (span.width() as i64 + 4) * finer).into_iter().max().unwrap_or(0) as u32;
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
@@ -131,7 +133,7 @@ impl Generator {
         let mut sizes = part_sizes(patches.len(), Fields::most(gpu, width));
         let all = surrounds(config, patches);
         let injected = self.recipe.injected(patches, apron);
-        // The last part is what is left.
+        // The last part takes the patches that remain.
         sizes.pop();
         let windows = |around: &[Surround]| -> Result<Fields, Error> {
             let windows = Fields::new(gpu, "terrain windows", width, around.len() as u32)?;
@@ -146,13 +148,13 @@ impl Generator {
             start += size;
         }
         let last = windows(&all[start..])?;
-        // Nobody reads them any more, and the last windows need the room.
+        // Only the last windows read the patches: free them, because the stages that follow need the memory.
         drop(alone);
         parts.push(self.finish(gpu, apron, &injected[start..], last)?);
         Ok(parts)
     }
 
-    /// Patches without their surroundings, with the transitions of `blend`.
+    /// The patches without the samples around them, after the transitions of `blend`.
     fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
         let mut parts = Vec::new();
@@ -177,7 +179,7 @@ impl Generator {
         Ok(fields)
     }
 
-    /// Despikes and erodes windows, in turn between them and a second buffer.
+    /// Despikes and erodes windows, alternating between them and a second buffer.
     fn finish(
         &self,
         gpu: &Gpu,
@@ -189,7 +191,7 @@ impl Generator {
         if self.recipe.despike.is_none() && thermal.is_none() {
             return Ok(windows);
         }
-        // Either crops a sample on every side before it writes there.
+        // Despiking and erosion both drop a ring of samples before they write to the second buffer.
         let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
         let (mut current, mut other) = (windows, other);
         if let Some(despike) = self.recipe.despike {
@@ -209,22 +211,23 @@ impl Generator {
         Ok(current)
     }
 
-    /// An index of every injected point of windows, given for each as (column, row).
+    /// An index of every injected point of the windows; `injected` gives (column, row) for each window.
     fn index(&self, gpu: &Gpu, apron: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
         let width = self.recipe.config.patch_size + 2 * apron;
         let points = injected.iter().map(Vec::len).sum::<usize>();
         let capacity = if self.recipe.features.is_empty() { 0 } else { points.max(1) };
         let index = FeatureIndex::new(gpu, &[width], injected.len() as u32, capacity)?;
         index.write(gpu, injected.len() as u32, |_, window| {
-            // The grid starts one point before the window; the values do not matter.
+            // The grid starts one point before the window; despiking does not read the values.
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;
         Ok(index)
     }
 }
 
-/// `count` patches in as few parts as hold `most` each, the smaller parts first: while one is worked on, a part as large
-/// has yet to be allocated, and its room serves as scratch.
+/// Splits `count` patches into as few parts of at most `most` patches as possible, the smaller parts first:
+/// while a part is worked on, the memory of a later, equally large part is not allocated yet and is free for
+/// scratch.
 fn part_sizes(count: usize, most: usize) -> Vec<usize> {
     let parts = count.div_ceil(most.max(1));
     (0..parts).map(|part| (count + part) / parts.max(1)).collect()

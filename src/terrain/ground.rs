@@ -1,5 +1,5 @@
-//! The ground of a world of patches, by world position on the CPU: height and normal of the triangles that are
-//! drawn.
+//! The ground of a world of patches on the CPU: the height and the normal, at a world position, of the
+//! triangles that are drawn.
 
 use std::collections::HashMap;
 
@@ -8,10 +8,11 @@ use crate::terrain::config::Config;
 use crate::terrain::export::cropped;
 use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
 
-/// Patches of one configuration on the CPU, any number anywhere, to be asked for the ground at a position.
+/// The heights of any number of patches of one configuration, kept on the CPU, which answer where the ground
+/// is.
 ///
-/// The answer is that of the triangles that `relievo` draws and exports ([`HeightField::triangle_at`]), so that
-/// what stands on it neither floats nor sinks. A patch costs four bytes a sample.
+/// The answers are those of the triangles that relievo draws and exports ([`HeightField::triangle_at`]), so
+/// that what stands on the ground neither floats nor sinks. A patch takes four bytes per sample.
 ///
 /// ```
 /// use relievo::terrain::field::field;
@@ -38,7 +39,7 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// No patches yet, of `config`.
+    /// An empty world of `config`.
     ///
     /// # Errors
     /// [`InputError`] as [`Config::validate`].
@@ -47,12 +48,12 @@ impl Ground {
         Ok(Self { size: config.patch_size, spacing: config.terrain_scale, patches: HashMap::new() })
     }
 
-    /// Adds the patch at `patch`, or replaces it. `heights` are its heights in 1/65536 units, row by row, with
-    /// `margin` samples around it, as [`crate::terrain::field::field`] gives them and fields on the
-    /// device hold them; the margin is not kept.
+    /// Adds the patch at `patch`, or replaces it. `heights` are in 1/65536 units, row by row, with `margin`
+    /// samples around the patch, as [`crate::terrain::field::field`] returns them and as fields on the device
+    /// hold them. The margin is dropped.
     ///
     /// # Errors
-    /// [`InputError`] for another number of heights than (patchSize + 2 · margin)².
+    /// [`InputError`] when the number of heights is not (patchSize + 2 · margin)².
     pub fn insert(&mut self, patch: [i32; 2], heights: &[i32], margin: u32) -> Result<(), InputError> {
         let width = u64::from(self.size) + 2 * u64::from(margin);
         let refused = || {
@@ -68,7 +69,7 @@ impl Ground {
         Ok(())
     }
 
-    /// Removes a patch. Whether it was there.
+    /// Removes a patch. Returns whether it was there.
     pub fn remove(&mut self, patch: [i32; 2]) -> bool {
         self.patches.remove(&patch).is_some()
     }
@@ -76,15 +77,15 @@ impl Ground {
     /// The ground at world position (x east, z south), where position 0 is the first sample of patch (0, 0);
     /// `None` where no patch is.
     ///
-    /// Patches of `seamless` terrain have the same heights along an edge that they share, so that a point there
-    /// has the same height from either, bit for bit; where both are there, the eastern or southern one answers.
-    /// (`wrap` gives patches edges of their own, and there that choice shows.)
+    /// Patches of `seamless` terrain have the same heights along a shared edge, so a point on that edge has the
+    /// same height in both, bit for bit. Where both patches are present, the eastern or southern one answers.
+    /// (Patches of `wrap` terrain have edges of their own, and there the choice makes a difference.)
     pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
         self.point_from([0, 0], x, z)
     }
 
-    /// [`Ground::point_at`] where position 0 is the first sample of patch `origin`, as in a
-    /// `render::TerrainScene`. A viewer far from patch (0, 0) takes an origin nearby: positions near 0 are
+    /// As [`Ground::point_at`], with position 0 at the first sample of patch `origin`, as in a
+    /// `render::TerrainScene`. A viewer far from patch (0, 0) chooses an origin nearby: positions near 0 are
     /// precise, however far away the origin is.
     pub fn point_from(&self, origin: [i32; 2], x: f64, z: f64) -> Option<GroundPoint> {
         let columns = self.cells(origin[0], x)?;
@@ -114,11 +115,11 @@ impl Ground {
     }
 }
 
-/// A cell along one axis, and a place in it.
+/// A cell along one axis, and a position in it.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     patch: i32,
     index: usize,
-    /// 0 to [`FRACTION_ONE`].
+    /// The position in the cell, 0 to [`FRACTION_ONE`].
     fraction: i64,
 }

@@ -1,20 +1,21 @@
-//! Explicit meshes of height fields (B section 4.4), for those who want one: relievo itself draws straight from
-//! the heights. And height queries on the CPU: [`HeightField::triangle_at`] answers the triangles that are drawn,
-//! [`HeightField::height_at`] a bilinear surface. [`crate::terrain::ground::Ground`] answers for many patches.
+//! Triangle meshes of height fields (B section 4.4), for export: relievo itself draws from the heights without
+//! a mesh. The module also answers height queries on the CPU: [`HeightField::triangle_at`] for the triangles
+//! that are drawn, [`HeightField::height_at`] for a bilinear surface. [`crate::terrain::ground::Ground`]
+//! answers for many patches.
 
 use std::fmt::Display;
 use std::io::{self, Write};
 
 use crate::terrain::config::HEIGHT_ONE;
 
-/// The distance between samples as a fraction of itself: positions are rounded to 2⁻³⁰ of it. A fraction times any
-/// height fits `i64`.
+/// Fixed-point one of positions within a cell: they are rounded to 2⁻³⁰ of the distance between samples. The
+/// product of such a fraction and any height fits `i64`.
 pub(crate) const FRACTION_ONE: i64 = 1 << 30;
 
-/// A point of the ground as it is drawn.
+/// A point on the ground as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundPoint {
-    /// Height in units.
+    /// Height in height units.
     pub height: f64,
     /// Unit normal of the triangle: x east, y up, z south. `y` is above 0.
     pub normal: [f64; 3],
@@ -30,8 +31,8 @@ pub struct HeightField {
 }
 
 impl HeightField {
-    /// A field of `size`² heights in 1/65536 units, samples `terrain_scale` apart; `None` when the lengths do
-    /// not fit or there are fewer than 2×2 samples.
+    /// A field of `size`² heights in 1/65536 units, with samples `terrain_scale` world units apart. `None` when
+    /// the number of heights is not `size`² or when there are fewer than 2 × 2 samples.
     pub fn new(heights: Vec<i32>, size: usize, terrain_scale: f64) -> Option<Self> {
         (size >= 2 && heights.len() == size * size).then_some(Self { heights, size, spacing: terrain_scale })
     }
@@ -41,13 +42,13 @@ impl HeightField {
         self.size
     }
 
-    /// The height of a sample, in units; `None` outside the field.
+    /// The height of a sample, in height units; `None` outside the field.
     pub fn point(&self, x: usize, y: usize) -> Option<f64> {
         (x < self.size && y < self.size).then(|| f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE)
     }
 
-    /// The height and the normal of the triangle at world position (x, z) relative to the first sample; `None`
-    /// outside the field. Use it to stand something on the ground.
+    /// The height and the normal of the triangle at world position (x, z), relative to the first sample; `None`
+    /// outside the field. Use it to place objects on the ground.
     ///
     /// The triangles are those of the drawing pass, of [`HeightField::mesh`] and of
     /// [`HeightField::write_obj`]: the diagonal of each cell runs from its north-eastern to its south-western
@@ -60,7 +61,8 @@ impl HeightField {
         let last = self.size as i64 - 1;
         let along = |position: f64| {
             let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
-            // Nothing lies east or south of the last sample: it ends the last cell.
+            // No cell lies east or south of the last sample, so a position there lies at the end of the last
+            // cell.
             let (cell, fraction) =
                 if sample == last { (last - 1, fraction + FRACTION_ONE) } else { (sample, fraction) };
             ((0..last).contains(&cell) && fraction <= FRACTION_ONE).then_some((cell as usize, fraction))
@@ -69,12 +71,13 @@ impl HeightField {
         Some(self.triangle([column, row], [u, v]))
     }
 
-    /// The triangle of the cell (column, row) at a place in it, 0 to [`FRACTION_ONE`] east and south of its first
-    /// corner.
+    /// The triangle of the cell (column, row) at the position (u, v) in it, 0 to [`FRACTION_ONE`] east and
+    /// south of the cell's first corner.
     pub(crate) fn triangle(&self, [column, row]: [usize; 2], [u, v]: [i64; 2]) -> GroundPoint {
         let corner = |dx: usize, dy: usize| i64::from(self.heights[(row + dy) * self.size + column + dx]);
         let (east, south) = (corner(1, 0), corner(0, 1));
-        // Weights are whole and sum to one, so sums are exact, and equal wherever two triangles meet.
+        // Barycentric weights are integers that sum to one, so that sums are exact, and equal wherever two
+        // triangles meet.
         let beyond = u + v - FRACTION_ONE;
         let (sum, rise) = if beyond <= 0 {
             let first = corner(0, 0);
@@ -93,10 +96,11 @@ impl HeightField {
         }
     }
 
-    /// The height at world position (x, z) relative to the first sample, bilinear between samples; `None`
-    /// outside the field. It is the smoother surface, without the creases of triangles, but not what is drawn:
-    /// over a cell with corner heights h₀₀, h₁₀, h₀₁ and h₁₁ it differs from [`HeightField::triangle_at`] by up to
-    /// |h₀₀ − h₁₀ − h₀₁ + h₁₁| / 4, which it reaches in the middle of the cell, and always to the same side.
+    /// The height at world position (x, z), relative to the first sample, by bilinear interpolation; `None`
+    /// outside the field. This surface has no creases along triangles, but it is not the one that is drawn: in
+    /// a cell with corner heights h₀₀, h₁₀, h₀₁ and h₁₁ it differs from [`HeightField::triangle_at`] by up to
+    /// |h₀₀ − h₁₀ − h₀₁ + h₁₁| / 4, which it reaches in the middle of the cell. Throughout a cell the
+    /// difference has one sign.
     pub fn height_at(&self, x: f64, z: f64) -> Option<f64> {
         let last = (self.size - 1) as f64;
         let (column, row) = (x / self.spacing, z / self.spacing);
@@ -113,7 +117,8 @@ impl HeightField {
         Some(top * (1.0 - v) + bottom * v)
     }
 
-    /// A mesh: positions (x east, y up, z south), texture coordinates over the patch, and one triangle strip.
+    /// The mesh of the field: positions (x east, y up, z south), texture coordinates over the patch, and one
+    /// triangle strip.
     pub fn mesh(&self) -> Mesh {
         let last = (self.size - 1) as f32;
         let (mut positions, mut uvs) = (Vec::new(), Vec::new());
@@ -131,12 +136,12 @@ impl HeightField {
         Mesh { positions, uvs, strip: strip(self.size) }
     }
 
-    /// Writes the mesh as Wavefront OBJ in world space: `first` is the world index of the first sample, such as
-    /// patch coordinates times patchSize − 1. Positions are decimals in full `f64` precision, and the edges
-    /// that patches share are equal to the letter.
+    /// Writes the mesh as Wavefront OBJ in world space. `first` is the world index of the first sample, such as
+    /// patch coordinates times patchSize − 1. Positions are written as decimals in full `f64` precision, so
+    /// that patches write the same text for an edge that they share.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     pub fn write_obj(&self, out: &mut impl Write, first: [i64; 2]) -> io::Result<()> {
         let at = |index: usize, axis: usize| (first[axis] + index as i64) as f64 * self.spacing;
         let positions = self.heights.iter().enumerate().map(|(index, height)| {
@@ -148,8 +153,8 @@ impl HeightField {
     }
 }
 
-/// A position, counted in samples, as a whole sample and a fraction below [`FRACTION_ONE`]; `None` for what is not
-/// finite or so large that `f64` has no fractions there.
+/// Splits a position, counted in samples, into a whole sample and a fraction below [`FRACTION_ONE`]. `None` for
+/// a position that is not finite, or so large that `f64` has no fractions there.
 pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
     let whole = position.floor();
     let has_fractions = whole.abs() < (1_i64 << f64::MANTISSA_DIGITS) as f64;
@@ -159,8 +164,8 @@ pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
     })
 }
 
-/// Indices of one triangle strip over a grid of `size`² points: rows are joined by degenerate triangles. Front
-/// faces look up.
+/// The indices of one triangle strip over a grid of `size`² points, in which degenerate triangles join the
+/// rows. Front faces look up.
 pub fn strip(size: usize) -> Vec<u32> {
     let mut indices = Vec::new();
     for row in 0..size - 1 {
@@ -181,16 +186,16 @@ pub fn strip(size: usize) -> Vec<u32> {
 /// A triangle-strip mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// World units: x east, y up, z south.
+    /// Positions in world units: x east, y up, z south.
     pub positions: Vec<[f32; 3]>,
-    /// 0 to 1 over the patch.
+    /// Texture coordinates, 0 to 1 over the patch.
     pub uvs: Vec<[f32; 2]>,
-    /// Indices of one strip.
+    /// Indices of one triangle strip.
     pub strip: Vec<u32>,
 }
 
 impl Mesh {
-    /// The strip's triangles without the degenerate ones, counter-clockwise seen from above.
+    /// The triangles of the strip without the degenerate ones, counter-clockwise when seen from above.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         (self.strip.windows(3).enumerate())
             .map(|(index, triple)| {
@@ -207,7 +212,7 @@ impl Mesh {
     /// Writes Wavefront OBJ.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     pub fn write_obj(&self, out: &mut impl Write) -> io::Result<()> {
         write_obj(out, self.positions.iter().copied(), &self.uvs, &self.triangles())
     }
@@ -224,7 +229,7 @@ fn write_obj<T: Display>(
         writeln!(out, "v {x} {y} {z}")?;
     }
     for [u, v] in uvs {
-        // OBJ's texture origin is the bottom.
+        // The origin of texture coordinates is at the bottom in OBJ.
         writeln!(out, "vt {u} {}", 1.0 - v)?;
     }
     for [a, b, c] in triangles {
@@ -238,7 +243,7 @@ mod tests {
     use super::*;
 
     fn ramp() -> HeightField {
-        // Height = 2·column + row, in units.
+        // The height is 2·column + row, in height units.
         let heights = (0..9).map(|i| (2 * (i % 3) + i / 3) * 65_536).collect();
         HeightField::new(heights, 3, 0.5).expect("nine heights")
     }
@@ -293,7 +298,7 @@ mod tests {
         let mut at_origin = Vec::new();
         ramp().mesh().write_obj(&mut at_origin).expect("a vector takes everything");
         assert_eq!(text([0, 0]).as_bytes(), at_origin);
-        // Beyond what f32 can tell apart.
+        // Positions that f32 could not tell apart.
         assert!(text([1 << 30, -3]).contains("\nv 536870912.5 3 -1\n"));
     }
 }

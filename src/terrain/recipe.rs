@@ -1,4 +1,4 @@
-//! A whole terrain: configuration, features, and what happens after generation.
+//! A recipe for terrain: the configuration, the features, and the operations after generation.
 
 use crate::InputError;
 use crate::terrain::config::{Border, Config};
@@ -8,32 +8,33 @@ use crate::terrain::pad;
 use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
 
-/// What a field of patches is made of, in order: generation, borders, despiking, erosion.
+/// How a field of patches is made. The order is generation, borders, despiking, erosion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
     /// How heights are generated.
     pub config: Config,
     /// Injected heights.
     pub features: Features,
-    /// Removal of spikes, if any.
+    /// Removal of spikes, if wanted.
     pub despike: Option<Despike>,
-    /// Thermal erosion, if any.
+    /// Thermal erosion, if wanted.
     pub thermal: Option<Thermal>,
 }
 
 impl Recipe {
-    /// Generation alone.
+    /// A recipe that only generates.
     pub fn new(config: Config) -> Self {
         Self { config, features: Features::default(), despike: None, thermal: None }
     }
 
-    /// Samples beyond the final field that generation must give.
+    /// Samples beyond the patch that generation must provide for a final field with `margin` samples around it.
     pub fn apron(&self, margin: u32) -> u32 {
         let iterations = self.thermal.map_or(0, |thermal| thermal.iterations);
         margin.saturating_add(self.despike.map_or(0, |_| 1)).saturating_add(iterations)
     }
 
-    /// (column, row) of the injected points of each window: what despiking leaves alone. Empty without it.
+    /// (column, row) of the injected points of each window, which despiking leaves alone. The lists are empty
+    /// without despiking.
     pub(crate) fn injected(&self, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         match self.despike {
             Some(_) => self.features.in_windows(&self.config, patches, apron),

@@ -1,4 +1,4 @@
-//! Textures of height zones: four that relievo generates, and image files.
+//! Textures of height zones: four that relievo generates, and those of image files.
 
 use std::path::Path;
 
@@ -12,22 +12,22 @@ use crate::terrain::config::{BuiltIn, Zone, ZoneTexture};
 use crate::terrain::features::Features;
 use crate::terrain::wrap::reference::wrap;
 
-/// Texels along an edge of a zone texture. Files are resized to it.
+/// Texels along an edge of a zone texture. Image files are resized to it.
 pub const TEXTURE_SIZE: u32 = 256;
 
-/// A zone texture: RGBA, sRGB, square, with all its mip levels, and its mean colour.
+/// A zone texture: square, RGBA, sRGB, with all mip levels and its mean colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
-    /// Mip levels, 256² texels first, 1 last; four bytes a texel.
+    /// Mip levels, from 256² texels down to 1; four bytes per texel.
     pub mips: Vec<Vec<u8>>,
     /// Mean linear colour.
     pub mean: [f32; 3],
 }
 
 impl Texture {
-    /// A generated texture.
+    /// Generates a texture.
     pub fn built_in(kind: BuiltIn) -> Self {
-        // Tileable noise is a wrapped patch: rough for rock, fine-grained for snow.
+        // A wrapped patch serves as tileable noise.
         let (roughness, ramp): (f64, [[f32; 3]; 3]) = match kind {
             BuiltIn::Sand => (0.35, [[0.60, 0.50, 0.34], [0.75, 0.66, 0.48], [0.86, 0.79, 0.62]]),
             BuiltIn::Grass => (0.30, [[0.16, 0.26, 0.08], [0.29, 0.42, 0.15], [0.45, 0.55, 0.24]]),
@@ -64,7 +64,7 @@ impl Texture {
         Self::from_texels(texels)
     }
 
-    /// An image file, resized.
+    /// Reads an image file and resizes it.
     ///
     /// # Errors
     /// [`Error::File`] when it cannot be read.
@@ -74,7 +74,7 @@ impl Texture {
         Ok(Self::from_texels(image.into_rgba8().into_raw()))
     }
 
-    /// The textures of zones, in order.
+    /// The textures of zones, in the zones' order.
     ///
     /// # Errors
     /// [`Error::File`] when one cannot be read.
@@ -115,7 +115,7 @@ impl Texture {
     }
 }
 
-/// Zones with the mean colours of their textures, as colour maps draw them.
+/// The zones with the mean colours of their textures, as colour maps need them.
 pub fn map_zones(zones: &[Zone], textures: &[Texture]) -> Vec<MapZone> {
     (zones.iter().zip(textures))
         .map(|(zone, texture)| MapZone { color: texture.mean, min: zone.min as f32, max: zone.max as f32 })

@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/`.
+//! What the parity cases of `kernels/terrain/` share.
 
 use crate::hash::threefry2x32;
 use crate::terrain::config::{Config, HEIGHT_LIMIT};
@@ -6,13 +6,13 @@ use crate::terrain::features::{FeatureFile, Features};
 use crate::terrain::fixed::FeatureMode;
 use crate::{Error, InputError};
 
-/// Random words of a test case, the same on every machine.
+/// The random words of a test case, the same on every machine.
 pub fn random_words(case: u32, count: usize) -> Vec<u32> {
     let first = |index: usize| threefry2x32([case, 0x7e57], [index as u32; 8], [0; 8]).0[0];
     (0..count).map(first).collect()
 }
 
-/// Random heights up to `limit` in size, ends included now and then.
+/// Random heights of absolute value at most `limit`, which is itself drawn now and then.
 pub fn random_heights(case: u32, count: usize, limit: i32) -> Vec<i32> {
     let span = 2 * i64::from(limit) + 1;
     let height = |word: u32| match word % 64 {
@@ -23,13 +23,13 @@ pub fn random_heights(case: u32, count: usize, limit: i32) -> Vec<i32> {
     random_words(case, count).into_iter().map(height).collect()
 }
 
-/// The largest height there can be.
+/// The largest height, in 1/65536 units.
 pub const LIMIT: i32 = HEIGHT_LIMIT as i32;
 
-/// Features scattered over the 3×3 patches around `patch`, edges and corners included.
+/// Features scattered over the 3 × 3 patches around `patch`, edges and corners included.
 ///
 /// # Errors
-/// [`InputError`] never, for valid configurations.
+/// None, for a valid configuration.
 pub fn scattered(
     config: &Config,
     patch: [i32; 2],
@@ -41,21 +41,22 @@ pub fn scattered(
     for tile in 0..9_i32 {
         let mut heights = Vec::new();
         for pair in random_words(case * 9 + tile as u32, 24).chunks_exact(2) {
-            // Whole edges of zeros would be refused as second heights of one lattice point.
+            // Coordinates of 0 are avoided: an edge that two patches share would get two heights for one
+            // lattice point, which is refused.
             let (x, y) = (1 + pair[0] % last, 1 + pair[1] % last);
             heights.extend([f64::from(x), f64::from(y), f64::from(x + 3 * y) * 0.125]);
         }
         let patch_coordinates = [patch[0] + tile % 3 - 1, patch[1] + tile / 3 - 1];
-        // The same point twice would be drawn with equal heights only by chance of position.
+        // The height depends on the position alone, so that a point that is drawn twice keeps one height.
         files.push(FeatureFile { patch_coordinates, precomputed_heights: heights });
     }
     Features::new(config, &files, mode)
 }
 
-/// A configuration from JSON that is known to be valid.
+/// Reads a configuration from JSON that is known to be valid.
 ///
 /// # Errors
-/// [`InputError`] never.
+/// None, for valid JSON.
 pub fn config(json: &serde_json::Value) -> Result<Config, Error> {
     Ok(Config::from_json(&json.to_string())?)
 }

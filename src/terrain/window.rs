@@ -3,7 +3,7 @@
 use crate::InputError;
 use crate::terrain::config::{Border, Config};
 
-/// The most samples that a window may reach beyond its patch.
+/// The largest number of samples by which a window may extend beyond its patch.
 pub const MAX_APRON: u32 = 4096;
 
 /// A patch and the samples around it: (patchSize + 2·reach)² of them.
@@ -25,24 +25,25 @@ pub struct Span {
 }
 
 impl Span {
-    /// What the lattice of twice the spacing must give so that this span can be computed: one cell of halo.
+    /// The span of the lattice with twice the spacing that is needed to compute this span: one cell of halo on
+    /// each side.
     pub fn coarser(self) -> Self {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
-    /// The number of indices.
+    /// The number of indices in the span.
     pub fn width(self) -> usize {
         (self.last - self.first + 1) as usize
     }
 }
 
 impl Window {
-    /// Samples along an edge.
+    /// Samples along an edge of the window.
     pub fn width(&self, config: &Config) -> u32 {
         config.patch_size + 2 * self.apron
     }
 
-    /// The columns and rows of the window, in samples.
+    /// The columns and rows of the window, in units of samples.
     pub fn spans(&self, config: &Config) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
@@ -51,7 +52,7 @@ impl Window {
         })
     }
 
-    /// The columns and rows at every level, the base lattice first.
+    /// The columns and rows of the window at every level, the base lattice first.
     pub fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
         let mut levels = vec![self.spans(config)];
         for _ in 0..config.levels() {
@@ -62,7 +63,7 @@ impl Window {
         levels
     }
 
-    /// The lattice of the window's samples, in the world that its features live in.
+    /// The lattice of the window's samples, in the world that holds its features.
     pub fn lattice(&self, config: &Config) -> Lattice {
         let spacing = config.sample_spacing();
         let origin = if config.border == Border::Seamless {
@@ -73,10 +74,10 @@ impl Window {
         Lattice { origin, width: self.width(config), spacing }
     }
 
-    /// Checks reach and patch coordinates.
+    /// Checks the reach and the patch coordinates.
     ///
     /// # Errors
-    /// [`InputError`] when the reach is too large, or world coordinates with their halo leave `i32`.
+    /// [`InputError`] when the reach is too large, or when world coordinates, halo included, exceed `i32`.
     pub fn validate(&self, config: &Config) -> Result<(), InputError> {
         if self.apron > MAX_APRON {
             return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));
@@ -85,7 +86,7 @@ impl Window {
         let base = if config.border == Border::Seamless {
             self.levels(config)[0]
         } else {
-            // A patch by itself has no halo.
+            // A patch that is generated alone has no halo.
             self.patch.map(|patch| Span { first: patch.into(), last: i64::from(patch) + 1 })
         };
         for (axis, span) in base.iter().enumerate() {
@@ -103,16 +104,16 @@ impl Window {
 /// A square lattice in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lattice {
-    /// The first point, (X, Y); a multiple of `spacing`.
+    /// World coordinates (X, Y) of the first point; a multiple of `spacing`.
     pub origin: [i64; 2],
     /// Points along an edge.
     pub width: u32,
-    /// World coordinates between neighbours.
+    /// Distance between neighbouring points in world coordinates.
     pub spacing: i64,
 }
 
 impl Lattice {
-    /// The lattice with one point more on every side.
+    /// The lattice with one more point on every side.
     pub fn grown(self) -> Self {
         Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
     }

@@ -1,5 +1,5 @@
-// Draws meshes with relief (B section 3.1, tables 4.1 to 4.4): any method, self-shadow, silhouettes, depth of the
-// relief. The method and what is drawn are override constants; everything else is a uniform.
+// Draws meshes with relief (B section 3.1, tables 4.1 to 4.4) by any method, with self-shadow, silhouettes and
+// the depth of the relief. The method and the options are override constants; everything else is a uniform.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
@@ -8,31 +8,32 @@ import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surfa
 
 // A method of wgsl/surface/trace.wgsl.
 override METHOD: u32 = 3u;
-// 0 none, 1 hard, 2 soft.
+// 0 for none, 1 for hard, 2 for soft.
 override SHADOW: u32 = 0u;
-// Normals from the normal map rather than from the heights.
+// Whether normals come from the normal map and not from the heights.
 override NORMAL_MAP: bool = false;
-// Whether green of the normal map points up its image, against v, as in glTF and OpenGL, or down it, as in Direct3D.
+// Whether the green channel of the normal map points up its image, against v, as in glTF and OpenGL, or down
+// it, as in Direct3D.
 override GREEN_UP: bool = true;
-// Discards what leaves the range of uv that the mesh covers.
+// Whether to discard points outside the range of uv that the mesh covers.
 override SILHOUETTE: bool = false;
-// Chooses the mip level of the heights from the size of a pixel, once a fragment.
+// Whether to choose the mip level of the heights from the size of a pixel, once per fragment.
 override CHOOSE_MIP: bool = false;
 
 struct ReliefView {
     clip_from_world: mat4x4<f32>,
-    // The eye (w = 1), or the direction towards it (w = 0).
+    // The position of the eye (w = 1), or the direction towards it (w = 0).
     eye: vec4<f32>,
-    // Unit vector towards the light; w: what is in shadow still gets, 0..1.
+    // Unit vector towards the light; w: the light that shadowed points still receive, 0..1.
     light: vec4<f32>,
-    // uv range of the mesh: low, high.
+    // The mesh's range of uv: lower and upper end.
     range: vec4<f32>,
-    // Depth of the relief in uv units, and height of the polygon in it.
+    // Depth of the relief in uv units, and height of the polygon in the relief.
     scale: f32,
     plane: f32,
-    // World units a uv unit.
+    // World units per uv unit.
     world: f32,
-    // Soft shadow: steps, and the excess over distance at which shadow is full.
+    // For soft shadow: number of steps, and the ratio of excess height to distance at which shadow is full.
     shadow_steps: u32,
     softness: f32,
 }
@@ -57,7 +58,8 @@ struct Vertex {
 fn vertex(
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    // w: the bitangent along v is w · normal × tangent. glTF's points against v: its w has the other sign.
+    // w: the bitangent along v is w · normal × tangent. glTF's bitangent points against v, so that its w has
+    // the opposite sign.
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec2<f32>,
 ) -> Vertex {
@@ -71,7 +73,7 @@ struct Shaded {
 }
 
 fn shaded(in: Vertex) -> Shaded {
-    // Derivatives belong in uniform control flow: here, of the polygon's own coordinates.
+    // Derivatives need uniform control flow, so they are taken here, of the polygon's own coordinates.
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
     let normal = normalize(in.normal);
@@ -101,7 +103,7 @@ fn shaded(in: Vertex) -> Shaded {
     return Shaded(vec4<f32>(lit, 1.0), depth, is_outside);
 }
 
-// How much of the light reaches a hit.
+// The fraction of the light that reaches a hit.
 fn sunlit(hit: SurfaceHit, light: vec3<f32>, settings: SurfaceMarch) -> f32 {
     if SHADOW == 0u || !(light.z > 0.0) {
         return 1.0;
@@ -129,7 +131,8 @@ struct Deep {
     @builtin(frag_depth) depth: f32,
 }
 
-// With the depth of the relief rather than the polygon's: what intersects other geometry, and shadow maps.
+// Writes the depth of the relief and not that of the polygon, for intersections with other geometry and for
+// shadow maps.
 @fragment
 fn fragment_depth(in: Vertex) -> Deep {
     let result = shaded(in);

@@ -1,32 +1,34 @@
-// Draws skinned instances of a mesh: textured, lit, each at a place of its own; opaque, cut out, or through a screen.
+// Draws skinned instances of a mesh, textured and lit, each at its own placement. Surfaces are opaque, cut out,
+// or drawn through a screen-door pattern.
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
-// Seen from both sides: what faces away turns its normal round.
+// Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
-// Draws what is mirrored, and leaves out what is not; else the other way round. Seen from both sides, all is drawn at once.
+// Whether the draw shows only mirrored instances, or only those that are not. A double-sided mesh draws all at
+// once.
 override MIRRORED: bool = false;
 
 struct SkinnedView {
     clip_from_world: mat4x4<f32>,
-    // Unit vector towards the light; w: what faces away still gets, 0..1.
+    // Unit vector towards the light; w: the light that surfaces facing away still receive, 0..1.
     light: vec4<f32>,
-    // Linear, and alpha: what the texture is multiplied with.
+    // Linear colour and alpha by which the texture is multiplied.
     color: vec4<f32>,
-    // Of the mesh.
+    // Number of vertices of the mesh.
     vertices: u32,
     cutoff: f32,
-    // −1 where the view mirrors, else 1.
+    // −1 if the view mirrors, else 1.
     side: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: SkinnedView;
-// Five a vertex and instance: position, normal, tangent.
+// Five pairs per vertex and instance: position, normal, tangent.
 @group(0) @binding(1) var<storage, read> skinned: array<vec2<f32>>;
 @group(0) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;
-// Three rows an instance: from the model's space into the world.
+// Three rows per instance: the transform from the model's space into the world.
 @group(0) @binding(3) var<storage, read> placements: array<vec4<f32>>;
-// The instances that are drawn.
+// Indices of the instances to draw.
 @group(0) @binding(4) var<storage, read> drawn: array<u32>;
 @group(0) @binding(5) var albedo: texture_2d<f32>;
 @group(0) @binding(6) var filtering: sampler;
@@ -45,21 +47,21 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u3
     let z = placements[3u * instance + 2u];
     let determinant = dot(x.xyz, cross(y.xyz, z.xyz));
     if !DOUBLE_SIDED && (view.side * determinant < 0.0) != MIRRORED {
-        // Beyond the picture.
+        // A position outside the view.
         return Vertex(vec4<f32>(2.0, 2.0, 2.0, 1.0), vec3<f32>(0.0), vec2<f32>(0.0));
     }
     let at = 5u * (instance * view.vertices + vertex);
     let middle = skinned[at + 1u];
     let rows = Rows(x, y, z);
     let world = placed_position(rows, vertex_position(skinned[at], middle));
-    // Where the placement mirrors, cofactors point inwards. That is right where both sides are seen: the rasterizer takes the
-    // inner one for the front then.
+    // If the placement mirrors, the cofactors give an inward normal. That is right for double-sided meshes,
+    // because the rasterizer then takes the inner side for the front.
     let facing = placed_normal(rows, vertex_normal(middle, skinned[at + 2u]));
     let outwards = select(facing, -facing, !DOUBLE_SIDED && determinant < 0.0);
     return Vertex(view.clip_from_world * vec4<f32>(world, 1.0), outwards, texture_coordinates[vertex]);
 }
 
-// The rank of a pixel's place among 4 × 4 (Bayer 1973), between 0 and 1.
+// The rank of a pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973), between 0 and 1.
 fn screen(place: vec2<u32>) -> f32 {
     let fine = place & vec2<u32>(1u);
     let coarse = (place >> vec2<u32>(1u)) & vec2<u32>(1u);
@@ -80,13 +82,13 @@ fn lit(color: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
     return vec4<f32>(color * (view.light.w + (1.0 - view.light.w) * direct), 1.0);
 }
 
-// Nothing becomes of alpha. An entry of its own: what may be discarded is tested for depth late.
+// Ignores alpha. It is a separate entry point because shaders with a discard are tested for depth late.
 @fragment
 fn opaque(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     return lit(colored(in).rgb, in, is_front);
 }
 
-// What has less than the cutoff is not there.
+// Discards pixels whose alpha is below the cutoff.
 @fragment
 fn masked(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     let color = colored(in);
@@ -96,7 +98,7 @@ fn masked(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec
     return lit(color.rgb, in, is_front);
 }
 
-// As many pixels are there as alpha says.
+// Keeps as many pixels of the pattern as alpha says.
 @fragment
 fn screened(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     let color = colored(in);

@@ -7,7 +7,7 @@ import package::wgsl::terrain::light::{Light, lit};
 override WIREFRAME: bool = false;
 
 struct View {
-    // World to clip space, depth 0..1.
+    // The matrix from world to clip space, depth 0..1.
     clip_from_world: mat4x4<f32>,
     light: Light,
     zone_count: u32,
@@ -15,21 +15,21 @@ struct View {
 }
 
 struct FieldParams {
-    // Samples along an edge of a window, and of the patch inside it.
+    // Samples along an edge of a window, and along an edge of the patch inside it.
     in_width: u32,
     size: u32,
     // World units between samples, and twice that in 1/65536 units.
     spacing: f32,
     run: f32,
-    // Texture tiles a sample.
+    // Texture tiles per sample.
     tiling: f32,
 }
 
-// Where a patch lies.
+// Where a patch lies in the world that is drawn.
 struct Place {
-    // Its first sample, in samples from the origin of the world that is drawn.
+    // Its first sample, in samples from the origin of that world.
     origin: vec2<i32>,
-    // Texture coordinates there, without whole tiles.
+    // Texture coordinates at that sample, without whole tiles.
     uv: vec2<f32>,
 }
 
@@ -42,7 +42,7 @@ struct Place {
 @group(1) @binding(2) var<storage, read> places: array<Place>;
 
 struct Vertex {
-    // The same samples give the same bits, so patches that share an edge leave no crack.
+    // Equal samples give equal bits, so that patches that share an edge leave no crack.
     @invariant @builtin(position) clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
@@ -78,7 +78,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) ins
 
 @fragment
 fn fragment(in: Vertex) -> @location(0) vec4<f32> {
-    // Derivatives belong in uniform control flow: here, not in the loop.
+    // Derivatives need uniform control flow, so they are taken here and not in the loop.
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
     let edge = in.corner / max(fwidth(in.corner), vec3<f32>(1e-6));

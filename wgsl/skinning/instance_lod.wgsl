@@ -1,9 +1,9 @@
-// How an instance is skinned.
+// How an instance is skinned: its influences and its level of detail.
 struct InstanceLod {
-    // 0 is full quality, 1 rigid.
+    // Fade of the influences: 0 is full quality, 1 is rigid.
     fade: f32,
-    // The most influences; 0 where it is not seen, and not skinned.
+    // The largest number of influences; 0 for an instance that is not seen and not skinned.
     most: u32,
-    // Of detail: 0 is the mesh itself; of one that it lacks, its last.
+    // Level of detail: 0 is the mesh itself. A number beyond the last level means the last level.
     level: u32,
 }

@@ -1,16 +1,17 @@
-// Affine matrices as palettes and placements keep them: three rows.
+// Affine matrices as palettes and placements store them: three rows.
 
-// What is left of a 4 × 4 matrix without its last row.
+// The first three rows of a 4 × 4 affine matrix.
 struct Rows {
     x: vec4<f32>,
     y: vec4<f32>,
     z: vec4<f32>,
 }
 
-// The matrix of a bone, or of a weighted sum of bones, of a palette of dual quaternions: rotation and dual part, both of
-// any length but 0, then the stretch before them, its diagonal (x, y, z) and what is above that (xy, xz, yz).
+// The matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions: rotation and dual
+// part, both of any length but 0, then the stretch that is applied before them, as its diagonal (x, y, z) and
+// the elements above it (xy, xz, yz).
 fn rows_of_dual(real: vec4<f32>, dual: vec4<f32>, diagonal: vec4<f32>, above: vec4<f32>) -> Rows {
-    // Times 2 over the squared length, in place of normalizing.
+    // A factor of 2 over the squared length replaces normalization.
     let twice = 2.0 * (1.0 / dot(real, real));
     let t = twice * (real.w * dual.xyz - dual.w * real.xyz + cross(real.xyz, dual.xyz));
     let q = real;
@@ -27,14 +28,14 @@ fn rows_of_dual(real: vec4<f32>, dual: vec4<f32>, diagonal: vec4<f32>, above: ve
         vec4<f32>(z.x * u.x, z.x * above.x + z.y * u.y, z.x * above.y + z.y * above.z + z.z * u.z, t.z));
 }
 
-// Where a matrix takes a position.
+// The position after a matrix is applied.
 fn placed_position(rows: Rows, position: vec3<f32>) -> vec3<f32> {
     let point = vec4<f32>(position, 1.0);
     return vec3<f32>(dot(rows.x, point), dot(rows.y, point), dot(rows.z, point));
 }
 
-// Where a matrix takes a normal, not of length 1: by the cofactors, which is right for uneven scales too. Inwards where the
-// matrix mirrors.
+// The normal after a matrix is applied, not normalized. It uses cofactors, which is right for uneven scales
+// too, and points inwards if the matrix mirrors.
 fn placed_normal(rows: Rows, normal: vec3<f32>) -> vec3<f32> {
     let x = rows.x.xyz;
     let y = rows.y.xyz;

@@ -1,11 +1,11 @@
-// Vertices as kernels keep them, skinned or not: five pairs of floats, one after the other.
+// Vertices as kernels store them, skinned or not: five pairs of floats, one after the other.
 
-// Metres, in the model's space.
+// Position in metres, in the model's space.
 fn vertex_position(first: vec2<f32>, second: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(first, second.x);
 }
 
-// Of length 1.
+// Unit normal.
 fn vertex_normal(second: vec2<f32>, third: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(second.y, third);
 }

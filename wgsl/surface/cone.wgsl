@@ -1,11 +1,13 @@
-// Cone stepping over `cone_map`: each cell knows its highest corner, and a cone on it that a ray may cross with at
-// most one crossing of the surface, the first. So no step loses the surface, and binary steps find it between
-// the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear filtering).
+// Cone stepping over `cone_map`: each cell stores its highest corner, and a cone on that corner in which a ray
+// crosses the surface at most once. No step can therefore pass the first crossing unnoticed, and a binary
+// search finds it between the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under
+// bilinear filtering).
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::linear::surface_narrowed;
 
-// `cones` is the cone map of `heights`: surface/cone_map makes it. Of `march`, address and binary steps count.
+// `cones` is the cone map of `heights`, which surface/cone_map computes. Of `march`, the address and the binary
+// steps are used.
 fn surface_cone(
     heights: texture_2d<f32>, cones: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {
@@ -17,13 +19,13 @@ fn surface_cone(
     let bound = surface_bound(grid, 0u);
     var cell = vec2<i32>(0);
     var parameter = 0.0;
-    // Where the ray was last known to be above the surface.
+    // The last parameter at which the ray is known to be above the surface.
     var above = 0.0;
     var samples = 0u;
     var step = 0u;
     while step < bound {
-        // Steps through the air, in a loop of their own: rays of a workgroup wait for each other's steps, not for
-        // each other's patches.
+        // Steps above the surface have a loop of their own, so that the rays of a workgroup wait for each
+        // other's steps only, and not for each other's patches.
         var node: SurfaceNode;
         var exits: vec2<f32>;
         var leave: f32;
@@ -33,7 +35,7 @@ fn surface_cone(
             node = surface_node(grid, cell, 0u);
             exits = surface_exits(grid, node);
             leave = clamp(min(exits.x, exits.y), parameter, 1.0);
-            // The cell's highest corner, and the cone's radius at height 1 above it, in cells.
+            // The cell's highest corner, and the radius of the cone in cells at height 1 above it.
             let cone = textureLoad(cones, node.index, 0).rg;
             samples += 1u;
             if 1.0 - leave <= cone.r {
@@ -60,7 +62,7 @@ fn surface_cone(
             return surface_point(ray, found, samples, SURFACE_HIT);
         }
         if found >= 0.0 {
-            // Cones belong to level 0 of the heights.
+            // Cones belong to mip level 0 of the heights.
             var level = march;
             level.mip = 0u;
             return surface_narrowed(heights, ray, level, above, parameter, samples);
@@ -73,7 +75,7 @@ fn surface_cone(
         cell = surface_beyond(grid, node, exits, leave);
         parameter = leave;
     }
-    // The bottom of the volume is under every surface.
+    // The bottom of the volume is on or below every surface.
     let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
     return surface_point(ray, parameter, samples, outcome);
 }

@@ -2,7 +2,7 @@
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
-// Plain texturing: the polygon itself.
+// Plain texturing: the point of the polygon itself.
 fn surface_plain(ray: SurfaceRay) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -10,25 +10,26 @@ fn surface_plain(ray: SurfaceRay) -> SurfaceHit {
     return surface_point(ray, ray.polygon, 0u, SURFACE_HIT);
 }
 
-// The height under the polygon decides how far along the ray the surface is taken to be; `limit` shortens it.
+// The height at the polygon's point decides how far along the ray the surface is assumed to be; `limit`
+// shortens that distance.
 fn surface_shifted(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, limit: f32) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
     }
     let height = surface_height(heights, surface_at(ray, ray.polygon), march.mip, march.address);
-    // (h·s + b)·V.xy/V.z with b = −p·s, as a move along the ray.
+    // (h·s + b)·V.xy/V.z with b = −p·s, expressed as a change of the ray's parameter.
     let parameter = ray.polygon - (height - (1.0 - ray.polygon)) * limit;
     var hit = surface_point(ray, parameter, SURFACE_BILINEAR, SURFACE_HIT);
     hit.height = height;
     return hit;
 }
 
-// Kaneko's parallax.
+// Kaneko's parallax mapping.
 fn surface_parallax(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     return surface_shifted(heights, ray, march, 1.0);
 }
 
-// Welsh's offset limiting: without the division by V.z.
+// Parallax mapping with Welsh's offset limiting, which omits the division by V.z.
 fn surface_parallax_limited(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     return surface_shifted(heights, ray, march, ray.cosine);
 }

@@ -1,12 +1,13 @@
-// The grid of bilinear cells under a ray. A cell lies between four texel centres. With wrap addressing a tile has
-// as many cells as texels; with clamp addressing one more an axis, and those at the rim reach to infinity, where
-// heights stay as they are: so the cells cover the whole plane, and a ray never leaves the grid.
+// The grid of bilinear cells under a ray. A cell lies between four texel centres. With wrap addressing a tile
+// has as many cells as texels. With clamp addressing it has one more per axis, and the outermost cells extend
+// to infinity with constant heights. In both modes the cells cover the whole plane, so a ray never leaves the
+// grid.
 import package::wgsl::surface::ray::{SURFACE_WRAP, SurfaceRay};
 
-// Farther than any ray travels, in cells.
+// A distance in cells that no ray travels.
 const SURFACE_FAR: i32 = 1073741824;
 
-// An axis along which a ray travels less than this many cells is one that it never leaves a cell by.
+// A ray that travels less than this many cells along an axis never leaves a cell along that axis.
 const SURFACE_LEAST_TRAVEL: f32 = 1e-6;
 
 // A parameter that no ray reaches.
@@ -14,22 +15,24 @@ const SURFACE_NEVER: f32 = 2.0;
 
 // The cells that a ray crosses.
 struct SurfaceGrid {
-    // Texels, and cells, of a tile.
+    // Texels and cells of a tile.
     size: vec2<i32>,
     cells: vec2<i32>,
-    // The cell that the ray enters in, within its tile where that wraps, and where in it. Other cells count from it,
-    // which keeps f32 exact.
+    // The cell in which the ray enters, reduced to the tile if it wraps, and the ray's position in that cell.
+    // Other cells are counted from it, which keeps f32 exact.
     base: vec2<i32>,
     start: vec2<f32>,
-    // One over the texels of a tile.
+    // The reciprocals of the tile's edges in texels.
     tiles: vec2<f32>,
-    // Cells that the ray travels in all, and one over that, or 0 where it hardly travels.
+    // The number of cells that the ray travels in all, and its reciprocal, or 0 along an axis where the ray
+    // hardly travels.
     travel: vec2<f32>,
     inverse: vec2<f32>,
     address: u32,
 }
 
-// A square of cells: its index at its level, and its edges as cells from the base; the high ones are outside.
+// A square of cells: its index at its level, and its edges in cells from the base; the upper edges are
+// exclusive.
 struct SurfaceNode {
     index: vec2<i32>,
     low: vec2<i32>,
@@ -55,20 +58,20 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
     return SurfaceGrid(texels, cells, first, texel - base, 1.0 / scale, travel, inverse, address);
 }
 
-// Steps that suffice for any ray: every node that it can touch, once.
+// A number of steps that is enough for any ray: every node that it can touch, once.
 fn surface_bound(grid: SurfaceGrid, levels: u32) -> u32 {
     let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), 16384.0);
     return 2u * (u32(crossed) + 3u) + levels;
 }
 
-// The node of 2^level × 2^level cells that holds a cell. Nodes end at the tile's edge.
+// The node of 2^level × 2^level cells that contains a cell. Nodes end at the tile's edge.
 fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
     let shift = vec2<u32>(level);
     let absolute = grid.base + cell;
     var inside: vec2<i32>;
     var tile: vec2<i32>;
     if grid.address == SURFACE_WRAP {
-        // Rays cross some hundred tiles at most, so that the quotient of a cell's middle is exact enough to floor.
+        // Rays cross some hundred tiles at most, so the quotient for a cell's centre is exact enough for floor.
         let whole = vec2<i32>(floor((vec2<f32>(absolute) + 0.5) * grid.tiles)) * grid.size;
         inside = absolute - whole;
         tile = whole - grid.base;
@@ -88,20 +91,20 @@ fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
     return SurfaceNode(index, low, high);
 }
 
-// The parameters at which the ray leaves a node through its x and its y edge.
+// The parameters at which the ray would leave a node through its x edge and through its y edge.
 fn surface_exits(grid: SurfaceGrid, node: SurfaceNode) -> vec2<f32> {
     let edge = select(node.low, node.high, grid.travel >= vec2<f32>(0.0));
     let exits = (vec2<f32>(edge) - grid.start) * grid.inverse;
     return select(exits, vec2<f32>(SURFACE_NEVER), grid.inverse == vec2<f32>(0.0));
 }
 
-// The cell of a node that holds the ray's point at a parameter.
+// The cell of a node in which the ray is at a parameter.
 fn surface_cell(grid: SurfaceGrid, node: SurfaceNode, parameter: f32) -> vec2<i32> {
     let at = vec2<i32>(floor(grid.start + parameter * grid.travel));
     return clamp(at, node.low, node.high - 1);
 }
 
-// The cell behind the edge through which the ray leaves a node.
+// The cell beyond the edge through which the ray leaves a node.
 fn surface_beyond(grid: SurfaceGrid, node: SurfaceNode, exits: vec2<f32>, parameter: f32) -> vec2<i32> {
     var next = surface_cell(grid, node, parameter);
     if exits.x <= exits.y {
@@ -129,8 +132,8 @@ fn surface_corners(heights: texture_2d<f32>, grid: SurfaceGrid, index: vec2<i32>
         textureLoad(heights, high, 0).r);
 }
 
-// The first parameter in enter..=leave at which the ray is at or under the bilinear patch of a cell, or -1. `low` is
-// the cell's corner. Along the ray, the height above a patch is a quadratic.
+// The first parameter in enter..=leave at which the ray is on or below the bilinear patch of a cell, or -1.
+// `low` is the cell's corner. Along the ray, the height above a patch is a quadratic function.
 fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f32, leave: f32) -> f32 {
     let at = (grid.start - vec2<f32>(low)) + enter * grid.travel;
     let slope = vec2<f32>(corners.y - corners.x, corners.z - corners.x);
@@ -138,7 +141,7 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     let length = leave - enter;
     let ahead = grid.travel * length;
     let height = corners.x + slope.x * at.x + (slope.y + twist * at.x) * at.y;
-    // a·x² + b·x + c over x in 0..=1; half of b.
+    // The quadratic is a·x² + 2·b·x + c over x in 0..=1; `b` is half of the linear coefficient.
     let c = 1.0 - enter - height;
     if c <= 0.0 {
         return enter;
@@ -147,9 +150,9 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     let a = -twist * ahead.x * ahead.y;
     let discriminant = b * b - a * c;
     let root = sqrt(max(discriminant, 0.0));
-    // The smaller positive root, without a difference of nearly equal numbers; within 0..=1 only where what it is
-    // divided by is as large as what is divided. A ray that moves away (b > 0) comes back only on a surface that
-    // rises after it (a < 0).
+    // The smaller positive root, in a form without a difference of nearly equal numbers. It is in 0..=1 only if
+    // the denominator is at least as large as the numerator. A ray that moves away from the surface (b > 0)
+    // meets it again only if the surface rises towards it (a < 0).
     let over = select(c, b + root, b > 0.0);
     let under = select(root - b, -a, b > 0.0);
     if discriminant >= 0.0 && under >= over {
@@ -158,7 +161,8 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     return select(-1.0, leave, a + 2.0 * b + c <= 0.0);
 }
 
-// The corner of a leaf that its patch counts from. At infinity heights are constant along the axis, and any will do.
+// The corner from which a leaf's patch is counted. Along an axis on which the leaf extends to infinity heights
+// are constant, and any corner will do.
 fn surface_corner(leaf: SurfaceNode) -> vec2<i32> {
     return select(leaf.low, leaf.high - 1, leaf.low == vec2<i32>(-SURFACE_FAR));
 }

@@ -1,8 +1,8 @@
-// Heights from texel loads with bilinear weights: no derivatives, no filtering that depends on the driver, so a
-// march may call it in any control flow. The red channel is the height.
+// Heights from texel loads with bilinear weights. They use neither derivatives nor filtering that depends on
+// the driver, so that a march may call them in any control flow. The red channel is the height.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 
-// Texel loads of one bilinear height.
+// Number of texel loads of one bilinear height.
 const SURFACE_BILINEAR: u32 = 4u;
 
 // The height at uv, 0 to 1, at a mip level; `address` is SURFACE_WRAP or SURFACE_CLAMP.

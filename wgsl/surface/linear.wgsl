@@ -1,14 +1,15 @@
-// Linear search: relief mapping with binary steps behind it (B section 3.1.2, table 4.4), and parallax occlusion
-// mapping with a segment behind it (B section 2.3.1). Both overshoot what is thinner than a step.
+// Linear search: relief mapping, which refines the result by a binary search (B section 3.1.2, table 4.4), and
+// parallax occlusion mapping, which refines it by a segment (B section 2.3.1). Both may step over features that
+// are thinner than a step.
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
-// Bounds of what a march may ask for.
+// Limits of the numbers of steps in a march.
 const SURFACE_MAX_STEPS: u32 = 1024u;
 const SURFACE_MAX_BINARY: u32 = 24u;
 
-// Where a linear search stopped: the last point above the surface, the first at or under it, and the heights of
-// the surface at both.
+// The two points between which a linear search stopped: the last one above the surface, and the first one on or
+// below it, with the heights of the surface at both.
 struct SurfaceBracket {
     above: f32,
     under: f32,
@@ -17,20 +18,20 @@ struct SurfaceBracket {
     samples: u32,
 }
 
-// Linear steps at a cosine: ⌈mix(min, max, 1 − V.z)⌉, 1 to SURFACE_MOST_STEPS.
+// The number of linear steps at a cosine: ⌈mix(min, max, 1 − V.z)⌉, 1 to SURFACE_MOST_STEPS.
 fn surface_steps(march: SurfaceMarch, cosine: f32) -> u32 {
     let low = f32(march.min_steps);
     let steps = ceil(low + (f32(march.max_steps) - low) * (1.0 - min(cosine, 1.0)));
     return clamp(u32(steps), 1u, SURFACE_MAX_STEPS);
 }
 
-// Steps of equal length from the top until a point is at or under the surface.
+// Takes steps of equal length from the top until a point is on or below the surface.
 fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceBracket {
     let steps = surface_steps(march, ray.cosine);
     let width = 1.0 / f32(steps);
     var bracket = SurfaceBracket(0.0, 1.0, 0.0, 0.0, 0u);
     for (var step = 1u; step <= SURFACE_MAX_STEPS; step++) {
-        // The bottom is at or under every surface, so the last step always stops.
+        // The bottom is on or below every surface, so the last step always stops.
         let parameter = select(f32(step) * width, 1.0, step >= steps);
         let height = surface_height(heights, surface_at(ray, parameter), march.mip, march.address);
         bracket.samples += SURFACE_BILINEAR;
@@ -45,7 +46,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return bracket;
 }
 
-// Relief mapping: linear steps, then binary ones.
+// Relief mapping: linear search, then binary search.
 fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -54,7 +55,7 @@ fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return surface_narrowed(heights, ray, march, bracket.above, bracket.under, bracket.samples);
 }
 
-// Binary steps between a point above the surface and one at or under it.
+// Binary search between a point above the surface and one on or below it.
 fn surface_narrowed(
     heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, above: f32, under: f32, samples: u32,
 ) -> SurfaceHit {
@@ -74,7 +75,8 @@ fn surface_narrowed(
     return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
 }
 
-// Parallax occlusion mapping: linear steps, then the crossing of the segment between the last two heights.
+// Parallax occlusion mapping: linear search, then the intersection with the segment between the last two
+// heights.
 fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -86,7 +88,7 @@ fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMa
     }
     let over = max(1.0 - bracket.above - bracket.height_above, 0.0);
     let below = max(bracket.height_under - (1.0 - bracket.under), 0.0);
-    // The share of the segment that lies above; with nothing on either side, its end.
+    // The fraction of the segment that lies above the surface; if both distances vanish, its end.
     let fraction = select(1.0, over / max(over + below, 1e-12), over + below > 1e-12);
     let parameter = bracket.above + fraction * (bracket.under - bracket.above);
     return surface_point(ray, parameter, bracket.samples, SURFACE_HIT);

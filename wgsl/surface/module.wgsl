@@ -1,5 +1,6 @@
-// Surface mapping: every ray-height method behind `surface_trace`, normals, self-shadow, depth, silhouettes. `build.rs`
-// joins this file and what it imports, for shaders that are not composed with WESL: put it before your own code.
+// Surface mapping: every ray-height method through `surface_trace`, and normals, self-shadow, depth and
+// silhouettes. `build.rs` joins this file and what it imports into one text, for shaders that are not composed
+// with WESL: put that text before your own code.
 import package::wgsl::surface::ray::{surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;

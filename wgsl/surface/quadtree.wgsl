@@ -1,10 +1,11 @@
-// Max-mip traversal (B section 2.3.4; Tevs, Ihrke and Seidel 2008): nodes that the ray passes above are skipped
-// whole, and in a leaf it meets the bilinear patch exactly.
+// Max-mip traversal (B section 2.3.4; Tevs, Ihrke and Seidel 2008): nodes above which the ray passes are
+// skipped as a whole, and in a leaf the ray is intersected exactly with the bilinear patch.
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
 
-// `pyramid` is the max-mip pyramid of `heights`: surface/height_pyramid makes it. Of `march`, the address counts.
+// `pyramid` is the max-mip pyramid of `heights`, which surface/height_pyramid computes. Of `march`, the address
+// is used.
 fn surface_quadtree(
     heights: texture_2d<f32>, pyramid: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {
@@ -14,7 +15,7 @@ fn surface_quadtree(
     let grid = surface_grid(textureDimensions(heights), ray, march.address);
     let top = surface_levels(vec2<u32>(grid.cells)) - 1u;
     let bound = surface_bound(grid, top);
-    // Nodes of half the ray's length: larger ones are rarely skipped whole.
+    // The traversal starts with nodes of half the ray's length, since larger ones can rarely be skipped.
     let longest = u32(max(abs(grid.travel.x), abs(grid.travel.y)));
     var level = min(firstLeadingBit(max(longest / 2u, 1u)), top);
     var cell = vec2<i32>(0);
@@ -22,7 +23,8 @@ fn surface_quadtree(
     var samples = 0u;
     var step = 0u;
     while step < bound {
-        // Nodes in a loop of their own: rays of a workgroup wait for each other's nodes, not for each other's patches.
+        // Nodes have a loop of their own, so that the rays of a workgroup wait for each other's nodes only, and
+        // not for each other's patches.
         var node: SurfaceNode;
         var exits: vec2<f32>;
         var leave: f32;
@@ -66,12 +68,12 @@ fn surface_quadtree(
         parameter = leave;
         level = min(select(0u, 1u, surface_leaves_parent(grid, node, exits, 0u)), top);
     }
-    // The bottom of the volume is under every surface.
+    // The bottom of the volume is on or below every surface.
     let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
     return surface_point(ray, parameter, samples, outcome);
 }
 
-// Whether the ray leaves a node's parent together with the node.
+// Whether the ray leaves a node and the node's parent through the same edge.
 fn surface_leaves_parent(grid: SurfaceGrid, node: SurfaceNode, exits: vec2<f32>, level: u32) -> bool {
     let along_x = exits.x <= exits.y;
     let index = select(node.index.y, node.index.x, along_x);

@@ -1,27 +1,29 @@
-// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). Hard: the light's own ray is
-// traced from the top of the volume with any method, and the point is lit if that ray ends there. Soft: how far
-// the surface rises above the way to the light, the nearer the wider the penumbra.
+// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). Hard shadow traces the light's
+// own ray from the top of the volume with any method; the point is lit if the ray ends there. Soft shadow
+// samples how far the surface rises above the way to the light; the further the occluder, the wider the
+// penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;
 import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
 
-// What heights may differ by before a point shades itself, of the relief's depth.
+// The height difference below which a point does not shade itself, as a fraction of the relief's depth.
 const SURFACE_SHADOW_BIAS: f32 = 0.005;
 
-// The light's ray that ends in a point of the surface: it falls from the top of the volume to the hit. `light` is
-// the unit vector towards the light in tangent space.
+// The ray from the light to a point of the surface: it falls from the top of the volume to the hit. `light` is
+// the unit vector towards the light, in tangent space.
 fn surface_light_ray(hit: SurfaceHit, light: vec3<f32>, scale: f32) -> SurfaceRay {
     let slope = light.xy * (-scale / max(light.z, SURFACE_LEAST_COSINE));
     return SurfaceRay(hit.uv - (1.0 - hit.height) * slope, slope, light.z, 0.0);
 }
 
-// Whether the light's ray ended above the point that it was sent to.
+// Whether the light's ray ended above the point at which it was aimed.
 fn surface_shaded(first: SurfaceHit, hit: SurfaceHit) -> bool {
     return first.parameter < 1.0 - hit.height - SURFACE_SHADOW_BIAS;
 }
 
-// 0 in full shadow to 1 in full light, from `steps` heights on the way to the light; `softness` is the penumbra's
-// width: the surface's excess above the way, over its distance, at which shadow is full.
+// The light that reaches a point, 0 in full shadow to 1 in full light, from `steps` heights on the way to the
+// light. `softness` is the width of the penumbra: the ratio of the surface's height above the way to its
+// distance at which shadow is full.
 fn surface_soft_shadow(
     heights: texture_2d<f32>, hit: SurfaceHit, light: vec3<f32>, scale: f32, march: SurfaceMarch,
     steps: u32, softness: f32,
@@ -29,7 +31,7 @@ fn surface_soft_shadow(
     if !(light.z > 0.0) {
         return 0.0;
     }
-    // From the surface, where the method ended a little under it.
+    // Starts at the surface, because the method may have ended slightly below it.
     let own = surface_height(heights, hit.uv, march.mip, march.address);
     var start = hit;
     start.height = max(hit.height, own);
@@ -38,7 +40,7 @@ fn surface_soft_shadow(
     let count = clamp(steps, 1u, SURFACE_MAX_STEPS);
     var shade = 0.0;
     for (var step = 1u; step <= count; step++) {
-        // Denser near the point, where what rises casts the sharpest shadow.
+        // Samples are denser close to the point, where an occluder casts the sharpest shadow.
         let fraction = f32(step) / f32(count + 1u);
         let travelled = fraction * fraction;
         let parameter = rise * (1.0 - travelled);

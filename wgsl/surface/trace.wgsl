@@ -1,11 +1,12 @@
-// Every method behind one function, chosen by number: an override constant or a uniform, not a copy of the shader.
+// Every method through one function, selected by an override constant or a uniform, so that a shader needs no
+// copies.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::flat::{surface_parallax, surface_parallax_limited, surface_plain};
 import package::wgsl::surface::linear::{surface_occlusion, surface_relief};
 import package::wgsl::surface::cone::surface_cone;
 import package::wgsl::surface::quadtree::surface_quadtree;
 
-// The methods.
+// The values of the methods.
 const SURFACE_PLAIN: u32 = 0u;
 const SURFACE_PARALLAX: u32 = 1u;
 const SURFACE_PARALLAX_LIMITED: u32 = 2u;
@@ -14,7 +15,8 @@ const SURFACE_OCCLUSION: u32 = 4u;
 const SURFACE_CONE: u32 = 5u;
 const SURFACE_QUADTREE: u32 = 6u;
 
-// `acceleration` is the cone map for SURFACE_CONE, the pyramid for SURFACE_QUADTREE, anything for the others.
+// `acceleration` is the cone map for SURFACE_CONE, the pyramid for SURFACE_QUADTREE, and any texture for the
+// others.
 fn surface_trace(
     method: u32, heights: texture_2d<f32>, acceleration: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {

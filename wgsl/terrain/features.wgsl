@@ -1,6 +1,6 @@
-// Injected heights of one window (B section 3.3.1, feature injection): a bit a point, in rows of 32-point
-// words that cover one point more than the window on every side, and beside each word the index of its
-// first value. A lookup is one load where there is nothing and a population count where there is.
+// Injected heights of a window (B section 3.3.1, feature injection). A grid has one bit per point, in rows of
+// 32-bit words that cover one point more than the window on every side, and with each word the index of its
+// first value. A lookup takes one load where there is no feature, and a population count where there is one.
 
 const FEATURES_NONE = 0u;
 const FEATURES_KEEP = 1u;
@@ -13,7 +13,7 @@ struct FeatureGrid {
     width: u32,
     words_per_row: u32,
     words_per_window: u32,
-    // Where the grid's first window starts.
+    // Index of the word at which the grid's first window starts.
     start: u32,
 }
 
@@ -25,14 +25,14 @@ struct FeatureWord {
 @group(1) @binding(0) var<storage, read> feature_words: array<FeatureWord>;
 @group(1) @binding(1) var<storage, read> feature_heights: array<i32>;
 
-// The word that holds the point; for points beyond the grid, one at its rim.
+// The word that holds the point. A point beyond the grid gets a word of the grid's rim.
 fn feature_word(grid: FeatureGrid, window: u32, at: vec2<i32>) -> FeatureWord {
     let place = vec2<u32>(clamp(at + vec2<i32>(1), vec2<i32>(0), vec2<i32>(i32(grid.width) + 1)));
     return feature_words[
         grid.start + window * grid.words_per_window + place.y * grid.words_per_row + place.x / 32u];
 }
 
-// The point's bit in its word; none beyond the grid.
+// The bit of the point in its word; 0 beyond the grid.
 fn feature_bit(grid: FeatureGrid, at: vec2<i32>) -> u32 {
     let place = vec2<u32>(at + vec2<i32>(1));
     return select(0u, 1u << (place.x % 32u), all(place < vec2<u32>(grid.width + 2u)));
@@ -42,7 +42,8 @@ fn has_feature(grid: FeatureGrid, window: u32, at: vec2<i32>) -> bool {
     return (feature_word(grid, window, at).mask & feature_bit(grid, at)) != 0u;
 }
 
-// A bit for each of the 32 points of a row from `at` on: none where there is no feature, and beyond the grid any.
+// A bit for each of 32 points of a row, starting at `at`: 0 where there is no feature. Bits of points beyond
+// the grid are unspecified.
 fn feature_bits(grid: FeatureGrid, window: u32, at: vec2<i32>) -> u32 {
     let first = feature_word(grid, window, at).mask;
     let last = feature_word(grid, window, at + vec2<i32>(31, 0)).mask;
@@ -50,7 +51,7 @@ fn feature_bits(grid: FeatureGrid, window: u32, at: vec2<i32>) -> u32 {
     return (first >> shift) | ((last << 1u) << (31u - shift));
 }
 
-// The height to inject at a point, if there is one.
+// The height to inject at a point, if it has a feature.
 struct Feature {
     there: bool,
     height: i32,
@@ -65,12 +66,12 @@ fn feature_at(grid: FeatureGrid, window: u32, at: vec2<i32>) -> Feature {
     return Feature(true, feature_heights[word.first_value + countOneBits(word.mask & (bit - 1u))]);
 }
 
-// The height of a point after injection, given the computed one.
+// The height of a point after injection, given the computed height.
 fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
     return injected_lanes(feature_at(grid, window, at), vec4<bool>(true), vec4<i32>(height)).x;
 }
 
-// The same for those of `lanes`.
+// As `injected`, for the lanes that `lanes` selects.
 fn injected_lanes(feature: Feature, lanes: vec4<bool>, heights: vec4<i32>) -> vec4<i32> {
     let value = select(heights, vec4<i32>(0), FEATURES == FEATURES_KEEP) + vec4<i32>(feature.height);
     return select(heights, value, lanes & vec4<bool>(feature.there));

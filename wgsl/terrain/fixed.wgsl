@@ -1,16 +1,16 @@
 // Exact integer arithmetic of terrain heights (i32, Q15.16). No operation here can overflow for heights
 // within the bound that the host checks (2^30 - 1), so every device gives the same bits.
 
-// No absolute height exceeds it, in 1/65536 units.
+// The largest absolute height, in 1/65536 units.
 const HEIGHT_LIMIT = 0x3fffffff;
 
-// The mean of four heights, rounded half up; four such means at once.
+// The mean of four heights, rounded half up, for four lanes at once.
 fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
     return mean_of_sums(a + b, c + d);
 }
 
-// The same from the sums of two pairs. With sums 2p + x and 2q + y it is floor((p + q + 1 + x & y) / 2), and
-// for heights of at most 2^30 - 1 nothing in that overflows.
+// The same mean from the sums of two pairs. If the sums are 2p + x and 2q + y, it is floor((p + q + 1 + x & y)
+// / 2); no step overflows for heights of at most 2^30 - 1.
 fn mean_of_sums(first: vec4<i32>, second: vec4<i32>) -> vec4<i32> {
     let one = vec4<u32>(1u);
     let carry = (first & second & vec4<i32>(1)) + vec4<i32>(1);

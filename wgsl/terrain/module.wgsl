@@ -1,6 +1,6 @@
-// Terrain: zone weights for materials (`zone_fold`, `zone_folded`, `zone_fraction`), normals, light, and the exact integers
-// that heights are made of. `build.rs` joins this file and what it imports, for shaders that are not composed with
-// WESL: put it before your own code.
+// Terrain: zone weights for materials (`zone_fold`, `zone_folded`, `zone_fraction`), normals, light, and the exact
+// integer arithmetic of heights. `build.rs` joins this file and what it imports into one text, for shaders that
+// are not composed with WESL: put that text before your own code.
 import package::wgsl::terrain::zones::{Zone, ZoneFold, zone_fold, zone_folded, zone_fraction, zone_weight};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::light::{Light, lit};

@@ -1,4 +1,4 @@
-// The random offset of a height (i32, Q15.16) from the words drawn for its world coordinates.
+// The random offset of a height (i32, Q15.16), made from the words drawn at its world coordinates.
 import package::wgsl::hash::Words;
 import package::wgsl::terrain::fixed::multiply_high;
 
@@ -9,8 +9,8 @@ const OFFSET_POSITIVE = 1u;
 // Nearly Gaussian in ±range.
 const OFFSET_GAUSSIAN = 2u;
 
-// Four offsets in 1/65536 units. `distribution` is one of the above; `range` is in the same units and at most 2^30, so
-// that its double fits.
+// Four offsets in 1/65536 units. `distribution` is one of the constants above. `range` has the same units and
+// is at most 2^30, so that twice the range fits.
 fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
     if distribution == OFFSET_POSITIVE {
         return vec4<i32>(multiply_high(words.first, range));

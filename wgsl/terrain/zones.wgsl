@@ -6,32 +6,33 @@
 
 // A range of heights with a material of its own.
 struct Zone {
-    // Height units, max > min.
+    // Lower end of the range, in height units.
     min: f32,
     max: f32,
 }
 
-// What the shares need to know of all zones.
+// What the fractions of colour depend on, accumulated over all zones.
 struct ZoneFold {
     // The sum of all weights.
     total: f32,
-    // The zone whose range is nearest, and how far it is, in height units; below 0 inside.
+    // The zone whose range is nearest, and its distance in height units, which is negative inside the range.
     nearest: u32,
     distance: f32,
 }
 
-// B's weight, 0 to 1: 1 at max, 0 at max ± (max − min) and beyond. `height` in height units.
+// The zone's weight by B equation 3.6, 0 to 1: 1 at max, 0 at max ± (max − min) and beyond. `height` is in
+// height units.
 fn zone_weight(zone: Zone, height: f32) -> f32 {
     let range = zone.max - zone.min;
     return max(0.0, (range - abs(height - zone.max)) / range);
 }
 
-// No zone yet.
+// The state before the first zone.
 fn zone_fold() -> ZoneFold {
     return ZoneFold(0.0, 0u, 3.0e38);
 }
 
-// One zone more; `index` is its number.
+// Adds one zone; `index` is its number.
 fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold {
     let distance = abs(height - zone.max) - (zone.max - zone.min);
     let nearer = distance < fold.distance;
@@ -41,8 +42,8 @@ fn zone_folded(fold: ZoneFold, index: u32, zone: Zone, height: f32) -> ZoneFold 
         select(fold.distance, distance, nearer));
 }
 
-// The zone's part of the colour, 0 to 1. Normalized shares sum to 1, and where all weights are 0 the nearest zone
-// has 1; additive ones are the weights as they are.
+// The zone's fraction of the colour, 0 to 1. Normalized fractions sum to 1; where all weights are 0, the
+// nearest zone has fraction 1. Additive fractions are the weights as they are.
 fn zone_fraction(fold: ZoneFold, index: u32, zone: Zone, height: f32, additive: bool) -> f32 {
     let weight = zone_weight(zone, height);
     if additive {

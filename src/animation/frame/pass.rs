@@ -38,7 +38,7 @@ impl GatedFrame {
     /// # Errors
     /// [`InputError`](crate::InputError) for a crowd of another skeleton, and a table of other bones or clips, of another
     /// kind than the choice needs, or of motion along another path than the crowd's ([`Crowd::path`]), and for
-    /// [`Gate::Bounded`](super::Gate::Bounded) over model matrices that dual quaternions were prepared to blend;
+    /// [`Gate::Bounded`](crate::animation::gate::Gate::Bounded) over model matrices that dual quaternions were prepared to blend;
     /// [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,

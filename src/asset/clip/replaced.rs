@@ -1,10 +1,11 @@
-//! Clips with other keys in some tracks.
+//! Copies of clips in which some tracks have other keys.
 
 use super::{Clip, Interpolation, Keys, Layout, Part, Track};
 use crate::InputError;
 
 impl Clip {
-    /// The keys of a track as they are stored, tangents times the seconds of their stretch; none at rest, but a value.
+    /// The keys of a track as they are stored, with tangents multiplied by the seconds of their segment. A
+    /// track at rest gives no keys and one value.
     pub(crate) fn stored_keys(&self, track: &Track) -> Keys {
         let interpolation = track.interpolation();
         let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
@@ -12,8 +13,8 @@ impl Clip {
         Keys { times: self.times_of(track).to_vec(), values: values.to_vec(), interpolation }
     }
 
-    /// The clip with other keys of translation and rotation for one bone, where there are any; tangents times the
-    /// seconds of their stretch.
+    /// The clip with other keys for the translation and rotation of one bone, where they are given. Tangents
+    /// must be multiplied by the seconds of their segment.
     ///
     /// # Errors
     /// [`InputError`] for rotations without a direction.

@@ -1,5 +1,5 @@
-//! Accessors: numbers in buffers (glTF 2.0, section 3.6.2), sparse, interleaved or normalized; floats, or integers as
-//! joints and indices are.
+//! Accessors: arrays of numbers in buffers (glTF 2.0, section 3.6.2), which may be sparse, interleaved or
+//! normalized. Values are read as floats, or as integers for joints and indices.
 
 use gltf_json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
 use gltf_json::validation::Checked;
@@ -17,12 +17,12 @@ struct Shape {
     is_normalized: bool,
 }
 
-/// What an accessor's numbers may be.
+/// The component types that a use of an accessor permits.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// Floats, or integers that stand for fractions.
+    /// Floats, and normalized integers, which stand for fractions.
     Fraction,
-    /// Those, and small integers as they are: `KHR_mesh_quantization`.
+    /// Those, and 8- or 16-bit integers as they are (`KHR_mesh_quantization`).
     Quantized,
     /// Unsigned integers.
     Whole,
@@ -31,26 +31,26 @@ enum Kind {
 type Decode<T> = fn(Shape, &[u8]) -> T;
 
 impl Document<'_> {
-    /// An accessor as vectors of `N` floats. Normalized integers become fractions.
+    /// Reads an accessor as vectors of `N` floats. Normalized integers become fractions.
     ///
     /// # Errors
-    /// [`InputError`] with the path of what is wrong, for integers that are not normalized too.
+    /// [`InputError`] with the path of the fault in the file; integers that are not normalized are a fault too.
     pub fn vectors<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>, InputError> {
         self.read(index, Kind::Fraction, float)
     }
 
-    /// An attribute of vertices: as [`Document::vectors`], and integers of 8 or 16 bits for themselves.
+    /// Reads a vertex attribute: as [`Document::vectors`], and also integers of 8 or 16 bits, as their values.
     ///
     /// # Errors
-    /// [`InputError`] with the path of what is wrong.
+    /// [`InputError`] with the path of the fault in the file.
     pub fn attributes<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>, InputError> {
         self.read(index, Kind::Quantized, float)
     }
 
-    /// An accessor as vectors of `N` unsigned integers.
+    /// Reads an accessor as vectors of `N` unsigned integers.
     ///
     /// # Errors
-    /// [`InputError`] with the path of what is wrong, for floats and normalized integers too.
+    /// [`InputError`] with the path of the fault in the file; floats and normalized integers are a fault too.
     pub fn integers<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[u32; N]>, InputError> {
         self.read(index, Kind::Whole, |shape, bytes| whole(shape.component, bytes))
     }
@@ -79,18 +79,18 @@ impl Document<'_> {
         Ok(values.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
     }
 
-    /// Counts the elements before they are read.
+    /// Charges the elements to the budget before they are read.
     fn count(&self, path: &str, accessor: &Accessor, shape: Shape) -> Result<(), InputError> {
         match accessor.buffer_view {
-            // The bytes of its buffer count.
+            // The bytes of the view's buffer add to the budget.
             Some(view) => drop(self.view(view)?),
             None => self.budget.check_zeros(path, shape.count as u64)?,
         }
-        // Matrices are four vectors.
+        // A matrix counts as four vectors.
         self.budget.spend(path, shape.count.saturating_mul(shape.components.div_ceil(4)))
     }
 
-    /// Replaces the elements that a sparse accessor names.
+    /// Replaces the elements that a sparse accessor lists.
     fn replace<T: Copy>(
         &self,
         path: &str,
@@ -142,7 +142,7 @@ impl Document<'_> {
         Ok(bytes.chunks_exact(shape.component.size()).map(|bytes| decode(shape, bytes)).collect())
     }
 
-    /// The bytes of the elements, without what lies between them.
+    /// The bytes of the elements, without the bytes between them.
     fn packed(
         &self,
         path: &str,
@@ -214,7 +214,8 @@ fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Resu
     Ok(Shape { component, components, count, is_normalized: accessor.normalized })
 }
 
-/// A component that stands for a number or, in normalized integers, for a fraction (glTF 2.0, section 3.6.2.2).
+/// The value of a component: the number itself or, for normalized integers, a fraction (glTF 2.0, section
+/// 3.6.2.2).
 fn float(shape: Shape, bytes: &[u8]) -> f32 {
     let (value, one) = match (shape.component, bytes) {
         (ComponentType::I8, [byte, ..]) => (f32::from(*byte as i8), 127.0),
@@ -222,19 +223,19 @@ fn float(shape: Shape, bytes: &[u8]) -> f32 {
         (ComponentType::I16, [low, high, ..]) => (f32::from(i16::from_le_bytes([*low, *high])), 32_767.0),
         (ComponentType::U16, [low, high, ..]) => (f32::from(u16::from_le_bytes([*low, *high])), 65_535.0),
         (ComponentType::F32, [a, b, c, d, ..]) => return f32::from_le_bytes([*a, *b, *c, *d]),
-        // Never asked for: `shape` lets only the above pass.
+        // Not reached: `shape` accepts only the types above.
         _ => return f32::NAN,
     };
     if shape.is_normalized { (value / one).max(-1.0) } else { value }
 }
 
-/// An index.
+/// The value of an index component.
 fn whole(component: ComponentType, bytes: &[u8]) -> u32 {
     match (component, bytes) {
         (ComponentType::U8, [byte, ..]) => u32::from(*byte),
         (ComponentType::U16, [low, high, ..]) => u32::from(u16::from_le_bytes([*low, *high])),
         (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
-        // gltf-json knows no other type of indices; beyond every count.
+        // Not reached: gltf-json knows no other type of index. The value exceeds every count.
         _ => u32::MAX,
     }
 }

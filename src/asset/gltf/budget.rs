@@ -1,34 +1,36 @@
-//! How much a model may have for the bytes of its document: accessors without a buffer view are zeros that need none,
-//! and nodes, animations and textures may name the same bytes again and again. Whatever an import allocates has been
-//! counted here before, or lies in the document.
+//! A budget that limits what a document of a given size may allocate. Accessors without a buffer view are zeros
+//! that take no bytes, and nodes, animations and textures may refer to the same bytes many times. Everything
+//! that an import allocates is charged here first, unless it lies in the document.
 
 use std::cell::Cell;
 
 use crate::InputError;
 
-/// Elements that any document may have: vectors and numbers of accessors, each time they are read, and what is made of
-/// them.
+/// Elements that any document may have: vectors and numbers of accessors, counted each time they are read, and
+/// data derived from them.
 const ELEMENTS: u64 = 1 << 16;
 
-/// Elements a byte, for documents that repeat what they have, up to [`MAX_REPEATED`].
+/// Elements allowed per byte, for documents that refer to the same bytes repeatedly; the total is limited by
+/// [`MAX_REPEATED`].
 const REPEATED: u64 = 128;
 
-/// The most elements of a document that repeats what it has, about 300 MiB.
+/// The most elements of a document that refers to the same bytes repeatedly, about 300 MiB.
 const MAX_REPEATED: u64 = 1 << 24;
 
-/// Elements a byte, at least: more than any document has that repeats nothing.
+/// Elements allowed per byte in any case: more than a document has that refers to its bytes once.
 const ELEMENTS_A_BYTE: u64 = 4;
 
-/// Texels that all images of any document may have: 64 MiB of one of 4096².
+/// Texels that the images of any document may have: 64 MiB, one image of 4096².
 const TEXELS: u64 = 1 << 24;
 
-/// Texels a byte that all images together may have.
+/// Texels allowed per byte, for all images together.
 const TEXELS_A_BYTE: u64 = 256;
 
-/// Texels that a byte of PNG or JPEG holds at most: deflate makes 1032 bytes of one, of 8 texels each.
+/// The most texels that a byte of PNG or JPEG can hold: deflate expands a byte to at most 1032, of 8 texels
+/// each.
 const TEXELS_A_PACKED_BYTE: u64 = 8 * 1032;
 
-/// What there is, and what has been made of it.
+/// The bytes found so far, and what has been charged to them.
 #[derive(Default)]
 pub struct Budget {
     bytes: Cell<u64>,
@@ -37,15 +39,15 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// More bytes have been found.
+    /// Adds the bytes of a buffer that was read.
     pub fn add_bytes(&self, bytes: usize) {
         self.bytes.set(self.bytes.get().saturating_add(bytes as u64));
     }
 
-    /// Counts elements before they are made. `path` has the count.
+    /// Charges elements before they are allocated. `path` names the count in errors.
     ///
     /// # Errors
-    /// [`InputError`] where they are too many.
+    /// [`InputError`] if there are too many.
     pub fn spend(&self, path: &str, count: usize) -> Result<(), InputError> {
         let bytes = self.bytes.get();
         let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MAX_REPEATED);
@@ -59,10 +61,10 @@ impl Budget {
         Ok(())
     }
 
-    /// Refuses more zeros than there are bytes, but for a few.
+    /// Refuses more zeros than there are bytes, beyond a fixed allowance.
     ///
     /// # Errors
-    /// [`InputError`] with the largest count.
+    /// [`InputError`] with the largest count allowed.
     pub fn check_zeros(&self, path: &str, count: u64) -> Result<(), InputError> {
         let most = self.bytes.get().max(ELEMENTS);
         if count > most {
@@ -72,10 +74,10 @@ impl Budget {
         Ok(())
     }
 
-    /// Counts the texels of an image of so many bytes before it is decoded.
+    /// Charges the texels of an image before it is decoded; `packed` is its size in bytes.
     ///
     /// # Errors
-    /// [`InputError`] where the bytes cannot hold them, or all images have too many.
+    /// [`InputError`] if the bytes cannot hold so many texels, or if all images together have too many.
     pub fn spend_texels(&self, path: &str, size: [u32; 2], packed: usize) -> Result<(), InputError> {
         let texels = u64::from(size[0]) * u64::from(size[1]);
         let refused = |bound: String| {

@@ -1,4 +1,4 @@
-//! Animations: clips.
+//! Reads animations as clips.
 
 use gltf_json::Animation;
 use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
@@ -9,7 +9,7 @@ use super::nodes::Nodes;
 use crate::InputError;
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 
-/// Every animation of the document.
+/// Reads every animation of the document.
 pub fn clips(document: &Document<'_>, nodes: &Nodes) -> Result<Vec<Clip>, InputError> {
     let animations = document.root.animations.iter().enumerate();
     animations.map(|(index, animation)| clip(document, nodes, index, animation)).collect()
@@ -21,7 +21,7 @@ fn clip(
     index: usize,
     animation: &Animation,
 ) -> Result<Clip, InputError> {
-    // Three tracks a bone and a value each, with keys or without.
+    // Each bone has three tracks with at least one value, with or without keys.
     document.budget.spend(&format!("animations[{index}]"), 6 * nodes.skeleton.len())?;
     let mut bones = vec![BoneKeys::default(); nodes.skeleton.len()];
     let mut duration = 0.0_f32;

@@ -1,9 +1,9 @@
-//! GLB: a header and chunks around JSON and one buffer (glTF 2.0, chapter 4). The crate `gltf` has a reader, but a
-//! header that states a length below 12 makes it panic.
+//! Splits a GLB into its JSON and its binary chunk (glTF 2.0, chapter 4). The crate `gltf` has a reader too,
+//! but it panics on a header that states a length below 12.
 
 use crate::InputError;
 
-/// The JSON and, in GLBs, the binary chunk.
+/// The JSON of a document and, for a GLB, its binary chunk.
 pub struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,
@@ -13,7 +13,7 @@ const JSON: u32 = 0x4e4f_534a;
 const BINARY: u32 = 0x004e_4942;
 
 impl<'a> Container<'a> {
-    /// Takes a GLB apart; anything that does not begin like one is JSON.
+    /// Splits a GLB; anything that does not begin with its magic number is taken as JSON.
     pub fn new(bytes: &'a [u8]) -> Result<Self, InputError> {
         if !bytes.starts_with(b"glTF") {
             return Ok(Self { json: bytes, binary: None });
@@ -48,7 +48,7 @@ impl<'a> Container<'a> {
                     return Err(InputError::new("GLB.chunks[0].type", format!("{other:#010x}"), bound));
                 }
                 (1, BINARY) => found.binary = Some(data),
-                // glTF lets readers skip what they do not know.
+                // glTF allows readers to skip chunks of unknown type.
                 _ => {}
             }
             at += 8 + size;

@@ -1,4 +1,4 @@
-//! The document: JSON that has glTF's shape, and its buffers.
+//! A parsed and validated document: glTF's JSON, and its buffers.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
@@ -15,21 +15,21 @@ use super::budget::Budget;
 use super::container::Container;
 use crate::InputError;
 
-/// A document whose indices lie in their bounds.
+/// A document whose indices are all in range.
 pub struct Document<'a> {
     pub root: Root,
-    /// Whether meshes are compressed with Draco, and have no other form.
+    /// Whether some meshes are compressed with Draco and have no uncompressed form.
     pub is_draco: bool,
-    /// What its bytes allow.
+    /// What the document may allocate.
     pub budget: Budget,
     binary: Option<&'a [u8]>,
     folder: Option<&'a Path>,
     buffers: Vec<OnceCell<Bytes<'a>>>,
-    /// Each once, whoever names it.
+    /// External files, each read once.
     files: RefCell<HashMap<PathBuf, Rc<Vec<u8>>>>,
 }
 
-/// Of a buffer: in the document, or from elsewhere.
+/// The bytes of a buffer: part of the document, or read from elsewhere.
 enum Bytes<'a> {
     Here(&'a [u8]),
     Elsewhere(Rc<Vec<u8>>),
@@ -44,20 +44,20 @@ impl Bytes<'_> {
     }
 }
 
-/// The extensions that a document may require. Of what Draco compressed, meshes alone are left out.
+/// The extensions that a document may require. Only meshes are left out of a document with Draco compression.
 const READ: [&str; 3] = [DRACO, "KHR_mesh_quantization", "KHR_texture_transform"];
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// What a document may require besides, where neither materials nor images are read: other images.
+/// Extensions that a document may also require if materials and images are not read: other image formats.
 const OF_IMAGES: [&str; 4] =
     ["EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"];
 
-/// And other materials.
+/// The prefix of those for other materials.
 const OF_MATERIALS: &str = "KHR_materials_";
 
 impl<'a> Document<'a> {
-    /// Parses and validates. `is_bare`: materials and images do not matter.
+    /// Parses and validates a document. `is_bare` means that materials and images are not needed.
     pub fn new(bytes: &'a [u8], folder: Option<&'a Path>, is_bare: bool) -> Result<Self, InputError> {
         let Container { json, binary } = Container::new(bytes)?;
         let mut value: Value = serde_json::from_slice(json).map_err(|error| {
@@ -82,7 +82,7 @@ impl<'a> Document<'a> {
         Ok(Self { root, is_draco, budget, binary, folder, buffers, files: RefCell::default() })
     }
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view, and its stride.
     pub fn view(&self, index: Index<buffer::View>) -> Result<(&[u8], Option<usize>), InputError> {
         let path = format!("bufferViews[{}]", index.value());
         let view = self.root.buffer_views.get(index.value());
@@ -128,11 +128,11 @@ impl<'a> Document<'a> {
             let bound = format!("must be at most {there}, the bytes there are");
             return Err(InputError::new(format!("{path}.byteLength"), length, bound));
         }
-        // GLBs pad their chunk.
+        // The binary chunk of a GLB may have padding.
         Ok(&cell.get_or_init(|| bytes).get()[..length as usize])
     }
 
-    /// The bytes of a `data:` URI, or of a file in the document's folder or below.
+    /// The bytes of a `data:` URI, or of a file in the document's folder or below it.
     pub fn resource(&self, path: &str, uri: &str) -> Result<Rc<Vec<u8>>, InputError> {
         let shown: String = uri.chars().take(60).collect();
         let refused = |bound: String| InputError::new(path, &shown, bound);
@@ -148,7 +148,7 @@ impl<'a> Document<'a> {
         let name = name.map_err(|error| refused(format!("must be UTF-8: {error}")))?;
         let relative = Path::new(&*name);
         let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-        // A scheme or a drive; and nothing outside the document's folder.
+        // Refuses a scheme or a drive letter, and paths that lead out of the document's folder.
         if name.contains(':') || !relative.components().all(is_plain) {
             return Err(refused(
                 "must be a data: URI or a file in the document's folder or below".to_owned(),
@@ -167,14 +167,14 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Exporters leave padding out.
+/// Some exporters leave the padding out.
 const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     base64::engine::GeneralPurposeConfig::new()
         .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
 );
 
-/// Refuses extensions without which the document would be another one.
+/// Refuses a required extension that would change the result and that is not read.
 fn check_required(value: &Value, is_bare: bool) -> Result<(), InputError> {
     let is_read = |name: &str| {
         READ.contains(&name) || is_bare && (OF_IMAGES.contains(&name) || name.starts_with(OF_MATERIALS))
@@ -193,7 +193,7 @@ fn required_names(value: &Value) -> impl Iterator<Item = &str> {
     required.into_iter().flatten().filter_map(Value::as_str)
 }
 
-/// Applications may give vertices attributes of their own; gltf-json takes them for mistakes.
+/// Removes application-specific attributes, which glTF permits and gltf-json rejects.
 fn leave_out_own_attributes(value: &mut Value) {
     let meshes = value.get_mut("meshes").and_then(Value::as_array_mut).into_iter().flatten();
     let primitives = meshes.filter_map(|mesh| mesh.get_mut("primitives")?.as_array_mut()).flatten();
@@ -202,7 +202,7 @@ fn leave_out_own_attributes(value: &mut Value) {
     }
 }
 
-/// glTF lets scenes be empty, gltf-json does not.
+/// Adds an empty list of nodes to scenes without one, which glTF permits and gltf-json rejects.
 fn add_nodes_of_scenes(value: &mut Value) {
     let scenes = value.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten();
     for scene in scenes.filter_map(Value::as_object_mut) {
@@ -210,7 +210,8 @@ fn add_nodes_of_scenes(value: &mut Value) {
     }
 }
 
-/// glTF lets extensions animate what is no node; readers that do not know them skip such channels.
+/// Removes animation channels without a target node. glTF lets extensions animate other things than nodes, and
+/// readers that do not know them skip such channels.
 fn leave_out_channels_without_node(value: &mut Value) {
     let animations = value.get_mut("animations").and_then(Value::as_array_mut);
     for animation in animations.into_iter().flatten() {
@@ -226,7 +227,7 @@ fn leave_out_channels_without_node(value: &mut Value) {
     }
 }
 
-/// What gltf-json's validation takes for granted, and panics without.
+/// Checks that primitives have positions: gltf-json's validation assumes it, and panics otherwise.
 fn positions_exist(root: &Root) -> Result<(), InputError> {
     let meshes = root.meshes.iter().enumerate();
     for (mesh, at, primitive) in
@@ -242,8 +243,8 @@ fn positions_exist(root: &Root) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The first thing that gltf-json finds wrong. Accessors without a buffer view are zeros, as glTF has it, and extensions
-/// have been looked at.
+/// Reports the first error that gltf-json finds. Two kinds are not errors here: accessors without a buffer
+/// view, which glTF defines as zeros, and extensions, which are checked before.
 fn validate(root: &Root) -> Result<(), InputError> {
     let mut first = None;
     root.validate(root, gltf_json::Path::new, &mut |path, fault| {

@@ -1,4 +1,4 @@
-//! Materials that meshes use: base colour, its texture, and alpha; images of PNG or JPEG, decoded.
+//! Reads the materials that meshes use: base colour, its texture, and alpha; decodes PNG and JPEG images.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -15,24 +15,24 @@ use super::document::Document;
 use crate::InputError;
 use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Texture, Wrapping};
 
-/// What has been read of them so far: each once, in the order of their use.
+/// The materials and images read so far, each once, in the order of first use.
 #[derive(Default)]
 pub struct Materials {
     pub materials: Vec<Material>,
     pub images: Vec<RgbaImage>,
-    /// Whether none is read.
+    /// Whether materials are left out.
     pub is_unread: bool,
     of_materials: HashMap<usize, usize>,
     of_images: HashMap<usize, usize>,
 }
 
 impl Materials {
-    /// For an import that leaves out what meshes look like.
+    /// For an import without materials and images.
     pub fn unread() -> Self {
         Self { is_unread: true, ..Self::default() }
     }
 
-    /// Reads a material, unless it has been read: its place in the list.
+    /// Reads a material unless it has been read already. Returns its index in the list.
     pub fn read(&mut self, document: &Document<'_>, index: Index<GltfMaterial>) -> Result<usize, InputError> {
         let at = index.value();
         if let Some(known) = self.of_materials.get(&at) {
@@ -97,7 +97,7 @@ impl Materials {
     }
 }
 
-/// What is in the bytes counts, whatever `mimeType` says.
+/// The content of the bytes decides the format, whatever `mimeType` says.
 fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
     let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
     let format = image::guess_format(bytes).ok();
@@ -132,7 +132,7 @@ fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
     }
 }
 
-/// What a sampler leaves open is linear, with mip levels.
+/// The sampler's settings; those that it leaves open become linear, with mip levels.
 fn sampling(path: &str, sampler: &Sampler) -> Result<Sampling, InputError> {
     let unknown =
         |field: &str| InputError::new(format!("{path}.{field}"), "unknown", "must be one of glTF's");
@@ -164,12 +164,12 @@ fn sampling(path: &str, sampler: &Sampler) -> Result<Sampling, InputError> {
     Ok(Sampling { wrap, magnified, minified, mips })
 }
 
-/// Which texture coordinates a material's base colour is read at, and what takes them there; none where it has no
+/// The texture coordinates of a material's base colour, and their transform; `None` if the material has no
 /// texture.
 pub struct Coordinates<'a> {
-    /// `TEXCOORD_n`
+    /// n of `TEXCOORD_n`.
     pub set: u32,
-    /// `KHR_texture_transform`
+    /// The transform of `KHR_texture_transform`.
     transform: Option<&'a TextureTransform>,
 }
 
@@ -181,12 +181,12 @@ impl<'a> Coordinates<'a> {
         Some(Self { set, transform })
     }
 
-    /// Whether anything takes them there.
+    /// Whether there is a transform.
     pub fn is_moved(&self) -> bool {
         self.transform.is_some()
     }
 
-    /// Scales, turns, then moves.
+    /// Applies the transform: scale, rotation, translation, in this order.
     pub fn apply(&self, uv: &mut [[f32; 2]]) {
         let Some(transform) = self.transform else { return };
         let ([x, y], [dx, dy]) = (transform.scale.0, transform.offset.0);

@@ -1,4 +1,4 @@
-//! Meshes of nodes: vertices, triangles, influences, morph targets and the keys of their weights.
+//! Reads the meshes of nodes: vertices, triangles, influences, morph targets and the keys of their weights.
 
 use gltf_json::Index;
 use gltf_json::accessor::Accessor;
@@ -19,13 +19,15 @@ use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals};
 use crate::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use crate::asset::skeleton::Skin;
 
-/// What a primitive counts, whatever it has.
+/// Elements charged for a primitive, whatever it contains.
 const PRIMITIVE: usize = 32;
 
-/// What a vertex counts besides what is read of it: normal, tangent, texture coordinates and influence, which it may lack.
+/// Elements charged per vertex for data that the file may lack and the import adds: normal, tangent, texture
+/// coordinates and influence.
 const LACKING: usize = 4;
 
-/// Every primitive of every node of the scene with a skin, in the order of the nodes; then of those without.
+/// Reads every primitive of the scene's nodes that have a skin, in the order of the nodes; then those of nodes
+/// without a skin.
 pub fn meshes(
     document: &Document<'_>,
     nodes: &Nodes,
@@ -67,7 +69,7 @@ pub fn meshes(
     Ok(meshes)
 }
 
-/// The weights of a node's targets: its own, or its mesh's, or 0.
+/// The weights of a node's targets: the node's own, or its mesh's, or 0.
 fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
     let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
     let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());
@@ -85,7 +87,7 @@ fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>
     Ok(weights)
 }
 
-/// The clips that move a node's targets.
+/// The clips that animate the weights of a node's targets.
 fn weight_keys(
     document: &Document<'_>,
     node: usize,
@@ -95,7 +97,7 @@ fn weight_keys(
     for (clip, animation) in document.root.animations.iter().enumerate() {
         for (at, channel) in animation.channels.iter().enumerate() {
             let is_of_weights = channel.target.path == Checked::Valid(Property::MorphTargetWeights);
-            // A mesh without targets has nothing to move.
+            // A mesh without targets has no weights to animate.
             if !is_of_weights || channel.target.node.value() != node || targets == 0 {
                 continue;
             }
@@ -120,12 +122,12 @@ fn weight_keys(
     Ok(all)
 }
 
-/// A primitive, and its path inside the file.
+/// A primitive, with its path in the file.
 struct Reader<'a, 'd> {
     document: &'a Document<'d>,
     primitive: &'a Primitive,
     path: String,
-    /// Of a node without a skin.
+    /// Whether the node has no skin.
     is_rigid: bool,
     /// Whether materials are left out.
     is_bare: bool,
@@ -179,7 +181,8 @@ impl Reader<'_, '_> {
         Ok(mesh)
     }
 
-    /// The file's, which go with its normals and texture coordinates; or MikkTSpace's.
+    /// The file's tangents, if the file also has the normals and texture coordinates that belong to them;
+    /// otherwise those of MikkTSpace.
     fn tangents(
         &self,
         positions: &[[f32; 3]],
@@ -217,7 +220,8 @@ impl Reader<'_, '_> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// The texture's coordinates, which there must be; or where there is no texture, the first, if any.
+    /// The coordinates of the base colour's texture, which must exist; without a texture the first set, if
+    /// there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(texture) = self.material().filter(|_| !self.is_bare).and_then(Coordinates::of) else {
             return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
@@ -232,8 +236,8 @@ impl Reader<'_, '_> {
         Ok(Some(uv))
     }
 
-    /// The coordinates that tangents go along, as the file has them, where they are not the mesh's: of the normal texture,
-    /// or of the base colour's, where that one is moved.
+    /// The coordinates along which tangents run, untransformed, if they differ from the mesh's: those of the
+    /// normal texture, or those of the base colour's texture if that has a transform.
     fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(material) = self.material().filter(|_| !self.is_bare) else { return Ok(None) };
         let base = Coordinates::of(material);
@@ -255,7 +259,7 @@ impl Reader<'_, '_> {
         self.primitive.attributes.get(&Checked::Valid(semantic.clone())).copied()
     }
 
-    /// An attribute, one a vertex and in range, where there is one.
+    /// An attribute with one value per vertex, in range, or `None` if the primitive lacks it.
     fn attribute<const N: usize>(
         &self,
         semantic: &Semantic,
@@ -276,14 +280,15 @@ impl Reader<'_, '_> {
         Err(InputError::new(format!("{path}.count"), count, format!("must be {vertices}, one a vertex")))
     }
 
-    /// Unit normals: the file's, or where it has none, or one of no length, those of the surface.
+    /// Unit normals: the file's. If the file has none, or one without length, they are computed from the
+    /// triangles.
     fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
         let Some(given) = self.attribute::<3>(&Semantic::Normals, "NORMAL", positions.len())? else {
             return Ok(smooth_normals(positions, indices));
         };
         let length = |normal: &[f32; 3]| normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
         let unit = |normal: [f32; 3]| match length(&normal) {
-            // As they are: no second rounding.
+            // Normals of about unit length are kept as they are, to avoid a second rounding.
             length if (length - 1.0).abs() < 1e-3 => Some(normal),
             length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
             _ => None,
@@ -296,7 +301,7 @@ impl Reader<'_, '_> {
         Ok(units.into_iter().zip(smooth).map(|(unit, smooth)| unit.unwrap_or(smooth)).collect())
     }
 
-    /// Sets of four joints and weights, as many as there are.
+    /// Reads all sets of four joints and weights.
     fn influences(&self, vertices: usize, bones: usize) -> Result<Influences, InputError> {
         let mut all: Vec<Vec<Influence>> = vec![Vec::with_capacity(4); vertices];
         for set in 0.. {
@@ -322,7 +327,7 @@ impl Reader<'_, '_> {
         Influences::new(&self.named("WEIGHTS_0"), bones, all)
     }
 
-    /// Lists, strips and fans as lists. Points and lines have no triangles.
+    /// Converts lists, strips and fans to lists. Points and lines give no triangles.
     fn triangles(&self, vertices: usize) -> Result<Vec<u32>, InputError> {
         let indices: Vec<u32> = match self.primitive.indices {
             Some(accessor) => self.document.integers::<1>(accessor)?.into_iter().flatten().collect(),
@@ -335,9 +340,9 @@ impl Reader<'_, '_> {
         let Checked::Valid(mode) = self.primitive.mode else {
             return Err(InputError::new(format!("{}.mode", self.path), "unknown", "must be one of glTF's"));
         };
-        // A triangle each in strips and fans.
+        // Strips and fans have one triangle per index.
         self.document.budget.spend(&self.path, 3 * indices.len())?;
-        // Strips are stitched by triangles without area.
+        // Strips are joined by triangles without area.
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
         let corners = |at: usize| [indices[at], indices[at + 1], indices[at + 2]];
         let windows = 0..indices.len().saturating_sub(2);
@@ -390,7 +395,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// From glTF's handedness to this crate's, or back: glTF's bitangent points up the image.
+/// Converts between glTF's handedness and this crate's: glTF's bitangent points up in the image.
 fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
     [x, y, z, if w < 0.0 { 1.0 } else { -1.0 }]
 }

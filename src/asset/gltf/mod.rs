@@ -1,44 +1,49 @@
-//! Import of glTF 2.0, as JSON or GLB: the nodes of the default scene that meshes follow, skins, animations, and meshes.
+//! Import of glTF 2.0, as JSON or GLB: the default scene's nodes that meshes follow, skins, animations, and
+//! meshes.
 //!
-//! - Only the default scene is imported: the one that the document names, or its first; every node where it has no
-//!   scene.
-//! - Bones are the joints of every skin that the scene's nodes have, each once, and all nodes above them: a joint's place
-//!   in the scene is the product of every node from the root, whether or not a skin uses it, and animations may move any
-//!   of them. glTF asks that such joints lie in the same scene; where they lie outside, they are bones all the same,
-//!   posed as they stand below their own root, since vertices follow them. Skins that no node has count where all their
-//!   joints lie in the scene.
-//! - Without a skin, bones are the nodes that carry meshes (see below), those that an animation moves, and all above
-//!   them; and all of these are [joints](crate::asset::Skeleton::joints).
-//! - Matrix nodes are taken apart into translation, rotation and scale.
-//! - Accessors may be sparse, interleaved, and of normalized integers. Buffers lie in the GLB, in `data:` URIs, or in
-//!   files beside the document.
-//! - Channels that move no node, or one that is no bone, are left out, but count for the clip's duration.
-//! - Meshes are those of the scene's nodes with a skin, a [`Mesh`](crate::asset::Mesh) a primitive, in the order of the nodes,
-//!   vertices in the file's order; behind them those of nodes without one, in the same order. The latter follow one
-//!   bone, by a skin of their own: the lowest node at or above them that is a joint, lies above joints, or is animated;
-//!   where there is none, the root of their tree, which never moves. Such a node becomes a bone with all above it, as
-//!   joints do, but no joint. Strips and fans become triangles; points and lines have none. Normals that are
-//!   missing are smooth. Tangents that are missing, or given without normals, are MikkTSpace's, from the texture
-//!   coordinates of the normal texture where there is one, before any `KHR_texture_transform`. Where corners of a vertex
-//!   have different tangents, it is repeated behind all others of its primitive, one copy a tangent. Meshes that Draco
-//!   compressed are left out.
-//! - Triangles of what is mirrored at rest are turned round, mesh by mesh, and in a mesh whose bones mirror some of it and
-//!   some not triangle by triangle: [`Mesh::indices`](crate::asset::Mesh::indices). What a clip mirrors, or mirrors back,
-//!   by a scale of another sign than at rest, is seen from inside.
-//! - Of materials: base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or in files beside the
-//!   document; any set of texture coordinates, `KHR_texture_transform` applied to these), samplers, alpha, and
-//!   `doubleSided`. Opacity of `BLEND` becomes a [screen-door](crate::asset::material::Alpha::Dithered). Colours of
-//!   vertices, everything else of materials, and materials of no mesh are left out.
+//! - Only the default scene is imported: the one that the document names, or else its first; every node if the
+//!   document has no scene.
+//! - Bones are the joints of every skin that the scene's nodes use, each once, and all ancestors of those
+//!   joints: a joint's position in the scene is the product of all transforms from the root down, whether or
+//!   not a skin uses the nodes, and animations may move any of them. glTF requires such joints to lie in the
+//!   same scene. Where they lie outside, they become bones nevertheless, posed below their own root, since
+//!   vertices follow them. A skin that no node uses counts if all its joints lie in the scene.
+//! - If there is no skin, bones are the nodes that carry meshes (see below), those that an animation moves, and
+//!   all their ancestors; all of these are [joints](crate::asset::Skeleton::joints).
+//! - Matrices of nodes are decomposed into translation, rotation and scale.
+//! - Accessors may be sparse, interleaved, and of normalized integers. Buffers may lie in the GLB, in `data:`
+//!   URIs, or in files beside the document.
+//! - Channels that move no node, or a node that is not a bone, are left out, but they count for the clip's
+//!   duration.
+//! - Meshes are those of the scene's nodes with a skin, one [`Mesh`](crate::asset::Mesh) per primitive, in the
+//!   order of the nodes, with vertices in the file's order. The meshes of nodes without a skin come after them,
+//!   in the same order. Each of the latter follows one bone, through a skin of its own: the lowest node, at or
+//!   above its own, that is a joint, an ancestor of joints, or animated. If there is none, it follows the root
+//!   of its tree, which never moves. Such a node becomes a bone together with all its ancestors, but not a
+//!   joint. Strips and fans become lists of triangles; points and lines are left out. Missing normals are
+//!   smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace, from the
+//!   texture coordinates of the normal texture if there is one, before any `KHR_texture_transform`. A vertex
+//!   whose corners have different tangents is repeated at the end of its primitive, one copy per tangent.
+//!   Meshes that are compressed with Draco are left out.
+//! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle
+//!   in a mesh where some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A
+//!   clip whose scale has another sign than at rest shows such triangles from inside.
+//! - Of materials, the import reads base colour with its texture (PNG or JPEG, in the GLB, in `data:` URIs or
+//!   in files beside the document; any set of texture coordinates, with `KHR_texture_transform` applied to
+//!   them), samplers, alpha, and `doubleSided`. The opacity of `BLEND` becomes a [screen-door
+//!   pattern](crate::asset::material::Alpha::Dithered). Vertex colours, everything else in materials, and
+//!   materials that no mesh uses are left out.
 //!
 //! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and
-//! `KHR_texture_transform` are read, and every other one is refused; those of materials and images matter only where
-//! these are read.
+//! `KHR_texture_transform` are read, and every other one is refused. Those that concern materials and images
+//! matter only where these are read.
 //!
-//! Every error names what is wrong with its path inside the file (`accessors[3].count`). No file makes it panic, nor
-//! allocate what its bytes do not account for: counts are checked against the bytes that are there. What needs none has
-//! bounds of its own: an accessor without a buffer view has at most 65,536 elements, or one for each byte of the document
-//! and its buffers; what is read again and again (meshes of several nodes, keys of several channels) at most 128 elements
-//! a byte up to 16 million, or 4 a byte; images 256 texels a byte, or 16 million, and 8192 in width and height.
+//! Every error names the fault with its path in the file (`accessors[3].count`). No file causes a panic, or an
+//! allocation that its bytes do not account for: counts are checked against the bytes present. Data that takes
+//! no bytes has limits of its own. An accessor without a buffer view has at most 65,536 elements, or one for
+//! each byte of the document and its buffers. Data that is read repeatedly (meshes of several nodes, keys of
+//! several channels) has at most 128 elements per byte up to 16 million, or 4 per byte. Images have at most 256
+//! texels per byte, or 16 million, and 8192 in width and height.
 
 mod accessor;
 mod budget;
@@ -61,20 +66,20 @@ use document::Document;
 use materials::Materials;
 
 impl Model {
-    /// Reads a `.gltf` or `.glb` file, and the buffers beside it.
+    /// Reads a `.gltf` or `.glb` file, and the buffers and images beside it.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] with the path inside the file for
-    /// everything that glTF forbids or that the crate does not read.
+    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`], with the path in the file, for
+    /// everything that glTF forbids or that this crate does not read.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::read(path, Materials::default())
     }
 
-    /// As [`Model::from_file`], without materials and images: for those who draw nothing, whatever textures lack, and
-    /// whichever extensions they require. No vertex is repeated for its tangents.
+    /// As [`Model::from_file`], without materials and images. Use it when nothing is drawn: missing textures
+    /// and extensions for materials and images then do not matter. No vertex is repeated for its tangents.
     ///
     /// # Errors
-    /// As [`Model::from_file`], but for materials and images.
+    /// As [`Model::from_file`], except those about materials and images.
     pub fn from_file_bare(path: &Path) -> Result<Self, Error> {
         Self::read(path, Materials::unread())
     }
@@ -86,10 +91,10 @@ impl Model {
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// Reads glTF from memory. External buffers lie in `folder`; without one they are refused.
+    /// Reads glTF from memory. External buffers are read from `folder`; without a folder they are refused.
     ///
     /// # Errors
-    /// [`InputError`] with the path inside the file.
+    /// [`InputError`] with the path in the file.
     pub fn from_gltf(bytes: &[u8], folder: Option<&Path>) -> Result<Self, InputError> {
         Self::import(bytes, folder, Materials::default())
     }
@@ -98,7 +103,7 @@ impl Model {
         let document = Document::new(bytes, folder, materials.is_unread)?;
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
-        // What Draco compressed has no vertices here.
+        // Meshes that are compressed with Draco have no vertices that can be read.
         let meshes = match document.is_draco {
             true => Vec::new(),
             false => meshes::meshes(&document, &nodes, &mut materials)?,

@@ -1,4 +1,4 @@
-//! Nodes and skins: the skeleton, and a skin for every mesh that has none.
+//! Reads nodes and skins: the skeleton, and a skin for every mesh that has none.
 
 use gltf_json::Root;
 use gltf_json::animation::Property;
@@ -12,12 +12,12 @@ use crate::InputError;
 use crate::asset::skeleton::{Bone, Skeleton, Skin, inverse_bind};
 use crate::asset::transform::{Transform, decomposed};
 
-/// The skeleton of the scene, and which node became which bone.
+/// The skeleton of the scene, with the mapping from nodes to bones.
 pub struct Nodes {
     pub skeleton: Skeleton,
-    /// Those of the document that the scene needs, then one for each of [`Nodes::rigid`].
+    /// The skins of the document that the scene uses, then one skin for each of [`Nodes::rigid`].
     pub skins: Vec<Skin>,
-    /// Nodes of the scene with a mesh and a skin: the node, and the place of its skin in [`Nodes::skins`].
+    /// Nodes of the scene with a mesh and a skin: the node, and the index of its skin in [`Nodes::skins`].
     pub skinned: Vec<(usize, usize)>,
     /// Nodes of the scene with a mesh and no skin.
     pub rigid: Vec<Rigid>,
@@ -58,23 +58,23 @@ impl Nodes {
         Ok(Self { skeleton, skins, skinned, rigid, bones })
     }
 
-    /// How many of [`Nodes::skins`] are the document's.
+    /// How many of [`Nodes::skins`], from the first on, are the document's.
     pub fn own_skins(&self) -> usize {
         self.skins.len() - self.rigid.len()
     }
 
-    /// The bone that a node became, if it did.
+    /// The bone of a node, if the node is a bone.
     pub fn bone(&self, node: usize) -> Option<usize> {
         self.bones.get(node).copied().flatten().map(|bone| bone as usize)
     }
 }
 
-/// The node's name, or one made of its number.
+/// The node's name, or one made from its index.
 pub fn node_name(root: &Root, node: usize) -> String {
     root.nodes[node].name.clone().unwrap_or_else(|| format!("node_{node}"))
 }
 
-/// The skins of the scene's nodes; and those that no node has, where all their joints lie in the scene.
+/// The skins of the scene's nodes, and the unused ones whose joints all lie in the scene.
 fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     let (mut here, mut anywhere) = (vec![false; root.skins.len()], vec![false; root.skins.len()]);
     for (node, skin) in root.nodes.iter().enumerate().filter_map(|(at, node)| Some((at, node.skin?.value())))
@@ -86,7 +86,7 @@ fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     (0..root.skins.len()).filter(|skin| here[*skin] || !anywhere[*skin] && lies_here(*skin)).collect()
 }
 
-/// The joints of these skins, each once, as nodes.
+/// The joints of these skins as nodes, each once.
 fn joints(root: &Root, skins: &[usize]) -> Result<Vec<usize>, InputError> {
     let mut seen = vec![false; root.nodes.len()];
     let mut joints = Vec::new();
@@ -111,7 +111,7 @@ fn joints(root: &Root, skins: &[usize]) -> Result<Vec<usize>, InputError> {
     Ok(joints)
 }
 
-/// Whether an animation moves, turns or scales each node.
+/// For each node, whether an animation moves, rotates or scales it.
 fn animated(root: &Root) -> Vec<bool> {
     let mut animated = vec![false; root.nodes.len()];
     for channel in root.animations.iter().flat_map(|animation| &animation.channels) {
@@ -123,7 +123,7 @@ fn animated(root: &Root) -> Vec<bool> {
     animated
 }
 
-/// Nodes of the scene with a mesh and one of these skins, and the skin's place among them.
+/// The scene's nodes with a mesh and one of these skins, each with the index of its skin in `skins`.
 fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
     let mut place = vec![None; root.skins.len()];
     skins.iter().enumerate().for_each(|(at, skin)| place[*skin] = Some(at));
@@ -131,7 +131,7 @@ fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
     nodes.filter_map(|(at, node)| Some((at, place[node.skin?.value()]?))).collect()
 }
 
-/// These nodes and all above them, each with what lies below it behind it.
+/// These nodes and all their ancestors, in depth-first order.
 fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Vec<usize> {
     let mut needed = vec![false; nodes.len()];
     let mut roots = Vec::new();
@@ -156,7 +156,7 @@ fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Vec<usi
     order
 }
 
-/// Of these nodes; without skins all bones are joints.
+/// The skeleton of the nodes in `order`. If there are no skins, all bones are joints.
 fn skeleton(
     root: &Root,
     scene: &Scene,
@@ -175,7 +175,7 @@ fn skeleton(
     }
 }
 
-/// Where a node is when nothing moves it.
+/// The transform of a node at rest.
 pub fn rest(index: usize, node: &Node) -> Result<Transform, InputError> {
     let path = format!("nodes[{index}]");
     if let Some(matrix) = &node.matrix {

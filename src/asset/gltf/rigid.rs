@@ -1,4 +1,4 @@
-//! Meshes without a skin: each follows the lowest node above it that may move, as a whole.
+//! Meshes without a skin: each follows, as a whole, the lowest node at or above its own that may move.
 
 use glam::{DMat4, DQuat, DVec3};
 use gltf_json::Root;
@@ -11,14 +11,14 @@ use crate::asset::skeleton::inverse_bind;
 /// A node with a mesh and no skin.
 pub struct Rigid {
     pub node: usize,
-    /// The node that it follows: itself, or one above it. It has to be a bone.
+    /// The node that it follows: itself or an ancestor. This node must be a bone.
     pub anchor: usize,
-    /// From the mesh's space into the anchor's.
+    /// The matrix from the mesh's space into the anchor's, column-major.
     pub bind: [f32; 16],
 }
 
-/// All of the scene's, in the order of the nodes. An anchor is a joint, a node above joints, or an animated one; else a
-/// root.
+/// All such nodes of the scene, in the order of the nodes. An anchor is a joint, an ancestor of joints, or an
+/// animated node; otherwise it is the root of the tree.
 pub fn rigid(
     root: &Root,
     scene: &Scene,
@@ -37,7 +37,7 @@ pub fn rigid(
     nodes.into_iter().map(|node| followed.rigid(node)).collect()
 }
 
-/// Whether each node is one of these, or lies above one.
+/// For each node, whether it is one of `nodes` or an ancestor of one.
 fn with_ancestors(scene: &Scene, nodes: &[usize]) -> Vec<bool> {
     let mut marked = vec![false; scene.parents.len()];
     for node in nodes {
@@ -49,11 +49,11 @@ fn with_ancestors(scene: &Scene, nodes: &[usize]) -> Vec<bool> {
     marked
 }
 
-/// What nodes follow: the anchor, and what takes the node's space into its.
+/// For each node, its anchor and the matrix from the node's space into the anchor's.
 struct Followed(Vec<Option<(usize, DMat4)>>);
 
 impl Followed {
-    /// Of these nodes, which have all that lies above them.
+    /// For the nodes in `wanted`, which contains all their ancestors.
     fn new(
         root: &Root,
         scene: &Scene,
@@ -84,7 +84,8 @@ impl Followed {
     }
 }
 
-/// A node's matrix as the file has it, sheared or not, or the product of its parts.
+/// The matrix of a node as the file has it, sheared or not, or the product of its translation, rotation and
+/// scale.
 fn local(root: &Root, node: usize) -> Result<DMat4, InputError> {
     if let Some(matrix) = &root.nodes[node].matrix {
         inverse_bind(&format!("nodes[{node}].matrix"), matrix)?;

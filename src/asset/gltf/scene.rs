@@ -1,4 +1,4 @@
-//! The scene: which nodes are imported, and the trees that all nodes form (glTF 2.0, section 3.5.2).
+//! The scene: which nodes are imported, and the trees that nodes form (glTF 2.0, section 3.5.2).
 
 use gltf_json::Root;
 use gltf_json::scene::Node;
@@ -7,22 +7,22 @@ use crate::InputError;
 
 /// The nodes of the default scene.
 pub struct Scene {
-    /// The parent of each of the document's nodes.
+    /// The parent of each node of the document.
     pub parents: Vec<Option<usize>>,
-    /// Whether each of the document's nodes lies in the scene.
+    /// For each node of the document, whether it lies in the scene.
     pub contains: Vec<bool>,
 }
 
 impl Scene {
-    /// The scene that the document names, or its first; all nodes where it has none.
+    /// The scene that the document names, or else its first; all nodes if it has none.
     ///
     /// # Errors
-    /// [`InputError`] for nodes that are no trees, and a scene that begins below a root.
+    /// [`InputError`] for nodes that do not form trees, and for a scene whose root node has a parent.
     pub fn new(root: &Root) -> Result<Self, InputError> {
         let parents = parents(&root.nodes)?;
         let roots: Vec<usize> = (0..parents.len()).filter(|node| parents[*node].is_none()).collect();
         let reached = below(&root.nodes, &roots);
-        // Who is its own ancestor hangs below no root.
+        // A node that is its own ancestor is not below any root.
         if let Some(node) = reached.iter().position(|reached| !reached) {
             let bound = "must not lie below itself: nodes are trees";
             return Err(InputError::new(format!("nodes[{node}]"), node, bound));
@@ -39,7 +39,7 @@ impl Scene {
     }
 }
 
-/// The parent of each node; none has two.
+/// The parent of each node. Refuses a node with two parents.
 fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
     let mut parents = vec![None; nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {
@@ -55,7 +55,7 @@ fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
     Ok(parents)
 }
 
-/// Whether each node is one of these, or lies below one.
+/// For each node, whether it is one of `roots` or a descendant of one.
 fn below(nodes: &[Node], roots: &[usize]) -> Vec<bool> {
     let mut reached = vec![false; nodes.len()];
     let mut waiting = roots.to_vec();

@@ -1,5 +1,6 @@
-//! Tangents of vertices that have none, by MikkTSpace, as glTF 2.0 asks in section 3.7.2.1. Where corners of one vertex
-//! have different tangents, as where texture coordinates are mirrored, each gets a vertex of its own.
+//! Tangents of vertices that have none, computed by MikkTSpace, as glTF 2.0 requires in section 3.7.2.1. Where
+//! the corners of a vertex have different tangents, for example where texture coordinates are mirrored, each
+//! tangent gets a vertex of its own.
 
 use std::collections::HashMap;
 
@@ -8,11 +9,13 @@ use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use crate::InputError;
 use crate::asset::mesh::{Mesh, solved_tangents};
 
-/// The most triangles around a vertex: what MikkTSpace takes grows with their square, and it goes around in recursion.
-/// Surfaces with more get the tangents that [`crate::surface::tangent`] solves.
+/// The largest number of triangles around a vertex for which MikkTSpace is used: its time grows with the square
+/// of that number, and it visits the triangles by recursion. Surfaces with more get the tangents that
+/// [`crate::surface::tangent`] solves.
 const MAX_AROUND: u32 = 1024;
 
-/// What tangents are made of: one of each a vertex, and three indices a triangle.
+/// The input of tangents: positions, normals and texture coordinates per vertex, and three indices per
+/// triangle.
 pub struct Surface<'a> {
     pub positions: &'a [[f32; 3]],
     pub normals: &'a [[f32; 3]],
@@ -20,27 +23,28 @@ pub struct Surface<'a> {
     pub indices: &'a [u32],
 }
 
-/// Tangents of vertices, of which some are new.
+/// Tangents of vertices, some of which are new copies.
 pub struct Tangents {
-    /// In this crate's handedness: one a vertex, then one a copy.
+    /// Tangents in this crate's handedness: one per vertex, then one per copy.
     pub tangents: Vec<[f32; 4]>,
-    /// Three a triangle, of vertices and, behind them, copies.
+    /// Three indices per triangle, into the vertices followed by the copies.
     pub indices: Vec<u32>,
-    /// The vertex that each copy repeats in everything but the tangent.
+    /// For each copy, the vertex that it repeats in everything but the tangent.
     pub copied: Vec<u32>,
 }
 
 impl Surface<'_> {
-    /// One a vertex, without copies: what is solved where there is no other way.
+    /// One tangent per vertex, without copies, as the solver computes them; used where MikkTSpace cannot be.
     ///
     /// # Errors
-    /// [`InputError`] for coordinates out of range, and indices of no vertex.
+    /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
     pub fn solved(&self) -> Result<Tangents, InputError> {
         let tangents = solved_tangents(self.positions, self.normals, self.uv, self.indices)?;
         Ok(Tangents { tangents, indices: self.indices.to_vec(), copied: Vec::new() })
     }
 
-    /// MikkTSpace's. Vertices of no triangle with an area in space and texture have solved ones.
+    /// The tangents of MikkTSpace. Vertices that belong to no triangle with an area in space and in texture
+    /// space get solved tangents.
     ///
     /// # Errors
     /// As [`Surface::solved`].
@@ -71,7 +75,7 @@ impl Surface<'_> {
 }
 
 impl Tangents {
-    /// Gives a mesh of as many vertices as there were these tangents and triangles, and the copies.
+    /// Sets the tangents and triangles of a mesh, and appends the copies to its vertices.
     pub fn apply(self, mesh: &mut Mesh) {
         let Self { tangents, indices, copied } = self;
         for vertex in copied {
@@ -86,12 +90,13 @@ impl Tangents {
     }
 }
 
-/// Triangles whose corners lie apart: the others would slow MikkTSpace down, and change nothing.
+/// The triangles with three different corners. Others would slow MikkTSpace down and would not change the
+/// result.
 struct Faces<'a> {
     surface: &'a Surface<'a>,
-    /// Where each begins in the indices.
+    /// Where each triangle begins in the indices.
     first: Vec<usize>,
-    /// One a corner.
+    /// One tangent per corner.
     tangents: Vec<Option<[f32; 4]>>,
 }
 
@@ -107,7 +112,7 @@ impl<'a> Faces<'a> {
         Self { surface, first, tangents }
     }
 
-    /// The places of their corners in the indices.
+    /// The indices of their corners in the index list.
     fn corners(&self) -> impl Iterator<Item = usize> {
         self.first.iter().flat_map(|first| *first..first + 3)
     }
@@ -116,7 +121,7 @@ impl<'a> Faces<'a> {
         self.surface.indices[self.first[face] + corner] as usize
     }
 
-    /// Whether too many of them meet somewhere.
+    /// Whether too many triangles meet at some point.
     fn is_crowded(&self) -> bool {
         let Surface { positions, normals, uv, indices } = self.surface;
         let mut around: HashMap<_, u32> = HashMap::new();
@@ -130,7 +135,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Alike for what is equal: there are two zeros.
+/// Bit patterns that are equal for equal values: −0 and +0 have the same.
 fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {
     one_zero(vector).map(f32::to_bits)
 }
@@ -139,7 +144,7 @@ fn one_zero<const N: usize>(vector: [f32; N]) -> [f32; N] {
     vector.map(|number| number + 0.0)
 }
 
-/// The same on every machine.
+/// Mathematical functions that are the same on every machine.
 struct Libm;
 
 impl Ops for Libm {
@@ -174,9 +179,10 @@ impl Geometry<Libm> for Faces<'_> {
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
-        // Its bitangent goes along v, which is down the image, as this crate's does; glTF's goes up.
+        // MikkTSpace's bitangent runs along v, which points down the image, as this crate's does; glTF's points
+        // up.
         let tangent = space.map(|space| space.tangent_encoded());
-        // None where no triangle around has an area, or numbers were too large or small.
+        // `None` if no triangle around the vertex has an area, or if numbers were too large or small.
         let length = |[x, y, z, _]: &[f32; 4]| x * x + y * y + z * z;
         self.tangents[3 * face + corner] =
             tangent.filter(|tangent| (length(tangent) - 1.0).abs() < 1e-3).map(one_zero);

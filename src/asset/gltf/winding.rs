@@ -1,25 +1,26 @@
-//! Winding: what is mirrored at rest has its triangles turned round, so that they are counter-clockwise seen from outside
-//! wherever the mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4): of a skinned mesh, whose own
-//! node counts for nothing, that of each joint's place in the scene times its inverse bind matrix.
+//! Winding: triangles that are mirrored at rest are reversed, so that they are counter-clockwise seen from
+//! outside wherever the mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a
+//! skinned mesh, whose own node has no effect, it is that of each joint's global transform times its inverse
+//! bind matrix.
 
 use glam::DMat4;
 
 use crate::asset::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
 
-/// For each bone whether its place in the scene is mirrored when nothing is animated. One that is flat counts as
-/// unmirrored.
+/// For each bone, whether its global transform at rest is mirrored. A singular one counts as not mirrored.
 pub fn mirrored(skeleton: &Skeleton) -> Vec<bool> {
     let mut mirrored: Vec<bool> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {
-        // Sign by sign: a product of many scales may be too large or too small for a number.
+        // Signs are multiplied one by one: the product of many scales could overflow or underflow.
         let is_turned = bone.rest.scale.iter().filter(|scale| **scale < 0.0).count() % 2 == 1;
         mirrored.push(is_turned != bone.parent.is_some_and(|parent| mirrored[parent as usize]));
     }
     mirrored
 }
 
-/// For each bone of a skin whether it turns what follows it outside in; none where no bone does. `mirrored` are all bones'.
+/// For each bone of a skin, whether it mirrors the vertices that follow it; empty if no bone does. `mirrored`
+/// covers all bones of the skeleton.
 pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
     let is_inverted = |bind: &[f32; 16]| DMat4::from_cols_array(&bind.map(f64::from)).determinant() < 0.0;
     let binds = skin.bones.iter().zip(&skin.inverse_binds);
@@ -27,9 +28,9 @@ pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
     if all.contains(&true) { all } else { Vec::new() }
 }
 
-/// Turns round the triangles whose three corners follow mirrored bones with more than half of their weight.
+/// Reverses the triangles whose three corners follow mirrored bones with more than half of their weight.
 pub fn turn_mirrored(mesh: &mut Mesh, mirrors: &[bool]) {
-    // Nothing of a skin without mirrored bones is looked at: files may have many meshes of large skins.
+    // Meshes of a skin without mirrored bones are skipped: files may have many meshes with large skins.
     if mirrors.is_empty() {
         return;
     }

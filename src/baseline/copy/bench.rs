@@ -1,4 +1,5 @@
-//! How near the copy kernel comes to the device's own copy; `limit` is `copy_buffer_to_buffer`.
+//! Benchmark cases of `baseline/copy`: the copy kernel against `limit`, the device's own
+//! `copy_buffer_to_buffer`.
 
 use crate::Error;
 use crate::baseline::copy::CopyPass;
@@ -6,7 +7,7 @@ use crate::baseline::copy::reference::copy;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 
-/// From within the caches to beyond them.
+/// Measures sizes from within the caches to beyond them.
 ///
 /// # Errors
 /// What the device reports.

@@ -26,10 +26,10 @@ impl CopyPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares a copy of the first `words` words; a multiple of four.
+    /// Prepares a copy of the first `words` words, a multiple of four.
     ///
     /// # Errors
-    /// [`InputError`] for a length that is no multiple of four; [`GpuError`].
+    /// [`InputError`] for a length that is not a multiple of four; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! A copy of words: reference of `kernels/baseline/copy.wgsl`.
+//! A copy of words: the CPU reference of `kernels/baseline/copy.wgsl`.
 
 /// Copies `source` over the start of `destination`.
 pub fn copy(source: &[u32], destination: &mut [u32]) {

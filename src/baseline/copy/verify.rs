@@ -1,4 +1,4 @@
-//! Parity of `kernels/baseline/copy.wgsl`.
+//! Parity cases of `kernels/baseline/copy.wgsl`.
 
 use crate::Error;
 use crate::baseline::copy::CopyPass;
@@ -9,7 +9,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 
-/// Lengths around workgroup boundaries.
+/// The cases cover lengths around workgroup boundaries.
 ///
 /// # Errors
 /// What the device reports.

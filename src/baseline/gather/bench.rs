@@ -1,4 +1,5 @@
-//! How fast the bytes of sampling can be moved; `copy` moves as many, each its own.
+//! Benchmark cases of `baseline/gather`: the time in which the bytes of sampling can be moved. `copy` moves the
+//! same number of bytes, with each read and written once.
 
 use std::hint::black_box;
 
@@ -9,7 +10,8 @@ use crate::baseline::gather::reference::{gather, gather_keys};
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// 1000 instances of 153 bones, 60 keys: all that sampling reads, and the keys alone.
+/// Measures 1000 instances of 153 bones and 60 keys, twice: with all that sampling reads, and with the keys
+/// alone.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Reads of keys as sampling reads them, and its writes (`kernels/baseline/gather.wgsl`).
+//! The memory traffic of sampling without its arithmetic (`kernels/baseline/gather.wgsl`).
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -12,18 +12,18 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::baseline::gather::GatherParams;
 use crate::{Error, InputError};
 
-/// What a copy of sampling's bytes reads.
+/// The data that the kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reads {
-    /// What sampling reads: 20 words of keys a bone, and the 9 that tell where they lie (the instance's clip, three
-    /// tracks, a place).
+    /// Everything that sampling reads: 20 words of keys per bone, and the 9 words that locate them (the
+    /// instance's clip, three tracks, a place).
     Everything,
-    /// The keys, and the place: tracks lie evenly, this many values each.
+    /// The keys and the place only: tracks are evenly spaced, with this many values each.
     Keys(u32),
 }
 
-/// Moves the bytes of sampling: of each bone of each instance the two keys of three tracks around the instance's
-/// place, tracks shared by instances as a clip's are, and a local transform (12 words).
+/// Moves the bytes of sampling: for each bone of each instance it reads the two keys of three tracks around the
+/// instance's place, where instances share the tracks of a clip, and writes a local transform (12 words).
 #[derive(Debug, Clone)]
 pub struct GatherPass {
     kernel: Kernel,
@@ -40,10 +40,11 @@ impl GatherPass {
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, reads })
     }
 
-    /// Prepares a crowd that stands at its places, before the last keys. Overwrites its local transforms.
+    /// Prepares a crowd whose instances have places before their last keys. The kernel overwrites the crowd's
+    /// local transforms.
     ///
     /// # Errors
-    /// [`InputError`] for a set whose clips have more than one timeline, and for fewer values than
+    /// [`InputError`] for a set with a clip that has more than one timeline, and for fewer values than
     /// [`Reads::Keys`] needs; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         if clips.timelines_a_clip != 1 {

@@ -1,14 +1,15 @@
-//! Moves the bytes of sampling: reference of `kernels/baseline/gather.wgsl`.
+//! Moves the bytes that sampling moves: the CPU reference of `kernels/baseline/gather.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::asset::keyframe::KeyframeCursor;
 
-/// For each instance and bone of its clip, the exclusive or of the two keys around the instance's place of three
-/// tracks, as bits of a local transform; then that of the track table's other words and the place's.
+/// For each instance and bone of its clip, writes the exclusive or of the two keys around the instance's place
+/// on three tracks, as the bits of a local transform; the other words of the track table and of the place are
+/// combined into it too.
 ///
 /// # Panics
-/// With fewer values than tracks have, and at a place of the last key.
+/// If there are fewer values than the tracks have, and for a place at the last key.
 pub fn gather(
     set: &ClipSet,
     instances: &[Instance],
@@ -29,7 +30,7 @@ pub fn gather(
     }
 }
 
-/// [`gather`] of the keys alone, for a clip whose tracks have `keys` values each, one after another.
+/// As [`gather`], for the keys alone of a clip whose tracks have `keys` values each, one after another.
 ///
 /// # Panics
 /// As [`gather`].

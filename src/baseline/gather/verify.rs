@@ -1,4 +1,4 @@
-//! Parity of `kernels/baseline/gather.wgsl`.
+//! Parity cases of `kernels/baseline/gather.wgsl`.
 
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
@@ -14,7 +14,8 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 
-/// Bones and instances around workgroup boundaries, few keys and many; two clips, and the keys of the first alone.
+/// The cases cover numbers of bones and instances around workgroup boundaries, few keys and many, two clips,
+/// and the keys of the first clip alone.
 ///
 /// # Errors
 /// What the device reports.
@@ -49,10 +50,10 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Two clips with as many linear keys on every track, all at the same times.
+/// Two clips that have the same number of linear keys on every track, all at the same times.
 ///
 /// # Errors
-/// None: they are checked like any others.
+/// None in practice: the clips are valid.
 pub fn evenly_keyed(draw: &mut Draw, bones: usize, keys: u32) -> Result<ClipSet, Error> {
     let skeleton = random_skeleton(0, bones)?;
     let mut track = || {

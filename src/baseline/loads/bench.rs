@@ -1,4 +1,4 @@
-//! How fast texels are loaded.
+//! Benchmark cases of `baseline/loads`: how fast texels are loaded.
 
 use crate::Error;
 use crate::baseline::copy::CopyPass;
@@ -11,7 +11,7 @@ use crate::surface::relief::Method;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map};
 
-/// 16 loads a thread of a megatexel.
+/// Measures 16 loads per thread, one thread per texel of a megatexel.
 ///
 /// # Errors
 /// What the device reports.
@@ -23,7 +23,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let job = LoadsPass::new(gpu)?.prepare(gpu, &textures.heights, [1024, 1024], 16, &sums)?;
     let (source, destination) =
         (Buffer::new(gpu, "source", 8 << 20)?, Buffer::new(gpu, "destination", 8 << 20)?);
-    // Half of the bytes read, half written.
+    // A copy reads half of the bytes that it moves, and writes the other half.
     let copied = CopyPass::new(gpu)?.prepare(gpu, 8 << 20, &source, &destination)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),

@@ -28,10 +28,10 @@ impl LoadsPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares `threads` (columns, rows) that load `loads` texels each of a float texture: one sum a thread.
+    /// Prepares `threads` (columns, rows) that each load `loads` texels of a float texture and write one sum.
     ///
     /// # Errors
-    /// [`InputError`] for too few sums; [`GpuError`].
+    /// [`InputError`] for a buffer with too few sums; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,8 +1,8 @@
-//! Texel loads: reference of `kernels/baseline/loads.wgsl`.
+//! Texel loads: the CPU reference of `kernels/baseline/loads.wgsl`.
 
 use crate::surface::map::{Address, HeightMap};
 
-/// The sums of `loads` texels along a row from each thread's own.
+/// For each thread, the sum of `loads` texels along its row, starting at its own.
 pub fn loads(map: &HeightMap, [columns, rows]: [u32; 2], loads: u32) -> Vec<f32> {
     let threads = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
     let sum = |(x, y): (u32, u32)| {

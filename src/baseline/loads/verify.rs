@@ -1,4 +1,4 @@
-//! Parity of `kernels/baseline/loads.wgsl`.
+//! Parity cases of `kernels/baseline/loads.wgsl`.
 
 use crate::Error;
 use crate::baseline::loads::LoadsPass;
@@ -11,7 +11,7 @@ use crate::surface::relief::Method;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::verify::{Shape, random_map};
 
-/// Sizes around the workgroup's, more threads than texels, and no loads at all.
+/// The cases cover sizes around the workgroup's, more threads than texels, and no loads at all.
 ///
 /// # Errors
 /// What the device reports.
@@ -27,7 +27,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &textures.heights, threads, count, &output.buffer)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let expected = loads(&map, threads, count);
-        // Each of the sums' roundings is at most 2⁻²³ of a sum of at most `count`.
+        // Each addition rounds by at most 2⁻²³ of a sum that is at most `count`.
         let bound = (count * count) as f32 * f32::EPSILON;
         let comparison = output.check(gpu, |actual| absolute(actual, &expected, bound))?;
         cases.add(format!("{count} loads by {threads:?} of {size:?}"), comparison);

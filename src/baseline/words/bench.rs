@@ -1,4 +1,4 @@
-//! How fast random words are drawn and stored.
+//! Benchmark cases of `baseline/words`: how fast random words are drawn and stored.
 
 use crate::Error;
 use crate::baseline::copy::CopyPass;
@@ -7,7 +7,7 @@ use crate::baseline::words::reference::words;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 
-/// One size.
+/// Measures one size of output.
 ///
 /// # Errors
 /// What the device reports.

@@ -13,7 +13,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::baseline::words::WordsParams;
 use crate::{Error, InputError};
 
-/// Draws the words of counters (x, y), row by row.
+/// Draws the random words of counters (x, y), row by row.
 #[derive(Debug, Clone)]
 pub struct WordsPass {
     kernel: Kernel,

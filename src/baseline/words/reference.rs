@@ -1,8 +1,8 @@
-//! Random words: reference of `kernels/baseline/words.wgsl`.
+//! Random words: the CPU reference of `kernels/baseline/words.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
 
-/// The first words of counters (x, y), `rows` rows of `width`.
+/// The first word of each counter (x, y), in `rows` rows of `width`.
 pub fn words(key: [u32; 2], width: u32, rows: u32) -> Vec<u32> {
     let mut all = vec![0; width as usize * rows as usize];
     for (y, row) in all.chunks_exact_mut(width.max(1) as usize).enumerate() {

@@ -1,4 +1,4 @@
-//! Parity of `kernels/baseline/words.wgsl`, and with it of the hash.
+//! Parity cases of `kernels/baseline/words.wgsl`, and with it of the hash.
 
 use crate::Error;
 use crate::baseline::words::WordsPass;
@@ -7,7 +7,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 
-/// Sizes around workgroup boundaries, and keys of all kinds.
+/// The cases cover sizes around workgroup boundaries, and keys of all kinds.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,5 +1,5 @@
-//! How far attributes are from what they were (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance
-//! Attributes", Visualization 1999): on each triangle an attribute is a linear function of the place.
+//! The cost of changes in attributes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance
+//! Attributes", Visualization 1999): on each triangle an attribute is a linear function of position.
 
 use glam::DVec3;
 
@@ -7,19 +7,20 @@ use super::quadric::Quadric;
 use super::topology::Topology;
 use super::turned::normal;
 
-/// Of each vertex, the sum over triangles of weight × Σ (g·d + k − s)²: g an attribute's gradient, k what it has lost
-/// by then, d and s how far place and attribute are from those of the vertex.
+/// For each vertex, the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
+/// the attribute, k its accumulated constant difference, and d and s are the differences in position and
+/// attribute from the vertex.
 pub struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
-    /// The part without s, and the weights.
+    /// The part without s, and the sums of weights.
     quadrics: Vec<Quadric>,
-    /// Of each attribute: the weighted sums of g and k.
+    /// For each attribute, the weighted sums of g and of k.
     sums: Vec<(DVec3, f64)>,
 }
 
 impl<'a> Attributes<'a> {
-    /// `place` gives each point's place.
+    /// Sums over the first `triangles` triangles; `place` gives the position of each point.
     pub fn new(
         topology: &Topology,
         triangles: u32,
@@ -45,14 +46,15 @@ impl<'a> Attributes<'a> {
         f64::from(self.values[vertex as usize * self.stride + attribute])
     }
 
-    /// `normal` is twice its area long.
+    /// Adds a triangle; `normal` has twice the triangle's area as its length.
     fn add_triangle(&mut self, vertices: [u32; 3], places: [DVec3; 3], normal: DVec3) {
         let [first, second] = [places[1] - places[0], places[2] - places[0]];
         let (square, weight) = (normal.length_squared(), normal.length() * 0.5);
         let mut quadric = Quadric::linear(DVec3::ZERO, weight);
         for attribute in 0..self.stride {
             let [a, b, c] = vertices.map(|vertex| self.value(vertex, attribute));
-            // Along the triangle, and b − a and c − a along its edges.
+            // The gradient lies in the triangle's plane and gives the differences of b − a and c − a along its
+            // edges.
             let gradient = (second.cross(normal) * (b - a) + normal.cross(first) * (c - a)) / square;
             quadric.add_unweighted(&Quadric::linear(gradient, weight));
             for vertex in vertices {
@@ -66,7 +68,7 @@ impl<'a> Attributes<'a> {
         self.quadrics[vertex as usize].weight
     }
 
-    /// The sum where a vertex becomes another, `d` away.
+    /// The cost of replacing `vertex` by `target`, which is `d` away.
     pub fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
         let quadric = &self.quadrics[vertex as usize];
         let mut cost = quadric.at(d);
@@ -78,7 +80,7 @@ impl<'a> Attributes<'a> {
         cost.max(0.0)
     }
 
-    /// A vertex becomes another, `d` away.
+    /// Replaces `vertex` by `target`, which is `d` away.
     pub fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
         let cost = self.cost(vertex, target, d);
         let [from, to] = [vertex, target].map(|vertex| vertex as usize * self.stride);
@@ -102,7 +104,7 @@ mod tests {
     use super::*;
     use crate::mesh::simplify::points::Points;
 
-    /// Against the sum written out, for a vertex that goes twice.
+    /// The result equals the sum written out, for a vertex that is replaced twice.
     #[test]
     fn it_sums_squared_differences_from_linear_functions() {
         let places = [[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [0.0, 1.0, 1.0], [-1.0, 0.25, 0.5], [0.5, -2.0, 1.5]];
@@ -113,7 +115,8 @@ mod tests {
         let place = |point| points.place(point, 0);
         let mut attributes = Attributes::new(&topology, 3, place, &values, 2);
         let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
-        // Each attribute's plane through a triangle's corners, at a place on it or beside it.
+        // The difference between each attribute's plane through a triangle's corners and the attribute at a
+        // vertex, on the plane or off it.
         let off = |triangle: usize, to: u32| -> f64 {
             let corners = [0, 1, 2].map(|at| indices[triangle * 3 + at]);
             let [a, b, c] = corners.map(place);
@@ -131,7 +134,7 @@ mod tests {
         let direct = attributes.cost(0, 3, place(3) - place(0));
         assert!(close(direct, off(0, 3)), "{direct}");
         attributes.merge(0, 3, place(3) - place(0));
-        // Vertex 3 had the last two triangles of its own.
+        // Only vertex 3 belonged to the last two triangles.
         let cost = attributes.cost(3, 4, place(4) - place(3));
         let expected = off(0, 4) + 2.0 * off(1, 4);
         assert!(close(cost, expected), "{cost} {expected}");

@@ -1,4 +1,4 @@
-//! The cost by Melax (B equation 3.1).
+//! The cost function of Melax (B equation 3.1).
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::points::Points;
 use super::topology::{RingTriangle, Topology};
 use super::turned::normal;
 
-/// Squared, so that it is ordered and rooted as quadrics are; the largest over the poses. None where it is not below
-/// `most`.
+/// The square of the cost, so that costs are ordered and rooted as those of quadrics are; the largest over the
+/// poses. `None` if it is not below `most`.
 pub fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
@@ -30,7 +30,8 @@ pub fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], m
     Some(worst)
 }
 
-/// Whether the normals of two points, sums of those of their triangles, are more than 90° apart in the first pose.
+/// Whether the normals of two points, each the sum of the normals of its triangles, are more than 90° apart in
+/// the first pose.
 pub fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     let sum = |point| -> DVec3 {
         topology.one_ring(point).map(|ring| unit_normal(topology, points, ring.triangle, 0)).sum()
@@ -39,7 +40,7 @@ pub fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     a.dot(b) < 0.0
 }
 
-/// 0 without an area.
+/// The unit normal of a triangle in a pose; 0 for a triangle without area.
 fn unit_normal(topology: &Topology, points: &Points, triangle: u32, pose: usize) -> DVec3 {
     let places = topology.corners(triangle).map(|corner| points.place(corner.point, pose));
     normal(places).map_or(DVec3::ZERO, |normal| normal / normal.length())
@@ -55,8 +56,8 @@ mod tests {
         (points, topology)
     }
 
-    /// A floor of four squares and a wall of as many: along the edge between them a point costs nothing, away from it
-    /// half the way, as the other side's triangles are turned by 90°.
+    /// A floor of four squares meets a wall of four: a point on the edge between them moves along the edge at
+    /// no cost, and away from it at half the length, because the other side's triangles are turned by 90°.
     #[test]
     fn edges_are_kept() {
         let mut places = Vec::new();

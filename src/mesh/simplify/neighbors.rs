@@ -1,8 +1,8 @@
-//! What a point may become, and which vertex each of its wedges becomes then.
+//! The neighbours into which a point may collapse, and the vertex that each of its wedges would become.
 
 use super::topology::{Kind, Marks, Topology};
 
-/// The vertices that something may become: none, one, or one of two.
+/// The vertices that may replace a wedge: none, one or two.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Remap {
     vertices: [u32; 2],
@@ -24,17 +24,17 @@ impl IntoIterator for Remap {
     type Item = u32;
     type IntoIter = std::iter::Take<std::array::IntoIter<u32, 2>>;
 
-    /// Ascending.
+    /// The vertices in ascending order.
     fn into_iter(self) -> Self::IntoIter {
         self.vertices.into_iter().take(self.count)
     }
 }
 
-/// A neighbour, with the triangles that lie between.
+/// A neighbour of a point, with the triangles at the edge between them.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbor {
     pub point: u32,
-    /// How many triangles; of two at most, who meets there.
+    /// Number of these triangles, and the wedges of the first two of them.
     triangles: u32,
     meets: [Meet; 2],
 }
@@ -45,22 +45,22 @@ impl Neighbor {
     }
 }
 
-/// A point's vertex and its neighbour's in one triangle.
+/// The point's vertex and the neighbour's vertex in one triangle.
 #[derive(Debug, Clone, Copy, Default)]
 struct Meet {
     own: Wedge,
     other: u32,
 }
 
-/// One of a point's vertices that has triangles.
+/// A vertex of a point that belongs to a triangle.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wedge {
     pub vertex: u32,
-    /// The same for wedges that lie beside each other, split here alone.
+    /// Number of its sheet: wedges that are split at this point only, and adjacent, are in one sheet.
     sheet: u32,
 }
 
-/// What surrounds a point.
+/// The neighbours and wedges of a point.
 #[derive(Default)]
 pub struct Neighbors {
     all: Vec<Neighbor>,
@@ -69,7 +69,7 @@ pub struct Neighbors {
 }
 
 impl Neighbors {
-    /// Looks around a point that is not locked.
+    /// Collects the neighbours and wedges of a point that is not locked.
     pub fn look(&mut self, topology: &Topology, point: u32, marks: &mut [Marks; 2]) {
         self.all.clear();
         self.wedges.clear();
@@ -100,7 +100,8 @@ impl Neighbors {
         self.keep_allowed(topology, point);
     }
 
-    /// Lists each wedge once; those are in one sheet whose triangles meet in an edge with one vertex at its far end.
+    /// Lists each wedge once. Wedges are in one sheet if their triangles meet in an edge that has a single
+    /// vertex at its far end.
     fn find_sheets(&mut self, topology: &Topology, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();
@@ -129,7 +130,8 @@ impl Neighbors {
         }
     }
 
-    /// Of a border, along it alone; and every sheet meets the neighbour.
+    /// Keeps the neighbours into which the point may collapse: for a point on a border, those along the border;
+    /// and every sheet must meet the neighbour.
     fn keep_allowed(&mut self, topology: &Topology, point: u32) {
         let sheets = self.sheets;
         self.all.retain(|neighbor| {
@@ -152,7 +154,8 @@ impl Neighbors {
         &self.wedges
     }
 
-    /// What a wedge may become: what it shares an edge with, or else what others of its sheet do.
+    /// The vertices that may replace a wedge: those with which it shares an edge, or else those with which the
+    /// other wedges of its sheet do.
     pub fn remap(&self, neighbor: &Neighbor, wedge: &Wedge) -> Remap {
         let mut remap = Remap::default();
         let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);

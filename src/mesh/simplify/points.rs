@@ -1,20 +1,20 @@
-//! Which vertices are copies of one point.
+//! Points: groups of vertices that share one position.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use glam::DVec3;
 
-/// No vertex.
+/// No vertex: the end of a chain.
 const NONE: u32 = u32::MAX;
 
-/// Vertices, grouped by their places in all poses. Points are numbered by their first vertices.
+/// Vertices grouped by their positions in all poses. Points are numbered in the order of their first vertices.
 pub struct Points {
     of: Vec<u32>,
     starts: Vec<u32>,
     wedges: Vec<u32>,
     poses: usize,
-    /// Point by point, each in all poses.
+    /// Positions, point by point, each in all poses.
     places: Vec<[f32; 3]>,
 }
 
@@ -38,7 +38,7 @@ impl Points {
         Self { of, starts, wedges, poses: poses.len(), places }
     }
 
-    /// How many there are.
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
@@ -47,12 +47,12 @@ impl Points {
         self.poses
     }
 
-    /// Of a vertex.
+    /// The point of a vertex.
     pub fn of(&self, vertex: u32) -> u32 {
         self.of[vertex as usize]
     }
 
-    /// The vertices of a point, ascending.
+    /// The vertices of a point, in ascending order.
     pub fn wedges(&self, point: u32) -> &[u32] {
         &self.wedges[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
     }
@@ -61,19 +61,20 @@ impl Points {
         glam::Vec3::from(self.places[point as usize * self.poses + pose]).as_dvec3()
     }
 
-    /// Of each vertex.
+    /// The point of each vertex.
     pub fn into_of(self) -> Vec<u32> {
         self.of
     }
 }
 
-/// Each vertex's point.
+/// The point of each vertex.
 fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
-    // Adding 0 makes one zero of two.
+    // Adding 0 turns −0 into +0.
     let bits = |pose: &Vec<[f32; 3]>, vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());
     let same = |a: usize, b: usize| poses[1..].iter().all(|pose| bits(pose, a) == bits(pose, b));
     let vertices = poses[0].len();
-    // The first vertex at a place of the first pose, and after each such vertex the next that differs in another.
+    // Maps a position in the first pose to its first vertex. From each such vertex a chain leads to the next
+    // one that differs in another pose.
     let mut firsts: HashMap<[u32; 3], u32> = HashMap::with_capacity(vertices);
     let mut others = vec![NONE; vertices];
     let mut of = Vec::with_capacity(vertices);

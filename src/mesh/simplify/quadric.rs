@@ -1,15 +1,17 @@
-//! Sums of squared distances from planes (Garland and Heckbert 1997).
+//! Quadrics: sums of squared distances from planes (Garland and Heckbert 1997).
 
 use glam::DVec3;
 
-/// The weighted sum of squared values of linear functions at a distance from an origin: there, `dᵀ A d + 2 b·d + c`.
+/// The weighted sum of squares of linear functions, evaluated at the offset d from an origin: `dᵀ A d + 2 b·d +
+/// c`.
 ///
-/// The origin is the place of the point that it belongs to: the planes of its own triangles pass through it, so
-/// differences are small against what they are taken from, wherever the mesh lies. In f64 because costs are squares:
-/// rounding 2⁻⁵² is 10⁻⁸ of an edge, where f32 would leave 2 · 10⁻⁴, and flat ground would not be flat.
+/// The origin is the position of the point that owns the quadric. The planes of that point's triangles pass
+/// through it, so that the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are
+/// squares: a rounding error of 2⁻⁵² is 10⁻⁸ of an edge, where f32 would leave 2 · 10⁻⁴ and would find a cost
+/// on flat ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Quadric {
-    /// The rows of A's upper half: xx, xy, xz, yy, yz, zz.
+    /// The upper triangle of A: xx, xy, xz, yy, yz, zz.
     a: [f64; 6],
     b: DVec3,
     c: f64,
@@ -17,8 +19,8 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// Of `weight × (gradient · d)²`; squared distances from a plane through the origin where the gradient has unit
-    /// length.
+    /// The quadric `weight × (gradient · d)²`: the squared distance from a plane through the origin if
+    /// `gradient` is a unit vector.
     pub fn linear(gradient: DVec3, weight: f64) -> Self {
         let DVec3 { x, y, z } = gradient;
         let a = [x * x, x * y, x * z, y * y, y * z, z * z].map(|product| product * weight);
@@ -34,14 +36,14 @@ impl Quadric {
         self.weight += other.weight;
     }
 
-    /// As [`Self::add`], without its weight.
+    /// As [`Self::add`], but leaves the weight as it is.
     pub fn add_unweighted(&mut self, other: &Self) {
         let weight = self.weight;
         self.add(other);
         self.weight = weight;
     }
 
-    /// Half its gradient at a distance from the origin.
+    /// Half the gradient of the quadric at the offset d.
     fn slope(&self, d: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.a;
         let ad = DVec3::new(
@@ -52,18 +54,18 @@ impl Quadric {
         ad + self.b
     }
 
-    /// Its value at a distance from the origin, not below 0.
+    /// The value at the offset d, clamped to 0 from below.
     pub fn at(&self, d: DVec3) -> f64 {
         ((self.slope(d) + self.b).dot(d) + self.c).max(0.0)
     }
 
-    /// The same from another origin.
+    /// The same quadric about another origin, at the offset d.
     pub fn moved(&self, d: DVec3) -> Self {
         Self { a: self.a, b: self.slope(d), c: self.at(d), weight: self.weight }
     }
 
-    /// As [`Self::moved`], where functions also change by a constant at the new origin: their sum with the gradients is
-    /// taken from b, and c becomes `c`.
+    /// As [`Self::moved`], for functions that also change by a constant at the new origin: `gradients`, the sum
+    /// of these constants times the gradients, is subtracted from b, and `c` replaces c.
     pub fn moved_by(&self, d: DVec3, gradients: DVec3, c: f64) -> Self {
         Self { a: self.a, b: self.slope(d) - gradients, c, weight: self.weight }
     }

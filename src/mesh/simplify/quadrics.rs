@@ -1,4 +1,4 @@
-//! The cost by quadrics: of every point in each pose, and of every vertex's attributes.
+//! The quadric cost: the quadrics of every point in each pose, and of every vertex's attributes.
 
 use super::Surface;
 use super::attributes::Attributes;
@@ -8,9 +8,9 @@ use super::quadric::Quadric;
 use super::topology::{Corner, Topology};
 use super::turned::normal;
 
-/// Quadrics of everything.
+/// The quadrics of a mesh.
 pub struct Quadrics<'a> {
-    /// Point by point, each in all poses.
+    /// Quadrics of positions, point by point, each in all poses.
     shape: Vec<Quadric>,
     attributes: Option<Attributes<'a>>,
 }
@@ -33,8 +33,8 @@ impl<'a> Quadrics<'a> {
         self.attributes.is_some()
     }
 
-    /// The mean square distance of a point's planes from its neighbour, in the worst pose; none where it is not below
-    /// `most`.
+    /// The mean squared distance of a point's planes from its neighbour, in the worst pose. `None` if it is not
+    /// below `most`.
     pub fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
@@ -50,7 +50,8 @@ impl<'a> Quadrics<'a> {
         Some(worst)
     }
 
-    /// The mean square difference of attributes, where a point and all its wedges become what they had best become.
+    /// The mean squared difference in attributes if a point collapses and each of its wedges is replaced by the
+    /// cheapest vertex allowed.
     pub fn attribute_cost(
         &self,
         points: &Points,
@@ -68,7 +69,7 @@ impl<'a> Quadrics<'a> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// What a wedge becomes, at the least cost to its attributes, and that cost.
+    /// The cheapest replacement of a wedge, and its cost in attributes.
     pub fn target(
         &self,
         points: &Points,
@@ -83,7 +84,7 @@ impl<'a> Quadrics<'a> {
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0))
     }
 
-    /// A point becomes its neighbour, and its wedges what `moved` says.
+    /// Merges a point into its neighbour, and its wedges into the vertices that `moved` names.
     pub fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for pose in 0..points.poses() {
             let d = points.place(neighbor, pose) - points.place(point, pose);
@@ -98,13 +99,14 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Its plane for each corner, weighted by its area, and for both ends of an edge that is held the plane across it,
-/// weighted by the square of its length: a border that is off by a distance costs about that distance. These are not part
-/// of the weight by which sums are divided, or ends of borders would seem nearer to their triangles than they are.
+/// Adds a triangle's plane to each corner, weighted by the area, and for each held edge the plane across it to
+/// both ends, weighted by the square of the edge's length: displacing a border by a distance costs about that
+/// distance. The planes of held edges do not count in the weight by which sums are divided; otherwise the ends
+/// of borders would seem closer to their triangles than they are.
 fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, triangle: u32) {
     let corners = topology.corners(triangle);
     let of = corners.map(|corner| corner.point);
-    // Of no area in any pose.
+    // The triangle has no area in any pose.
     if of[0] == of[1] || of[1] == of[2] || of[2] == of[0] {
         return;
     }
@@ -127,7 +129,8 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, tri
     }
 }
 
-/// Whether an edge of a triangle is of a border, or differs at both ends from that of the triangle on the other side.
+/// Whether an edge is held: it is on a border, or the triangle on its other side has different wedges at both
+/// ends.
 fn is_held(topology: &Topology, triangle: u32, from: Corner, to: Corner) -> bool {
     let is_shorter = topology.around(from.point).len() < topology.around(to.point).len();
     let [near, far] = if is_shorter { [from, to] } else { [to, from] };

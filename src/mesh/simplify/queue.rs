@@ -1,28 +1,28 @@
-//! Which point goes next: the one whose best collapse is cheapest.
+//! The priority queue of points, ordered by the cost of each point's best collapse.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What a point had best become.
+/// The best collapse of a point: the neighbour, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Best {
     pub neighbor: u32,
-    /// Not below 0.
+    /// The squared cost; at least 0.
     pub cost: f64,
-    /// Whether something cheaper is not legal as things are.
+    /// Whether a cheaper collapse exists that is not legal at the moment.
     pub is_second: bool,
 }
 
-/// An entry of the heap: cost, point, and the point's change that made it.
+/// An entry of the heap: cost, point, and the number of the point's change that made the entry.
 type Entry = Reverse<(u64, u32, u32)>;
 
-/// Each point's best collapse, cheapest first. Entries that no longer hold are left out when their turn comes, or when
-/// they are most of all.
+/// The best collapse of each point, cheapest first. Stale entries are dropped when they reach the top, or when
+/// they are in the majority.
 pub struct Queue {
     heap: BinaryHeap<Entry>,
     best: Vec<Option<Best>>,
     changes: Vec<u32>,
-    /// How many points have a best.
+    /// Number of points that have a best collapse.
     waiting: usize,
 }
 
@@ -37,7 +37,7 @@ impl Queue {
         self.best[point as usize].as_ref()
     }
 
-    /// Takes the place of what it was.
+    /// Replaces the best collapse of a point.
     pub fn set(&mut self, point: u32, best: Option<Best>) {
         let before = &mut self.best[point as usize];
         self.waiting = self.waiting + usize::from(best.is_some()) - usize::from(before.is_some());
@@ -53,7 +53,8 @@ impl Queue {
         }
     }
 
-    /// The cheapest, the lower point first of two. It stays the point's best, and has to be set again.
+    /// The cheapest collapse; of equal ones, that of the lower point. The point keeps it as its best, and the
+    /// caller must set it again.
     pub fn pop(&mut self) -> Option<(u32, Best)> {
         while let Some(entry) = self.heap.pop() {
             let Reverse((_, point, _)) = entry;
@@ -71,7 +72,7 @@ fn holds(&Reverse((_, point, change)): &Entry, best: &[Option<Best>], changes: &
     changes[point as usize] == change && best[point as usize].is_some()
 }
 
-/// Numbers that are not negative are ordered as their bits are.
+/// The bits of non-negative floats have the order of the floats.
 fn entry(point: u32, best: &Best, change: u32) -> Entry {
     Reverse((best.cost.to_bits(), point, change))
 }

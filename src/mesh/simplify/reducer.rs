@@ -1,4 +1,4 @@
-//! Collapse after collapse.
+//! The main loop of simplification: one collapse after the other.
 
 use super::melax;
 use super::neighbors::{Neighbor, Neighbors};
@@ -10,23 +10,23 @@ use super::tracked_samples::TrackedSamples;
 use super::turned::turns_any;
 use super::{Collapse, Cost, Options, Simplified, Stopped, Surface};
 
-/// A mesh on its way down.
+/// The state of a mesh that is being simplified.
 struct Reducer<'a> {
     points: Points,
     topology: Topology,
     cost: Cost,
-    /// With [`Cost::Quadric`] alone.
+    /// Only for [`Cost::Quadric`].
     quadrics: Option<Quadrics<'a>>,
-    /// Where distances are limited.
+    /// Only where distances are limited.
     tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
-    /// Of points, and of vertices.
+    /// Marks for points, and for vertices.
     marks: [Marks; 2],
-    /// Whose triangles the last collapse changed.
+    /// The points whose triangles the last collapse changed.
     changed: Vec<u32>,
 }
 
-/// Collapses as the options say, within one distance after the other.
+/// Collapses until a limit of `options` is reached, within one distance after the other.
 pub fn reduce(
     surface: &Surface<'_>,
     points: Points,
@@ -49,7 +49,7 @@ pub fn reduce(
     Simplified { collapses, moved, points: reducer.points.into_of(), triangles, stopped }
 }
 
-/// What was done.
+/// The collapses so far.
 #[derive(Default)]
 struct Done {
     collapses: Vec<Collapse>,
@@ -70,7 +70,8 @@ impl<'a> Reducer<'a> {
         Self { points, topology, cost, quadrics, tracked_samples, neighbors, marks, changed }
     }
 
-    /// Goes on until nothing is left that is legal, with no place further off than a distance.
+    /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
+    /// reached.
     fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
         if let Some(tracked_samples) = &mut self.tracked_samples {
             tracked_samples.set_most(distance);
@@ -108,7 +109,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Collapses, and finds out what those around had best become now.
+    /// Performs a collapse, and updates the best collapses of the points around it.
     fn step(&mut self, queue: &mut Queue, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let mut changed = std::mem::take(&mut self.changed);
         self.collect(&[point], &mut changed);
@@ -132,9 +133,10 @@ impl<'a> Reducer<'a> {
         self.changed = changed;
     }
 
-    /// Normals of points have changed, and triangles that places may lie on, so that something that was refused to a
-    /// neighbour of theirs may be legal now. Nothing else becomes legal for points whose own triangles are as they were:
-    /// their triangles turn as before, and who neighbours both ends of an edge can only become more.
+    /// Reconsiders the neighbours of changed points. Normals of points have changed, and so have the triangles
+    /// to which samples may be assigned; a collapse of a neighbour that was refused before may be legal now.
+    /// For points whose own triangles are unchanged, nothing else can become legal: their triangles turn as
+    /// before, and the set of points that neighbour both ends of an edge can only grow.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
         self.collect(changed, &mut around);
@@ -145,8 +147,8 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Whether what a point had best become is still there, and its other costs are what they were but for that of
-    /// becoming what `collapsed` became.
+    /// Whether the best collapse of `point` is still valid and its other costs are unchanged, except the cost
+    /// of collapsing into the neighbour that replaced `collapsed`.
     fn is_plain(&self, point: u32, collapsed: u32, best: &Best) -> bool {
         self.quadrics.as_ref().is_some_and(|quadrics| !quadrics.has_attributes())
             && self.topology.kind(point) == Kind::Interior
@@ -155,7 +157,7 @@ impl<'a> Reducer<'a> {
             && best.neighbor != collapsed
     }
 
-    /// The better of a neighbour and what was best.
+    /// The cheaper of `best` and the collapse into `neighbor`.
     fn nearer(&self, point: u32, neighbor: u32, best: Best) -> Option<Best> {
         let is_lower = neighbor < best.neighbor;
         let most = if is_lower { best.cost.next_up() } else { best.cost };
@@ -163,7 +165,7 @@ impl<'a> Reducer<'a> {
         Some(cost.map_or(best, |cost| Best { neighbor, cost, is_second: false }))
     }
 
-    /// Who neighbours any of some points, once each.
+    /// Collects the neighbours of some points, each once.
     fn collect(&mut self, points: &[u32], around: &mut Vec<u32>) {
         around.clear();
         let marks = &mut self.marks[0];
@@ -177,7 +179,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// The cheapest of a point's collapses, legal or not; the lower neighbour of two.
+    /// The cheapest collapse of a point, legal or not; of equal ones, that into the lower neighbour.
     fn find(&mut self, point: u32) -> Option<Best> {
         if self.topology.kind(point) == Kind::Locked {
             return None;
@@ -187,7 +189,7 @@ impl<'a> Reducer<'a> {
         for neighbor in self.neighbors.all() {
             let most = best.map_or(f64::INFINITY, |best| best.cost);
             let is_lower = best.is_some_and(|best| neighbor.point < best.neighbor);
-            // The next number, so that an equal cost is told too.
+            // The next larger number, so that an equal cost is found too.
             let Some(cost) = self.cost(point, neighbor, if is_lower { most.next_up() } else { most }) else {
                 continue;
             };
@@ -196,7 +198,7 @@ impl<'a> Reducer<'a> {
         best
     }
 
-    /// The cheapest that is legal as things are.
+    /// The cheapest collapse of a point that is legal at the moment.
     fn find_legal(&mut self, point: u32) -> Option<Best> {
         self.neighbors.look(&self.topology, point, &mut self.marks);
         let costs = self.neighbors.all().iter();
@@ -211,7 +213,8 @@ impl<'a> Reducer<'a> {
         Some(Best { neighbor, cost: f64::from_bits(cost), is_second: true })
     }
 
-    /// Of a collapse to one of the neighbours last looked at; none where it is not below `most`.
+    /// The cost of a collapse into one of the neighbours that were collected last; `None` if it is not below
+    /// `most`.
     fn cost(&self, point: u32, neighbor: &Neighbor, most: f64) -> Option<f64> {
         match &self.quadrics {
             Some(quadrics) => {
@@ -238,7 +241,8 @@ impl<'a> Reducer<'a> {
             })
     }
 
-    /// A point becomes its neighbour: all its vertices, those too that have no triangles any more.
+    /// Merges a point into its neighbour: all its vertices, including those that no longer belong to a
+    /// triangle.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let start = moved.len();
         self.neighbors.look(&self.topology, point, &mut self.marks);
@@ -272,7 +276,7 @@ impl<'a> Reducer<'a> {
 mod tests {
     use super::*;
 
-    /// A cylinder with a seam and bumps so high, and the same bent.
+    /// A cylinder with a seam and with bumps of the given height, in two poses: straight and bent.
     fn pipe(bumps: f32, seed: usize) -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
         let (sides, rings) = (9, 8);
         let (mut places, mut uv, mut indices) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
@@ -297,8 +301,8 @@ mod tests {
         (places, uv, indices)
     }
 
-    /// Simplifies as far as it goes; in how many steps, and how often something was legal that was not the cheapest of its
-    /// point.
+    /// Simplifies until nothing is legal. Returns the number of steps, and how often the collapse taken was not
+    /// the cheapest of its point.
     fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 2] {
         let points = Points::new(surface.poses);
         let topology = Topology::new(&points, surface.indices);
@@ -320,7 +324,7 @@ mod tests {
         [steps, seconds]
     }
 
-    /// What the queue gives is the cheapest of all legal collapses, as everybody finds them anew.
+    /// The queue always returns the cheapest of all legal collapses, as a full search finds it.
     #[test]
     fn the_cheapest_legal_collapse_is_always_next() {
         for (cost, distance) in [

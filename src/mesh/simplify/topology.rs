@@ -1,8 +1,8 @@
-//! Who is whose neighbour: triangles, and those around each point.
+//! The connectivity of the mesh: its triangles, and the triangles around each point.
 
 use super::points::Points;
 
-/// Numbers for some of many things, forgotten all at once.
+/// A sparse map from indices to numbers that can be cleared in constant time.
 pub struct Marks {
     current: u32,
     stamps: Vec<u32>,
@@ -14,7 +14,7 @@ impl Marks {
         Self { current: 0, stamps: vec![0; count], values: vec![0; count] }
     }
 
-    /// Forgets all.
+    /// Removes all entries.
     pub fn clear(&mut self) {
         if self.current == u32::MAX {
             self.stamps.fill(0);
@@ -32,7 +32,7 @@ impl Marks {
         self.values[at as usize] = value;
     }
 
-    /// Whether it had none.
+    /// Marks an index. Returns whether it had no mark.
     pub fn insert(&mut self, at: u32) -> bool {
         let is_new = self.get(at).is_none();
         self.set(at, 0);
@@ -40,14 +40,14 @@ impl Marks {
     }
 }
 
-/// A triangle's corner.
+/// A corner of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Corner {
     pub vertex: u32,
     pub point: u32,
 }
 
-/// A triangle seen from one of its points: its vertex there, and the other corners in the triangle's order.
+/// A triangle seen from one of its points: the vertex there, and the other two corners in the triangle's order.
 #[derive(Debug, Clone, Copy)]
 pub struct RingTriangle {
     pub triangle: u32,
@@ -56,18 +56,18 @@ pub struct RingTriangle {
     pub last: Corner,
 }
 
-/// What surrounds a point.
+/// The kind of a point's neighbourhood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Triangles all around.
+    /// Triangles surround the point.
     Interior,
-    /// Triangles from one border edge to another.
+    /// Triangles form a fan from one border edge to another.
     Border,
-    /// No triangle, or anything else: it stays.
+    /// The point has no triangle, or any other neighbourhood: it is never removed.
     Locked,
 }
 
-/// Triangles with three different points; the others are as good as gone.
+/// The triangles that have three different points. All others count as removed.
 pub struct Topology {
     corners: Vec<[Corner; 3]>,
     around: Vec<Vec<u32>>,
@@ -102,8 +102,8 @@ impl Topology {
         topology
     }
 
-    /// A point is manifold where each neighbour begins at most one triangle and ends at most one, and following them
-    /// from one to the next passes all.
+    /// The kind of a point. It is manifold if each neighbour begins at most one of its triangles and ends at
+    /// most one, and if following the triangles from one to the next visits all of them.
     fn kind_of(&self, point: u32, follows: &mut Marks, leads: &mut Marks) -> Kind {
         let Some(some) = self.one_ring(point).next() else { return Kind::Locked };
         follows.clear();
@@ -132,7 +132,7 @@ impl Topology {
         }
     }
 
-    /// Triangles left.
+    /// Number of remaining triangles.
     pub fn triangles(&self) -> usize {
         self.triangles
     }
@@ -162,8 +162,9 @@ impl Topology {
         })
     }
 
-    /// Whether a point may become its neighbour without a change of topology: whoever neighbours both lies across a
-    /// triangle of theirs, and no two of these share a triangle with each of them.
+    /// Whether a collapse keeps the topology (the link condition): every common neighbour of the two points
+    /// lies across a triangle that both share, and no two of these common neighbours share a triangle with each
+    /// of the two points.
     pub fn keeps_topology(&self, point: u32, neighbor: u32, marks: &mut Marks) -> bool {
         marks.clear();
         let mut across = [u32::MAX; 2];
@@ -190,7 +191,7 @@ impl Topology {
         {
             return false;
         }
-        // Of each neighbour in common, once: those across are known to be two different ones.
+        // Counts each common neighbour once; those across a shared triangle are known to be different.
         let mut common = 0;
         for ring in self.one_ring(point) {
             for other in [ring.next.point, ring.last.point] {
@@ -203,7 +204,7 @@ impl Topology {
         common == shared
     }
 
-    /// A point becomes its neighbour; `moved` has what each of its vertices becomes.
+    /// Merges a point into its neighbour; `moved` has the replacement of each of its vertices.
     pub fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for triangle in std::mem::take(&mut self.around[point as usize]) {
             let corners = &mut self.corners[triangle as usize];

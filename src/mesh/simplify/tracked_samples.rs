@@ -1,5 +1,5 @@
-//! Where the mesh lies on what is left of it: how far it is off, measured, at its points and at the middles of its
-//! edges and triangles.
+//! Measured distances between the mesh and its simplification, in both directions, sampled at the mesh's points
+//! and at the midpoints of edges and triangles.
 
 use glam::Vec3;
 
@@ -7,30 +7,32 @@ use super::points::Points;
 use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
-/// Places of the mesh, each with a triangle that it is within a distance of in every pose.
+/// Samples of the mesh, each assigned to a remaining triangle that is within the limit of it in every pose.
 pub struct TrackedSamples {
-    /// Of each triangle: points that are gone, and behind all points numbers of middles.
+    /// For each triangle, the samples assigned to it: numbers of removed points, and beyond those, numbers of
+    /// midpoints.
     collapsed: Vec<Vec<u32>>,
     middles: Middles,
-    /// The most that a place may be off, squared.
+    /// The square of the largest distance allowed.
     most: f32,
-    /// The collapse that was last looked at, if it keeps near.
+    /// The collapse that was tested last, if it keeps within the limit.
     looked_at: Option<[u32; 2]>,
-    /// Of this: places and their triangles.
+    /// For that collapse: samples, with their new triangles.
     found: Vec<(u32, u32)>,
-    /// Likewise: triangles that there would be, those that it changes first, and their corners.
+    /// For that collapse: the triangles that would exist afterwards, the changed ones first, with their
+    /// corners.
     triangles: Vec<(u32, [u32; 3])>,
-    /// How many it changes.
+    /// For that collapse: the number of triangles that it changes.
     changed: usize,
-    /// Triangles of the mesh that these may lie on.
+    /// For that collapse: the triangles of the mesh that the changed ones may lie on.
     below: Vec<[u32; 3]>,
 }
 
-/// Middles of the mesh's edges and triangles.
+/// The midpoints of the mesh's edges and triangles.
 struct Middles {
-    /// One after another, each in all poses.
+    /// Positions, one midpoint after the other, each in all poses.
     places: Vec<Vec3>,
-    /// A triangle of the mesh that each lies on: its points.
+    /// For each midpoint, a triangle of the mesh on which it lies, by its points.
     triangles: Vec<[u32; 3]>,
 }
 
@@ -41,7 +43,7 @@ impl TrackedSamples {
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
                 let corners = [point, ring.next.point, ring.last.point];
-                // The other triangle of an edge has it the other way round, unless it is a border's.
+                // The edge's other triangle has it in the opposite direction, unless the edge is on a border.
                 let is_border = || !topology.one_ring(point).any(|other| other.last.point == corners[1]);
                 let is_first = corners.iter().all(|other| point <= *other);
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
@@ -56,13 +58,14 @@ impl TrackedSamples {
         Self { collapsed, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
     }
 
-    /// Chooses the most that a place may be off from now on.
+    /// Sets the largest distance that is allowed from now on.
     pub fn set_most(&mut self, distance: f32) {
         self.most = distance * distance;
     }
 
-    /// Whether a point may become its neighbour: it, and all places on the triangles that this changes, find a triangle
-    /// among those that both have then; and the middles of these and of their edges lie near the mesh.
+    /// Tests the collapse of a point into its neighbour. It passes if the point and all samples on the
+    /// triangles that change find a triangle within the limit among those that the two points have afterwards,
+    /// and if the midpoints of the changed triangles and of their edges lie within the limit of the mesh.
     pub fn keeps_near(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
         self.looked_at = None;
         self.triangles.clear();
@@ -95,7 +98,8 @@ impl TrackedSamples {
         is_near
     }
 
-    /// Whether the middle of some points lies near one and the same triangle of the mesh in all poses.
+    /// Whether the midpoint of some points is within the limit of a triangle of the mesh, the same one in all
+    /// poses.
     fn is_near(&self, points: &Points, ends: &[u32]) -> bool {
         let is_near = |triangle: &[u32; 3], pose: usize| {
             let wanted = middle(points, ends, pose);
@@ -105,7 +109,8 @@ impl TrackedSamples {
         self.below.iter().any(|triangle| (0..points.poses()).all(|pose| is_near(triangle, pose)))
     }
 
-    /// The triangle whose largest distance in any pose is least, if it is not too large.
+    /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the
+    /// limit.
     fn nearest(&self, points: &Points, collapsed: u32) -> Option<u32> {
         let place = |point: u32, pose: usize| -> Vec3 { points.place(point, pose).as_vec3() };
         let mut best = None;
@@ -130,9 +135,9 @@ impl TrackedSamples {
         best
     }
 
-    /// Takes note of a collapse that keeps near, before it happens.
+    /// Records a collapse that keeps within the limit. Call it before the collapse happens.
     pub fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
-        // Others may have been looked at since.
+        // Other collapses may have been tested in between.
         if self.looked_at.take() != Some([point, neighbor]) {
             self.keeps_near(topology, points, point, neighbor);
         }
@@ -157,7 +162,7 @@ mod tests {
 
     const SIDE: u32 = 18;
 
-    /// A bumpy sheet, flat, and bent.
+    /// A bumpy sheet in two poses: flat, and bent.
     fn sheet() -> (Vec<Vec<[f32; 3]>>, Vec<u32>) {
         let bump =
             |x: u32, y: u32| 0.02 * libm::sinf(0.9 * x as f32) + 0.03 * libm::cosf(0.55 * (x + 2 * y) as f32);
@@ -176,7 +181,7 @@ mod tests {
         (poses, all().filter(|(x, y)| x.max(y) < &(SIDE - 1)).flat_map(quad).collect())
     }
 
-    /// Corners, middles of edges and of triangles.
+    /// Corners, and midpoints of edges and triangles.
     fn places(pose: &[[f32; 3]], indices: &[u32]) -> Vec<Vec3> {
         let of = |triangle: &[u32]| {
             let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(pose[triangle[corner] as usize]));
@@ -185,7 +190,7 @@ mod tests {
         indices.chunks_exact(3).flat_map(of).collect()
     }
 
-    /// How far places of one are from all of the other, at most; both ways, in all poses.
+    /// The largest distance between samples of one surface and the other, in both directions and in all poses.
     fn off(poses: &[Vec<[f32; 3]>], mesh: &[u32], level: &[u32]) -> f32 {
         let one_way = |pose: &Vec<[f32; 3]>, from: &[u32], to: &[u32]| {
             let distance = |place: Vec3| {
@@ -221,7 +226,7 @@ mod tests {
             last = triangles.len();
         }
         assert!(6 * last < indices.len(), "{last} indices left");
-        // Quadrics alone have more triangles left when first they are so far off.
+        // Quadrics alone leave more triangles when they first reach this distance.
         let plain = simplify(&surface, &Options::default()).expect("valid");
         assert!(plain.collapses().iter().all(|collapse| collapse.distance == f32::INFINITY));
         let within = |count| off(&poses, &indices, &level(&plain, count)) <= 0.02;

@@ -1,19 +1,20 @@
-//! Normals of triangles, and whether a collapse turns one around (A section 4.1).
+//! Normals of triangles, and the test whether a collapse flips one (A section 4.1).
 
 use glam::DVec3;
 
 use super::points::Points;
 use super::topology::Topology;
 
-/// The largest squared sine of an angle between two edges of a triangle that has no area. Coordinates are rounded to
-/// 2⁻²⁴ of their size, so smaller ones are noise.
+/// The squared sine of the angle between two edges up to which a triangle counts as having no area. Coordinates
+/// are rounded to 2⁻²⁴ of their size, so that smaller angles are noise.
 const NO_AREA: f64 = 1e-12;
 
-/// A triangle has no area.
+/// A triangle without area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Flat;
 
-/// Of a triangle's corners: as long as twice its area, to the side from which they are counter-clockwise.
+/// The normal of a triangle: its length is twice the area, and the corners are counter-clockwise seen from the
+/// side to which it points.
 pub fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     let (first, second) = (b - a, c - a);
     let normal = first.cross(second);
@@ -21,8 +22,8 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     if normal.length_squared() > least { Ok(normal) } else { Err(Flat) }
 }
 
-/// Whether a triangle of a point turns by 90° or more, or loses its area, in any pose, where the point becomes its
-/// neighbour. Triangles without area may turn.
+/// Whether a collapse turns a triangle of the point by 90° or more, or takes its area away, in any pose.
+/// Triangles that have no area before may turn.
 pub fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
     let stays = |pose: usize, [from, to]: [DVec3; 2], others: [u32; 2]| {
         let [next, last] = others.map(|other| points.place(other, pose));

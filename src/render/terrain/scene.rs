@@ -1,4 +1,4 @@
-//! What a terrain renderer draws: fields that are added, moved and removed as the viewer travels.
+//! The scene of a terrain renderer: fields that are added, moved and removed as the viewer travels.
 
 use encase::{ShaderSize, ShaderType};
 use glam::{IVec2, Vec2};
@@ -10,7 +10,7 @@ use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
 
-/// `FieldParams` of the shader.
+/// The shader's `FieldParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct FieldParams {
     pub in_width: u32,
@@ -20,18 +20,19 @@ pub(crate) struct FieldParams {
     pub tiling: f32,
 }
 
-/// `Place` of the shader.
+/// The shader's `Place`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct Place {
     pub origin: IVec2,
     pub uv: Vec2,
 }
 
-/// Fields that were added to a [`TerrainScene`]. Never used again, not even after they were removed.
+/// Identifies fields that were added to a [`TerrainScene`]. An identifier is never used again, even after the
+/// fields are removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FieldsId(u64);
 
-/// Fields of one buffer, bound.
+/// The fields of one buffer, with their bind group.
 #[derive(Debug, Clone)]
 struct Part {
     id: FieldsId,
@@ -45,7 +46,7 @@ struct Part {
 }
 
 impl Part {
-    /// Chooses the places of the next submission, in the buffer that there is.
+    /// Writes the places of the next submission into the existing buffer.
     fn set_places(&mut self, gpu: &Gpu, patches: &[[i32; 2]], origin: [i32; 2]) -> Result<(), Error> {
         if patches.len() > self.capacity as usize {
             let bound = format!("must be at most {}, the fields' count", self.capacity);
@@ -62,12 +63,12 @@ impl Part {
     }
 }
 
-/// Terrain to draw: add fields, set the camera, then draw in any render pass.
+/// A terrain scene: add fields, set the camera, then draw in any render pass.
 ///
-/// A world that streams keeps a set of [`Fields`] and adds them once. As the viewer travels, it generates new
-/// patches into them and tells the scene with [`TerrainScene::set_places`], which allocates nothing. World
-/// position 0 is the first sample of the patch `origin`: move it along with the viewer, so that `f32` positions
-/// stay small.
+/// A streaming world keeps a set of [`Fields`] and adds them once. As the viewer travels, it generates new
+/// patches into them and passes their positions to [`TerrainScene::set_places`], which allocates nothing. World
+/// position 0 is the first sample of the patch `origin`: move the origin along with the viewer, so that `f32`
+/// positions stay small.
 #[derive(Debug, Clone)]
 pub struct TerrainScene {
     renderer: TerrainRenderer,
@@ -83,13 +84,13 @@ impl TerrainScene {
         Self { renderer, view, uniform, group, parts: Vec::new(), added: 0 }
     }
 
-    /// Adds the fields of `patches`, which reach at least one sample beyond them. World position 0 is the first
-    /// sample of patch `origin`. There is room for as many patches as there are fields; those beyond
-    /// `patches` are not drawn.
+    /// Adds the fields of `patches`, which must extend at least one sample beyond them. World position 0 is the
+    /// first sample of patch `origin`. There is room for as many patches as there are fields; fields without a
+    /// patch in `patches` are not drawn.
     ///
     /// # Errors
     /// [`InputError`] for a configuration out of bounds, fields without a margin, or patches so far from the
-    /// origin that `f32` cannot tell their samples apart; [`crate::gpu::GpuError`].
+    /// origin that `f32` cannot resolve their samples; [`crate::gpu::GpuError`].
     pub fn add(
         &mut self,
         gpu: &Gpu,
@@ -129,13 +130,13 @@ impl TerrainScene {
         Ok(id)
     }
 
-    /// Draws the fields `id` as `patches` from the next submission on: at most as many as there are fields,
-    /// the first patch from the first field. Allocates nothing on the device; the heights are whatever the
-    /// fields hold by then.
+    /// From the next submission on, draws the fields `id` as `patches`: at most as many as there are fields,
+    /// the first patch from the first field. Allocates nothing on the device; the heights are those that the
+    /// fields hold at that time.
     ///
     /// # Errors
-    /// [`InputError`] for fields that were removed, too many patches, or patches too far from `origin`; then
-    /// nothing has changed. [`crate::gpu::GpuError`].
+    /// [`InputError`] for fields that were removed, for too many patches, and for patches too far from
+    /// `origin`; nothing changes then. [`crate::gpu::GpuError`].
     pub fn set_places(
         &mut self,
         gpu: &Gpu,
@@ -149,7 +150,7 @@ impl TerrainScene {
         }
     }
 
-    /// Removes fields, and lets go of their buffers. Whether they were there.
+    /// Removes fields and releases their buffers. Returns whether they were in the scene.
     pub fn remove(&mut self, id: FieldsId) -> bool {
         let before = self.parts.len();
         self.parts.retain(|part| part.id != id);
@@ -161,10 +162,10 @@ impl TerrainScene {
         self.parts.clear();
     }
 
-    /// Chooses the camera of the next submission.
+    /// Sets the camera of the next submission.
     ///
     /// # Errors
-    /// [`InputError`] for what is no camera; [`crate::gpu::GpuError`].
+    /// [`InputError`] for an invalid camera; [`crate::gpu::GpuError`].
     pub fn set_camera(&mut self, gpu: &Gpu, camera: &Camera, aspect: f32) -> Result<(), Error> {
         self.view.clip_from_world = camera.clip_from_world(aspect)?;
         Ok(self.uniform.write(gpu, &self.view)?)
@@ -184,7 +185,7 @@ impl TerrainScene {
 fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Place, InputError> {
     let edge = i64::from(size) - 1;
     let samples = [0, 1].map(|axis| (i64::from(patch[axis]) - i64::from(origin[axis])) * edge);
-    // Positions are whole samples, exact in f32 up to 2^24.
+    // Positions are integers in units of samples, which f32 represents exactly up to 2^24.
     if samples.iter().any(|sample| sample.abs() + edge > 1 << 24) {
         let bound = format!("must lie within 2^24 samples of the origin {origin:?} to be drawn");
         return Err(InputError::new("patchCoordinates", format!("{patch:?}"), bound));

@@ -1,4 +1,5 @@
-//! The creature's skin: closed tubes around its chains of bones, about 5,000 vertices, each with up to four bones.
+//! The creature's mesh: closed tubes around its chains of bones, about 5,000 vertices, each with up to four
+//! influences.
 
 use std::collections::HashMap;
 
@@ -11,13 +12,13 @@ use crate::asset::Mesh;
 use crate::asset::influences::{Influence, Influences};
 use crate::asset::mesh::solved_tangents;
 
-/// The most bones of a vertex.
+/// The largest number of influences of a vertex.
 const MAX: usize = 4;
 
-/// The mesh of a skin of all bones; `places` are where those are at rest.
+/// The mesh, for a skin of all bones. `places` are the positions of the bones at rest.
 ///
 /// # Errors
-/// None that anybody has seen: it is checked like any other mesh.
+/// None in practice: the mesh is checked like any other.
 pub fn body(parts: &[Part], places: &[DVec3]) -> Result<Mesh, InputError> {
     let mut body = Body { parts, places, surface: Surface::default() };
     body.trunk();
@@ -54,7 +55,8 @@ impl Body<'_> {
         self.surface.add(&Tube { sections, reference, sides, rings, cap, blend });
     }
 
-    /// A chain of thin bones that begins `inside` what it grows from, and ends `beyond` its last joint.
+    /// A chain of thin bones that begins at `inside`, within the part from which it grows, and ends at
+    /// `beyond`, past its last joint.
     fn shoot(
         &mut self,
         kinds: &[Kind],
@@ -104,7 +106,7 @@ impl Body<'_> {
         }
     }
 
-    /// Gives a bone near the surface a share of the vertices around it.
+    /// Gives a bone near the surface a part of the weight of the vertices around it.
     fn soften(&mut self, first: usize, kind: Kind) {
         let (bone, center) = (self.bone(kind), self.place(kind));
         let surface = &mut self.surface;
@@ -219,7 +221,7 @@ impl Body<'_> {
     }
 }
 
-/// Adds normals, the same on both sides of seams, and tangents.
+/// Adds tangents, and normals that are equal on both sides of seams.
 fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
     let positions: Vec<[f32; 3]> =
         surface.positions.iter().map(|position| position.to_array().map(|x| x as f32)).collect();
@@ -244,7 +246,7 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
     })
 }
 
-/// The strongest few.
+/// The strongest influences, at most `MAX`.
 fn strongest(mut influences: Vec<Influence>) -> Vec<Influence> {
     let mut merged: Vec<Influence> = Vec::new();
     for influence in influences.drain(..).filter(|influence| influence.weight > 1e-3) {
@@ -258,7 +260,7 @@ fn strongest(mut influences: Vec<Influence>) -> Vec<Influence> {
     merged
 }
 
-/// Smooth normals; vertices at one place share theirs.
+/// Smooth normals that vertices at one position share.
 fn welded_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let welded = weld(positions);
     let indices: Vec<u32> = indices.iter().map(|index| welded[*index as usize]).collect();
@@ -266,7 +268,7 @@ fn welded_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     welded.iter().map(|first| normals[*first as usize]).collect()
 }
 
-/// For each vertex the first one at its place.
+/// For each vertex, the first vertex at its position.
 pub fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
     let mut first = HashMap::new();
     let bits = |position: &[f32; 3]| position.map(|x| (x + 0.0).to_bits());

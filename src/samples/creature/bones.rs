@@ -2,7 +2,7 @@
 
 use crate::asset::transform::Transform;
 
-/// Which side of the body.
+/// A side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     Left,
@@ -12,7 +12,7 @@ pub enum Side {
 impl Side {
     const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// +1 on the left, where x is positive.
+    /// +1 on the left, where x is positive; −1 on the right.
     pub fn sign(self) -> f64 {
         if self == Self::Left { 1.0 } else { -1.0 }
     }
@@ -22,7 +22,7 @@ impl Side {
     }
 }
 
-/// What a bone is; numbers count away from the trunk.
+/// The role of a bone; numbers count away from the trunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Root,
@@ -87,14 +87,14 @@ impl Kind {
     }
 }
 
-/// A bone with what it is.
+/// A bone with its role.
 pub struct Part {
     pub kind: Kind,
     pub parent: Option<u32>,
     pub rest: Transform,
 }
 
-/// All bones, each with what lies below it behind it.
+/// All bones in depth-first order.
 pub fn parts() -> Vec<Part> {
     let mut body = Body(Vec::with_capacity(153));
     let root = body.add(Kind::Root, None, [0.0; 3]);
@@ -127,7 +127,8 @@ impl Body {
         self.0.len() as u32 - 1
     }
 
-    /// A chain of `count` bones: the first at `first`, the others at `next` from each other.
+    /// A chain of `count` bones: the first at `first` in its parent's space, each other one at `next` from the
+    /// one before.
     fn chain(
         &mut self,
         parent: u32,
@@ -158,7 +159,7 @@ impl Body {
         let x = side.sign() as f32;
         let clavicle = self.add(Kind::Clavicle(side), Some(chest), [0.03 * x, 0.02, 0.02]);
         let upper = self.add(Kind::UpperArm(side), Some(clavicle), [0.15 * x, 0.0, -0.02]);
-        // Arms hang.
+        // The arms hang down.
         self.0[upper as usize].rest.rotation = turn([0.0, 0.0, 1.0], -1.25 * side.sign()).map(|v| v as f32);
         self.add(Kind::UpperArmTwist(side), Some(upper), [0.14 * x, 0.0, 0.0]);
         let forearm = self.add(Kind::Forearm(side), Some(upper), [0.28 * x, 0.0, 0.0]);
@@ -187,7 +188,7 @@ impl Body {
     }
 }
 
-/// A quaternion of a turn by `angle` radians about a unit axis.
+/// The quaternion of a rotation by `angle` radians about a unit axis.
 pub fn turn(axis: [f64; 3], angle: f64) -> [f64; 4] {
     let (sine, cosine) = (libm::sin(angle / 2.0), libm::cos(angle / 2.0));
     [axis[0] * sine, axis[1] * sine, axis[2] * sine, cosine]

@@ -1,10 +1,10 @@
-//! The built-in creature: a biped with a tail, ears, feelers and a crest, 153 bones as A's test model has (A section
-//! 13), with the clips `walk`, `idle` and `wave`. Made by the code in this folder alone, the same bits everywhere, so
-//! that tests and demonstrations need no file.
+//! The built-in creature: a biped with a tail, ears, feelers and a crest, with 153 bones like A's test model (A
+//! section 13), and with the clips `walk`, `idle` and `wave`. The code in this folder generates it, the same
+//! bits on every machine, so that tests and demonstrations need no file.
 //!
-//! It is 1.8 m tall, stands at the origin, faces +Z and has its left at +X. Tracks have the keys that their motion
-//! needs: 3 to 33, at times of their own, linear, stepped or splines; many bones have fewer than three tracks, and
-//! some have none.
+//! It is 1.8 m tall, stands at the origin, faces +Z and has its left side at +X. Its tracks have 3 to 33 keys,
+//! as the motion needs, each at times of its own, with step, linear or spline interpolation. Many bones have
+//! fewer than three tracks, and some have none.
 
 mod body;
 mod bones;
@@ -21,7 +21,7 @@ use motion::Action;
 /// The creature with its three clips, one skin of all bones, and one mesh of about 5,000 vertices that follows it.
 ///
 /// # Errors
-/// None that anybody has seen: what it is made of is checked like any other model.
+/// None in practice: the parts are checked like those of any other model.
 pub fn creature() -> Result<Model, InputError> {
     let parts = parts();
     let bone = |part: &Part| Bone { name: part.kind.name(), parent: part.parent, rest: part.rest };
@@ -49,7 +49,7 @@ pub fn creature() -> Result<Model, InputError> {
     })
 }
 
-/// From each bone's space into the model's, at rest.
+/// For each bone, the matrix from its space into the model's, at rest.
 fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
     let mut models: Vec<glam::DMat4> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(names.len(), 153, "names differ");
         assert_eq!(model.clips.iter().map(Clip::name).collect::<Vec<_>>(), ["walk", "idle", "wave"]);
         assert!(model.skins[0].validate(&model.skeleton).is_ok());
-        // At rest the skin's matrices are identities.
+        // At rest the palette consists of identities.
         let rest = local_to_model(&model.skeleton, &model.skeleton.rest());
         for (model, bind) in rest.iter().zip(&model.skins[0].inverse_binds) {
             let [x, y, z] = [bind[12], bind[13], bind[14]];
@@ -195,7 +195,7 @@ mod tests {
             }
         }
         assert!(edges.iter().all(|([a, b], count)| *count == 1 && edges.get(&[*b, *a]) == Some(&1)));
-        // Turned outwards: the volume of a person, overlaps counted twice.
+        // Triangles face outwards: the volume is that of a person, with overlaps counted twice.
         let volume = |triangle: &[u32]| {
             let [a, b, c] =
                 [0, 1, 2].map(|corner| glam::Vec3::from(mesh.positions[triangle[corner] as usize]));
@@ -203,7 +203,7 @@ mod tests {
         };
         let volume: f32 = mesh.indices.chunks_exact(3).map(volume).sum();
         assert!((0.05..0.12).contains(&volume), "{volume}");
-        // Up to four bones a vertex.
+        // A vertex has up to four influences.
         let mut followed = vec![0_usize; model.skeleton.len()];
         mesh.influences.all().iter().for_each(|influence| followed[influence.bone as usize] += 1);
         let idle =

@@ -1,11 +1,11 @@
-//! How the creature moves: waves about and along axes, cut into keys.
+//! The creature's motion: sine waves along and about axes, sampled into keys.
 
 use std::f64::consts::TAU;
 
 use super::bones::{Kind, Part, Side, turn};
 use crate::asset::clip::{BoneKeys, Interpolation, Keys};
 
-/// What it does.
+/// A clip of the creature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
     Walk,
@@ -22,7 +22,7 @@ impl Action {
         }
     }
 
-    /// Seconds.
+    /// Duration in seconds.
     fn duration(self) -> f64 {
         match self {
             Self::Walk => 1.0,
@@ -32,7 +32,8 @@ impl Action {
     }
 }
 
-/// `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis, t from 0 to 1 over the clip.
+/// A sine `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis, with t from 0 to 1 over the
+/// clip.
 #[derive(Clone, Copy)]
 struct Wave {
     axis: [f64; 3],
@@ -47,7 +48,7 @@ impl Wave {
         self.offset + self.amplitude * libm::sin(TAU * (self.cycles * t + self.phase))
     }
 
-    /// The same, `offset` further.
+    /// The same wave with `offset` added.
     fn shifted(self, offset: f64) -> Self {
         Self { offset, ..self }
     }
@@ -65,7 +66,7 @@ fn wave(axis: [f64; 3], amplitude: f64, phase: f64) -> Wave {
     Wave { axis, offset: 0.0, amplitude, cycles: 1.0, phase }
 }
 
-/// What one bone does in a clip: waves, each with the number of stretches between keys.
+/// The motion of one bone in a clip: waves, each with the number of segments between keys.
 #[derive(Default)]
 struct Motion {
     turns: Vec<Wave>,
@@ -86,13 +87,13 @@ impl Motion {
         Self { moves: moves.into(), move_keys: keys, ..self }
     }
 
-    /// Swelling is smooth: splines.
+    /// Swelling is smooth, so it uses splines.
     fn swelling(self, keys: usize, swells: impl Into<Vec<Wave>>) -> Self {
         Self { swells: swells.into(), swell_keys: keys, ..self }
     }
 }
 
-/// A bone's tracks in a clip.
+/// The tracks of a bone in a clip.
 pub fn keys(action: Action, part: &Part) -> BoneKeys {
     let motion = match action {
         Action::Walk => walk(part.kind),
@@ -114,7 +115,7 @@ pub fn keys(action: Action, part: &Part) -> BoneKeys {
     }
 }
 
-/// Linear keys at even distances; the last is the first.
+/// Evenly spaced linear keys; the last equals the first.
 fn line(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
     let at = |key: usize| value((key % stretches) as f64 / stretches as f64).map(|v| v as f32);
     Keys {
@@ -124,7 +125,7 @@ fn line(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Key
     }
 }
 
-/// Spline keys, ever further apart: times need not be even. Tangents are those of the motion.
+/// Spline keys at growing distances, to exercise uneven times. Tangents are those of the motion.
 fn spline(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
     let place = |key: usize| {
         let even = key as f64 / stretches as f64;
@@ -160,7 +161,7 @@ fn along(rest: [f64; 3], waves: &[Wave], t: f64) -> [f64; 4] {
     value
 }
 
-/// The rest rotation, then the waves one after another, in the parent's space.
+/// The rest rotation followed by the waves in turn, in the parent's space.
 fn turned(rest: [f32; 4], waves: &[Wave], t: f64) -> [f64; 4] {
     waves.iter().fold(rest.map(f64::from), |rotation, wave| product(turn(wave.axis, wave.at(t)), rotation))
 }
@@ -174,7 +175,7 @@ fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// A leg is ahead when the other is behind.
+/// The sign of a leg's swing: one leg is ahead when the other is behind.
 fn step(side: Side) -> f64 {
     if side == Side::Left { 0.0 } else { 0.5 }
 }
@@ -183,7 +184,7 @@ fn step(side: Side) -> f64 {
 fn walk(kind: Kind) -> Motion {
     let small = |at: usize| 0.01 * at as f64;
     match kind {
-        // In place: it is the pelvis that sways.
+        // The creature walks in place: the pelvis sways, and the root does not move.
         Kind::Root => Motion::default(),
         Kind::Pelvis => Motion::turning(16, [wave(Y, 0.08, 0.25), wave(Z, 0.04, 0.0)])
             .moving(16, [wave(Y, 0.02, 0.0).times(2.0).shifted(0.01), wave(X, 0.015, 0.0)]),
@@ -237,7 +238,7 @@ fn walk(kind: Kind) -> Motion {
     }
 }
 
-/// It breathes and looks around.
+/// The creature breathes and looks around.
 fn idle(kind: Kind) -> Motion {
     let breath = |amplitude: f64, phase: f64| wave(X, amplitude, phase).times(2.0);
     match kind {
@@ -274,7 +275,7 @@ fn idle(kind: Kind) -> Motion {
     }
 }
 
-/// The right arm is up, its forearm and fingers wave; the rest breathes faster.
+/// The right arm is raised, with its forearm and fingers waving; the rest breathes faster.
 fn greet(kind: Kind) -> Motion {
     let is_right = |side: Side| side == Side::Right;
     match kind {

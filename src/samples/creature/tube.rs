@@ -1,37 +1,37 @@
-//! Closed tubes around chains of bones: what the creature's body is made of.
+//! Closed tubes around chains of bones, of which the creature's body consists.
 
 use glam::DVec3;
 
 use crate::asset::influences::Influence;
 
-/// A cross-section that a tube passes through.
+/// A cross-section through which a tube passes.
 #[derive(Debug, Clone, Copy)]
 pub struct Section {
-    /// Its middle.
+    /// Its centre.
     pub center: DVec3,
-    /// Across, and along the tube's reference.
+    /// The radii across the tube's reference direction and along it.
     pub radii: [f64; 2],
-    /// The bone that the tube follows from here on.
+    /// The bone that the tube follows from this section on.
     pub bone: u32,
 }
 
 /// A tube through cross-sections, with rounded ends.
 pub struct Tube<'a> {
-    /// At least two.
+    /// The sections; at least two.
     pub sections: &'a [Section],
-    /// Along which second radii lie, as far as they stand upright on the tube.
+    /// The direction of the second radii, after projection onto the plane perpendicular to the tube.
     pub reference: DVec3,
-    /// Vertices around.
+    /// Vertices around the tube.
     pub sides: usize,
     /// Rings between two sections.
     pub rings: usize,
-    /// Rings of each rounded end, its pole among them.
+    /// Rings of each rounded end, including its pole.
     pub cap: usize,
-    /// Metres over which one bone's influence passes into the next's.
+    /// The length, in metres, over which the influence of one bone passes into the next one's.
     pub blend: f64,
 }
 
-/// Vertices and triangles, before normals.
+/// Vertices and triangles before normals are computed.
 #[derive(Default)]
 pub struct Surface {
     pub positions: Vec<DVec3>,
@@ -40,10 +40,10 @@ pub struct Surface {
     pub indices: Vec<u32>,
 }
 
-/// Metres that a texture covers.
+/// The length in metres that one tile of the texture covers.
 const TILE: f64 = 0.25;
 
-/// A point of the tube: where, how wide, at which metre along it.
+/// A ring of the tube: its position, radii, and distance along the tube in metres.
 #[derive(Clone, Copy)]
 struct Ring {
     center: DVec3,
@@ -64,7 +64,7 @@ impl Surface {
             let [across, upright] = tube.axes(&rings, at);
             for side in 0..=tube.sides {
                 let turn = side as f64 / tube.sides as f64;
-                // The seam's two columns lie at one place, to the bit.
+                // The two columns of the seam have equal positions, to the bit.
                 let angle = std::f64::consts::TAU * (side % tube.sides) as f64 / tube.sides as f64;
                 let [x, y] = [ring.radii[0] * libm::cos(angle), ring.radii[1] * libm::sin(angle)];
                 self.positions.push(ring.center + across * x + upright * y);
@@ -77,7 +77,7 @@ impl Surface {
             for side in 0..tube.sides {
                 let [a, b] = [corner(ring, side), corner(ring, side + 1)];
                 let [c, d] = [corner(ring + 1, side + 1), corner(ring + 1, side)];
-                // The poles have one triangle a side.
+                // A pole has one triangle per side.
                 if ring > 0 {
                     self.indices.extend([a, b, d]);
                 }
@@ -90,7 +90,7 @@ impl Surface {
 }
 
 impl Tube<'_> {
-    /// The rings from pole to pole, and at which metre each section lies.
+    /// The rings from pole to pole, and the distance along the tube at which each section lies, in metres.
     fn rings(&self) -> (Vec<Ring>, Vec<f64>) {
         let mut rings: Vec<Ring> = Vec::new();
         let mut starts = Vec::new();
@@ -114,7 +114,7 @@ impl Tube<'_> {
         (start, starts)
     }
 
-    /// On a Catmull–Rom curve from a section to the next.
+    /// The point on a Catmull–Rom curve from a section to the next.
     fn between(&self, section: usize, t: f64) -> (DVec3, [f64; 2]) {
         let all = self.sections;
         let at = |offset: usize| &all[(section + offset).saturating_sub(1).min(all.len() - 1)];
@@ -127,7 +127,7 @@ impl Tube<'_> {
         (DVec3::new(center(0), center(1), center(2)), [radius(0), radius(1)])
     }
 
-    /// Unit vectors of a ring's two radii.
+    /// Unit vectors of the two radii of a ring.
     fn axes(&self, rings: &[Ring], at: usize) -> [DVec3; 2] {
         let (before, after) = (rings[at.saturating_sub(1)], rings[(at + 1).min(rings.len() - 1)]);
         let direction = (after.center - before.center).normalize();
@@ -135,7 +135,7 @@ impl Tube<'_> {
         [across, direction.cross(across)]
     }
 
-    /// The bones of the window around a metre of the tube, as much as they own of it.
+    /// The bones around a distance along the tube, each with the fraction that it covers of a window there.
     fn influences(&self, starts: &[f64], along: f64) -> Vec<Influence> {
         let (low, high) = (along - self.blend / 2.0, along + self.blend / 2.0);
         let owned = |at: usize| {
@@ -149,7 +149,7 @@ impl Tube<'_> {
     }
 }
 
-/// A rounded end beyond a ring, from it to its pole.
+/// A rounded end, from a ring to its pole.
 fn cap(steps: usize, ring: Ring, inner: Ring) -> Vec<Ring> {
     let outward = (ring.center - inner.center).normalize();
     let depth = ring.radii[0].min(ring.radii[1]);
@@ -157,7 +157,7 @@ fn cap(steps: usize, ring: Ring, inner: Ring) -> Vec<Ring> {
     (1..=steps)
         .map(|step| {
             let angle = std::f64::consts::FRAC_PI_2 * step as f64 / steps as f64;
-            // A pole is a point to the bit.
+            // A pole is a single point, to the bit.
             let shrink = if step == steps { 0.0 } else { libm::cos(angle) };
             let beyond = depth * libm::sin(angle);
             Ring {

@@ -3,13 +3,13 @@
 use super::noise::{Noise, cell, random};
 use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 
-/// Courses a tile; even, so that every other course is shifted across the seam too.
+/// Courses per tile; even, so that every second course is shifted across the seam too.
 const COURSES: usize = 8;
 
-/// Bricks a course.
+/// Bricks per course.
 const BRICKS: usize = 4;
 
-/// Width of a joint, of the rounded edge and of the rounded corner, in tiles.
+/// Widths of a joint, of the rounded edge and of the rounded corner, in tiles.
 const JOINT: f64 = 0.015;
 const BEVEL: f64 = 0.011;
 const CORNER: f64 = 0.010;
@@ -36,7 +36,7 @@ impl Bricks {
     }
 }
 
-/// The brick at a place: its cell, the place from its middle, both in tiles.
+/// The brick at a point: its cell, and the point relative to its centre, in tiles.
 fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
     let (course, y) = cell(v * COURSES as f64, COURSES);
     let shift = 0.5 * (course % 2) as f64;
@@ -44,7 +44,7 @@ fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
     ([column, course], [(x - 0.5) / BRICKS as f64, (y - 0.5) / COURSES as f64])
 }
 
-/// How far inside a rectangle of rounded corners a place lies; negative outside.
+/// How far a point lies inside a rectangle with rounded corners; negative outside.
 fn depth_inside(place: [f64; 2], half: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|axis| place[axis].abs() - half[axis] + CORNER);
     let (beyond_x, beyond_y) = (x.max(0.0), y.max(0.0));

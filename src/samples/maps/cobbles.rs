@@ -4,10 +4,11 @@
 use super::noise::{Noise, cell, random};
 use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 
-/// Stones along an edge; even, so that every other row is shifted across the seam too.
+/// Stones along an edge; even, so that every second row is shifted across the seam too.
 const STONES: usize = 10;
 
-/// How far a stone's middle lies to the left or right of its cell's, and how far it may lie from there, in cells.
+/// How far a stone's centre is shifted to the left or right of its cell's, and how far it is jittered from
+/// there, in cells.
 const SHIFT: f64 = 0.25;
 const JITTER: f64 = 0.24;
 
@@ -30,12 +31,12 @@ pub struct Cobbles {
     patches: Noise,
 }
 
-/// The stone at a place.
+/// The stone at a point.
 struct Stone {
     id: [usize; 2],
-    /// From its middle, in cells.
+    /// The point relative to the stone's centre, in cells.
     offset: [f64; 2],
-    /// From its border, in cells.
+    /// Distance from the stone's border, in cells.
     border: f64,
 }
 
@@ -56,7 +57,7 @@ impl Cobbles {
         }
     }
 
-    /// From a place in cell `[x, y]` to the middle of the stone `step` cells on.
+    /// From a point in cell `[x, y]` to the centre of the stone `step` cells away.
     fn towards(&self, [x, y]: [usize; 2], place: [f64; 2], step: [i32; 2]) -> ([usize; 2], [f64; 2]) {
         let wrapped =
             |index: usize, step: i32| (index + STONES).saturating_add_signed(step as isize) % STONES;
@@ -67,7 +68,8 @@ impl Cobbles {
 
     fn stone(&self, u: f64, v: f64) -> Stone {
         let ((x, s), (y, t)) = (cell(u * STONES as f64, STONES), cell(v * STONES as f64, STONES));
-        // Middles lie off the cell's edges, so two cells on every side hold every neighbour.
+        // Centres stay away from the edges of their cells, so that two cells on every side contain every
+        // neighbour.
         let steps = || (-2..=2).flat_map(|y| (-2..=2).map(move |x| [x, y]));
         let all = || steps().map(|step| self.towards([x, y], [s, t], step));
         let square = |[x, y]: [f64; 2]| x * x + y * y;
@@ -88,7 +90,7 @@ impl Cobbles {
     }
 }
 
-/// The minimum, less where both are alike.
+/// A smooth minimum: less than both arguments where they are close.
 fn smooth_minimum(a: f64, b: f64) -> f64 {
     let overlap = (ROUNDING - (a - b).abs()).max(0.0) / ROUNDING;
     a.min(b) - 0.25 * ROUNDING * overlap * overlap
@@ -104,7 +106,7 @@ impl Pattern for Cobbles {
             (self.bumps.signed(u, v), self.grain.signed(u, v), self.patches.at(u, v));
         let fraction = ((stone.border - GAP) / RIM).clamp(0.0, 1.0);
         let tilt = 0.22 * ((tilt_x - 0.5) * stone.offset[0] + (tilt_y - 0.5) * stone.offset[1]);
-        // A quarter of a circle: steep at the gap, level at the top.
+        // A quarter of a circle: steep at the gap, flat at the top.
         let dome = (fraction * (2.0 - fraction)).sqrt();
         let top = 0.90 - 0.16 * rise + tilt + 0.05 * bumps + 0.018 * grain;
         let gap = 0.13 + 0.08 * bumps + 0.05 * grain;

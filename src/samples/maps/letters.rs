@@ -1,11 +1,11 @@
-//! Lines of text as distances to their outlines, which makes edges of any width at any size.
+//! Lines of text as distances to their outlines, which gives edges of any width at any size.
 
 use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 
-/// Straight pieces a curve.
+/// Straight segments per curve.
 const PIECES: usize = 8;
 
-/// A line of text, set around a middle.
+/// A line of text around a centre.
 #[derive(Debug, Clone)]
 pub struct Line {
     glyphs: Vec<Glyph>,
@@ -15,7 +15,7 @@ pub struct Line {
 struct Glyph {
     low: [f64; 2],
     high: [f64; 2],
-    /// Ends of straight pieces; closed outlines.
+    /// The end points of straight segments, which form closed outlines.
     edges: Vec<[[f64; 2]; 2]>,
 }
 
@@ -48,8 +48,8 @@ impl Line {
         Self { glyphs }
     }
 
-    /// The distance to the nearest outline: positive inside the letters, negative outside. Further than `bone_radius`
-    /// outside, just below −`bone_radius`.
+    /// The distance to the nearest outline: positive inside the letters, negative outside. At points further
+    /// than `bone_radius` outside, a value just below −`bone_radius`.
     pub fn depth_inside(&self, place: [f64; 2], bone_radius: f64) -> f64 {
         let near = |glyph: &&Glyph| {
             (0..2).all(|axis| {
@@ -60,9 +60,9 @@ impl Line {
     }
 }
 
-/// A curve as straight pieces.
+/// Splits a curve into straight segments.
 fn edges(curve: &OutlineCurve, place: impl Fn(Point) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
-    // A line and a parabola are cubic curves too.
+    // Lines and parabolas are cubic curves too.
     let controls = match *curve {
         OutlineCurve::Line(a, b) => return vec![[place(a), place(b)]],
         OutlineCurve::Quad(a, b, c) => {
@@ -82,7 +82,7 @@ fn edges(curve: &OutlineCurve, place: impl Fn(Point) -> [f64; 2]) -> Vec<[[f64; 
 }
 
 impl Glyph {
-    /// Nothing without edges.
+    /// `None` if there are no edges.
     fn new(edges: Vec<[[f64; 2]; 2]>) -> Option<Self> {
         let points = || edges.iter().flatten();
         let bound = |pick: fn(f64, f64) -> f64, axis: usize| points().map(|point| point[axis]).reduce(pick);

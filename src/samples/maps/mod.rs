@@ -1,9 +1,8 @@
-//! Height maps made by our own code, with matching colours: for tests, demonstrations and first steps without a
-//! file.
+//! Generated height maps with matching colours, for tests, demonstrations and first steps without a file.
 //!
-//! Each is a square tile that repeats without a seam under [`Address::Wrap`](crate::surface::Address::Wrap), of any size,
-//! and the same bits on every machine: only `+ − × ÷`, square roots and comparisons are used, which IEEE 754
-//! defines to the last bit, and randomness is counter-based ([`crate::hash`]).
+//! Each is a square tile that repeats without a seam under [`Address::Wrap`](crate::surface::Address::Wrap), of
+//! any size, and has the same bits on every machine: the code uses only `+ − × ÷`, square roots and
+//! comparisons, which IEEE 754 defines to the last bit, and randomness is counter-based ([`crate::hash`]).
 //!
 //! | map | what it shows |
 //! |---|---|
@@ -44,16 +43,16 @@ pub enum BuiltInMap {
     Posts,
 }
 
-/// What a tile is like at one place.
+/// The tile at one point.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    /// 0 to 1, up to rounding.
+    /// Height, 0 to 1 up to rounding.
     height: f64,
-    /// sRGB, 0 to 255.
+    /// Colour in sRGB, 0 to 255.
     color: [f64; 3],
 }
 
-/// A tile as a function of place, of period 1 in `u` (right) and `v` (down).
+/// A tile as a function of position, with period 1 in `u` (right) and `v` (down).
 trait Pattern: Sync {
     fn at(&self, u: f64, v: f64) -> Sample;
 }
@@ -62,7 +61,7 @@ impl BuiltInMap {
     /// Every map.
     pub const ALL: [Self; 4] = [Self::Bricks, Self::Cobbles, Self::Text, Self::Posts];
 
-    /// The map's name, in lower case: what [`FromStr`] understands.
+    /// The map's name in lower case, as [`FromStr`] accepts it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bricks => "bricks",
@@ -94,7 +93,7 @@ impl BuiltInMap {
         Ok(RgbaImage::from_fn(size, size, at))
     }
 
-    /// What `texel` makes of the tile at every texel's centre, row by row.
+    /// Evaluates `texel` at the centre of every texel, row by row.
     fn samples<T: Send>(self, size: u32, texel: impl Fn(Sample) -> T + Sync) -> Result<Vec<T>, InputError> {
         if !(1..=MAP_EDGE).contains(&size) {
             return Err(InputError::new("size", size, format!("must be in 1..={MAP_EDGE} texels")));
@@ -129,17 +128,17 @@ impl FromStr for BuiltInMap {
     }
 }
 
-/// From `a` (at 0 or less) to `b` (at 1 or more).
+/// Interpolates from `a` (at 0 or less) to `b` (at 1 or more).
 fn blend(a: f64, b: f64, fraction: f64) -> f64 {
     a + (b - a) * fraction.clamp(0.0, 1.0)
 }
 
-/// As [`blend`], a channel at a time.
+/// As [`blend`], for each channel.
 fn blend_color(a: [f64; 3], b: [f64; 3], fraction: f64) -> [f64; 3] {
     std::array::from_fn(|channel| blend(a[channel], b[channel], fraction))
 }
 
-/// A colour made brighter by a factor near 1.
+/// A colour multiplied by a factor near 1.
 fn shade(color: [f64; 3], factor: f64) -> [f64; 3] {
     color.map(|channel| (channel * factor).clamp(0.0, 255.0))
 }
@@ -199,7 +198,7 @@ mod tests {
         }
     }
 
-    /// The same on every machine. A change of these is a change of what every user's figures were made from.
+    /// The hashes are the same on every machine. If they change, so does the input of every user's figures.
     #[test]
     fn maps_are_the_same_bits_everywhere() {
         let known = [
@@ -217,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Across the edge heights change no more than they do inside.
+    /// Across the tile's edge, heights change no more than they do inside.
     #[test]
     fn maps_tile() {
         for map in BuiltInMap::ALL {
@@ -243,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Runs of texels above half of the posts' height, across each row and down each column.
+    /// Measures runs of texels above half of the posts' height, across each row and down each column.
     #[test]
     fn posts_are_thin_and_tall() {
         let map = BuiltInMap::Posts.height_map(256).expect("a map");

@@ -1,4 +1,4 @@
-//! Thin tall posts: between two steps of a search lies a whole post (B figure 3.6).
+//! Thin tall posts: a whole post fits between two steps of a linear search (B figure 3.6).
 
 use super::noise::{Noise, cell, random};
 use super::{Pattern, Sample, shade};
@@ -6,7 +6,7 @@ use super::{Pattern, Sample, shade};
 /// Posts along an edge.
 const POSTS: usize = 8;
 
-/// Posts a tile.
+/// Posts per tile.
 #[cfg(test)]
 pub const COUNT: usize = POSTS * POSTS;
 
@@ -27,14 +27,14 @@ pub struct Posts {
 struct Post {
     /// Left and upper edge, in tiles from the cell's corner.
     start: [f64; 2],
-    /// In tiles.
+    /// Width in tiles.
     width: f64,
     height: f64,
     color: [f64; 3],
 }
 
 impl Posts {
-    /// For a tile of `size` texels: no post is thinner than a texel of it.
+    /// Posts for a tile of `size` texels: no post is thinner than one texel.
     pub fn new(size: u32) -> Self {
         let post = |index| post([index % POSTS, index / POSTS], 1.0 / f64::from(size));
         let posts = (0..POSTS * POSTS).map(post).collect();

@@ -4,7 +4,7 @@ use super::letters::Line;
 use super::noise::Noise;
 use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 
-/// The slab's face, the letters' tops and the grooves' ground.
+/// Heights of the slab's face, the tops of the letters and the bottom of the grooves.
 const FACE: f64 = 0.48;
 const TOP: f64 = 0.97;
 const GROUND: f64 = 0.12;
@@ -12,10 +12,11 @@ const GROUND: f64 = 0.12;
 /// Width of a slanted edge, in tiles.
 const BEVEL: f64 = 0.008;
 
-/// How much bolder than the typeface, in tiles.
+/// How much bolder the letters are than the typeface, in tiles.
 const BOLDER: [f64; 2] = [0.008, 0.003];
 
-/// From the tile's edge to the frame's middle, its half width, and the rule's half length, in tiles.
+/// Distance from the tile's edge to the middle of the frame, the frame's half width, and the rule's half
+/// length, in tiles.
 const FRAME: f64 = 0.045;
 const FRAME_HALF: f64 = 0.008;
 const RULE: f64 = 0.30;
@@ -43,7 +44,7 @@ impl Text {
         }
     }
 
-    /// How far inside a groove a place lies: the frame, the rule or a letter that is cut.
+    /// How far a point lies inside a groove: the frame, the rule or a cut letter.
     fn groove(&self, [u, v]: [f64; 2]) -> f64 {
         let edge = [u, v].map(|along| along.min(1.0 - along));
         let frame = FRAME_HALF - (edge[0].min(edge[1]) - FRAME).abs();

@@ -1,5 +1,6 @@
-//! The poses that decide on a mesh's levels, and how large it is in them. What a level may be off is a share of that size:
-//! not of the positions that a mesh was bound with, whose units the inverse bind matrices may change.
+//! The key poses that decide a mesh's levels, and its size in them. The error of a level is a fraction of that
+//! size and does not depend on the positions with which the mesh was bound, whose units the inverse bind
+//! matrices may change.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -9,21 +10,22 @@ use crate::asset::Model;
 use crate::asset::mesh::Mesh;
 use crate::skinning::pose::{Moment, Pose};
 
-/// So many of the clips' moments are key poses.
+/// Number of the clips' moments that serve as key poses.
 const MOMENTS: usize = 24;
 
-/// A rest pose that is smaller or larger by more than this than the clips make the mesh is none that is seen.
+/// The rest pose is ignored if it is larger or smaller than the mesh in clips by more than this factor, since
+/// it is not seen then.
 const UNLIKE: f32 = 2.0;
 
-/// Key poses, in multiples of a unit of their own, so that the numbers are of the same size in every model. The first is the
-/// rest pose, or where that is unlike the others in size, the largest of these.
+/// The key poses, in multiples of a unit of their own, so that numbers have the same magnitude in every model.
+/// The first is the rest pose or, if its size differs from the others' too much, the largest of these.
 pub(super) struct Keys {
     pub poses: Vec<Vec<[f32; 3]>>,
-    /// Of the first one.
+    /// The normals of the first pose.
     pub normals: Vec<[f32; 3]>,
-    /// Of the first one the diagonal of a box around the mesh's triangles: 1 to 2, or 0.
+    /// The diagonal of the box around the triangles in the first pose: 1 to 2, or 0.
     pub size: f32,
-    /// A power of two, units of the model.
+    /// The unit, a power of two in the model's units.
     pub unit: f32,
 }
 
@@ -33,7 +35,7 @@ impl Keys {
         let played = moments.par_iter().step_by(every).copied().filter(|moment| *moment != Moment::Rest);
         let all = rayon::iter::once(Moment::Rest).chain(played);
         let mut all: Vec<Key> = all.map(|moment| Key::new(model, mesh, moment)).collect();
-        // The first of several.
+        // Takes the first of several equally large ones.
         let largest = (1..all.len()).rev().max_by(|a, b| all[*a].size.total_cmp(&all[*b].size));
         if let Some(largest) = largest.filter(|largest| all[0].is_unlike(all[*largest].size)) {
             all.swap(0, largest);
@@ -46,8 +48,8 @@ impl Keys {
         Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }
 
-    /// Units that one of texture coordinates covers in the first pose, on average: so a texture counts by how far it slips
-    /// over the surface. 0 where there is none.
+    /// The length that a unit of texture coordinates covers in the first pose, on average, in these units; a
+    /// texture thus counts by how far it slips over the surface. 0 if there is no texture.
     pub fn texture_scale(&self, mesh: &Mesh) -> f32 {
         let (mut surface, mut texture) = (0.0_f64, 0.0_f64);
         for triangle in mesh.indices.chunks_exact(3) {
@@ -80,7 +82,7 @@ impl Key {
     }
 }
 
-/// Of a box around the corners of triangles.
+/// The diagonal of a box around the corners of triangles.
 fn diagonal(pose: &[[f32; 3]], indices: &[u32]) -> f32 {
     let corners = indices.iter().map(|vertex| Vec3::from(pose[*vertex as usize]));
     let (low, high) =
@@ -88,11 +90,11 @@ fn diagonal(pose: &[[f32; 3]], indices: &[u32]) -> f32 {
     if indices.is_empty() {
         return 0.0;
     }
-    // In f64, where the squares of all sizes are numbers.
+    // In f64, which can represent the squares of all sizes.
     low.as_dvec3().distance(high.as_dvec3()) as f32
 }
 
-/// The largest that is not above a size; 1 for 0 and for what is no number.
+/// The largest power of two that is not above `size`; 1 for 0 and NaN.
 fn power_of_two(size: f32) -> f32 {
     let is_normal = size.is_normal();
     if is_normal { f32::from_bits(size.to_bits() & 0xff80_0000) } else { 1.0 }

@@ -1,5 +1,5 @@
-//! What of a level lies near what of its mesh. Collapses are local: what a vertex became, and the triangles around it,
-//! lie near it in every pose.
+//! The parts of a level and of its mesh that are close to each other. Collapses are local: the vertex into
+//! which a vertex has collapsed, and the triangles around it, are close to it in every pose.
 
 use std::collections::BTreeSet;
 
@@ -11,13 +11,13 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::Simplified;
 use crate::surface::tangent::Adjacency;
 
-/// So many triangles may be nearest in some pose: those that are in the first.
+/// The largest number of triangles that may be nearest in some pose; those of the first poses are kept.
 const MAX: usize = 32;
 
-/// For things in a row, the triangles near each.
+/// For each item of a sequence, the triangles close to it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Near {
-    /// Where each one's begin; one more than there are things.
+    /// Where the triangles of each item begin; one more entry than there are items.
     starts: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
@@ -32,7 +32,7 @@ impl Near {
         near
     }
 
-    /// The place nearest to `wanted` on those near a thing, if there are any.
+    /// The point nearest to `wanted` on the triangles of an item, if it has any.
     pub(super) fn nearest(&self, thing: usize, wanted: Vec3, point: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
         let range = self.starts[thing] as usize..self.starts[thing + 1] as usize;
         let on = |triangle: &[u32; 3]| nearest_on_triangle(wanted, triangle.map(point));
@@ -41,18 +41,18 @@ impl Near {
     }
 }
 
-/// Both sides of a level: from the mesh to it, and from it to the mesh.
+/// Both directions of a level's error: from the mesh to the level, and from the level to the mesh.
 pub(super) struct Sides {
-    /// For each vertex of the mesh that the level lacks.
+    /// For each vertex of the mesh that the level does not have.
     pub(super) near: Near,
-    /// Places on the level, as parts of the corners of its triangles.
+    /// Samples on the level, as barycentric coordinates in its triangles.
     samples: Vec<([u32; 3], [f32; 3])>,
-    /// For each of these, triangles of the mesh.
+    /// For each sample, triangles of the mesh.
     behind: Near,
 }
 
 impl Sides {
-    /// `keys` are the poses that decide what is near.
+    /// `keys` are the poses that decide what is close.
     pub(super) fn new(
         mesh: &Mesh,
         simplified: &Simplified,
@@ -71,14 +71,15 @@ impl Sides {
             if used[vertex as usize] {
                 return Vec::new();
             }
-            // None for a vertex without triangles. The heir itself may be a wedge that the level has no triangle of.
+            // There are none for a vertex without triangles. The replacement itself may be a wedge that no
+            // triangle of the level uses.
             let candidates = ring.two_rings(remap[vertex as usize], level, &point);
             let points = |key: &Vec<Vec3>| key[vertex as usize];
             nearest_in_each(keys, points, candidates.into_iter())
         };
         let near = Near::of((0..mesh.vertices() as u32).map(before));
 
-        // Triangles of the mesh, but those without area, by the points that their corners became.
+        // Triangles of the mesh that have an area, by the points into which their corners have collapsed.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let whole: Vec<u32> = mesh.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
         let became = around(&whole, &|vertex| remap[vertex as usize]);
@@ -97,7 +98,7 @@ impl Sides {
         Self { near, samples, behind }
     }
 
-    /// The largest distance where all vertices of the mesh are at these places.
+    /// The largest distance, given the positions of all vertices of the mesh.
     pub(super) fn error(&self, points: &[Vec3]) -> f32 {
         let point = |vertex: u32| points[vertex as usize];
         let off = |near: &Near, thing: usize, wanted: Vec3| {
@@ -110,7 +111,7 @@ impl Sides {
     }
 }
 
-/// The middle of a triangle and those of its edges.
+/// The midpoints of a triangle and of its edges.
 fn samples_of(triangle: &[u32]) -> [([u32; 3], [f32; 3]); 4] {
     const THIRD: f32 = 1.0 / 3.0;
     let corners = [triangle[0], triangle[1], triangle[2]];
@@ -156,7 +157,7 @@ fn nearest_in_each(
 struct Around(Adjacency);
 
 impl Around {
-    /// `corners` are points, three a triangle.
+    /// `corners` are points, three per triangle.
     fn new(corners: &[u32], points: usize) -> Self {
         Self(Adjacency::new(points, corners))
     }
@@ -165,13 +166,13 @@ impl Around {
         self.0.at(point as usize).iter().map(|corner| corner / 3)
     }
 
-    /// The points of the triangles around some vertices' points.
+    /// The points of the triangles around the points of some vertices.
     fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> BTreeSet<u32> {
         let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
         around.flat_map(|triangle| corners_of(level, triangle)).map(of).collect()
     }
 
-    /// The triangles around a vertex's point and those around their corners.
+    /// The triangles around a vertex's point, and those around the corners of these.
     fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<[u32; 3]> {
         let points = self.beside(&[vertex], level, of);
         let triangles: BTreeSet<u32> = points.iter().flat_map(|point| self.of(*point)).collect();

@@ -1,5 +1,6 @@
-//! A mesh without hard edges: vertices that differ in their normals alone are one. So a mesh whose every triangle has
-//! vertices of its own can be simplified; its triangles keep vertices that face as theirs did.
+//! A mesh without hard edges: vertices that differ only in their normals are merged, so that a mesh in which
+//! every triangle has vertices of its own can be simplified. Its triangles then get back vertices with normals
+//! close to their own.
 
 use std::collections::HashMap;
 
@@ -8,21 +9,21 @@ use glam::Vec3;
 use crate::asset::mesh::Mesh;
 use crate::mesh::simplify::{Simplified, weld};
 
-/// Which vertices are one.
+/// The groups of merged vertices.
 pub(super) struct Welded {
-    /// Of each vertex the first that is one with it.
+    /// For each vertex, the first vertex of its group.
     first: Vec<u32>,
-    /// Of each first one all.
+    /// For each first vertex, all vertices of its group.
     all: HashMap<u32, Vec<u32>>,
 }
 
 impl Welded {
-    /// Vertices at one place in every pose, with the same texture coordinates.
+    /// Merges vertices that have one position in every pose and the same texture coordinates.
     pub(super) fn new(mesh: &Mesh, poses: &[Vec<[f32; 3]>]) -> Self {
         let points = weld(poses);
         let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::with_capacity(mesh.vertices());
         let mut all: HashMap<u32, Vec<u32>> = HashMap::new();
-        // Adding 0 makes one zero of two.
+        // Adding 0 turns −0 into +0.
         let bits = |number: f32| (number + 0.0).to_bits();
         let first = (0..mesh.vertices() as u32)
             .map(|vertex| {
@@ -35,12 +36,12 @@ impl Welded {
         Self { first, all }
     }
 
-    /// Triangles of first ones.
+    /// The triangles with vertices replaced by the first ones of their groups.
     pub(super) fn indices(&self, mesh: &Mesh) -> Vec<u32> {
         mesh.indices.iter().map(|vertex| self.first[*vertex as usize]).collect()
     }
 
-    /// The normal of each first one: the mean of all.
+    /// The normal of each first vertex: the mean of its group.
     pub(super) fn normals(&self, normals: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let mut means = normals.to_vec();
         for (first, all) in &self.all {
@@ -50,14 +51,15 @@ impl Welded {
         means
     }
 
-    /// What each vertex has become after so many collapses, among first ones.
+    /// For each vertex, the first vertex into which it has collapsed after `collapses` collapses.
     pub(super) fn remap(&self, simplified: &Simplified, collapses: usize) -> Vec<u32> {
         let remap = simplified.remap(collapses);
         self.first.iter().map(|first| remap[*first as usize]).collect()
     }
 
-    /// The triangles with three different points where vertices have become these heirs, of vertices that are `used`: a
-    /// corner that was collapsed gets the vertex there whose normal is nearest to its own.
+    /// The triangles that still have three different points after vertices have collapsed as `remap` says,
+    /// using only vertices that are `used`. A collapsed corner gets the vertex at its new point whose normal is
+    /// closest to its own.
     pub(super) fn triangles(
         &self,
         mesh: &Mesh,
@@ -73,7 +75,7 @@ impl Welded {
             }
             let facing = |other: &&u32| normal(**other).dot(normal(vertex));
             let others = self.all[&target].iter().filter(|other| used[**other as usize]);
-            // The first of several.
+            // Takes the first of several equally close ones.
             others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(target)
         };
         let mut left = Vec::new();

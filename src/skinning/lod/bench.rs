@@ -1,4 +1,4 @@
-//! What is drawn of crowds.
+//! Benchmark cases of `skinning/lod`: culling and level of detail of crowds.
 
 use glam::{Mat4, Vec3, camera};
 
@@ -11,7 +11,7 @@ use crate::skinning::lod::reference::lod;
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use crate::terrain::bench::copy_of;
 
-/// A field of instances, a quarter of them seen.
+/// Measures a field of instances of which a quarter is seen.
 ///
 /// # Errors
 /// What the device reports.
@@ -41,7 +41,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let instance_lods = Buffer::from_slice(gpu, "instance_lods", &vec![InstanceLod::FULL; count])?;
         let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 10)?);
         let job = pass.prepare(gpu, &view, &buffer, &instance_lods, &drawn, &arguments)?;
-        // A place in; a reduction and a number out.
+        // The kernel reads a placement, and writes an InstanceLod and an index.
         let copied = copy_of(gpu, 16 * count / 2)?;
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),

@@ -1,8 +1,9 @@
-//! What a crowd is drawn with: which instances are seen, how far the influences of each fade with its distance, and
-//! which level of detail of the mesh it has there.
+//! Culling and level of detail of instances: which are seen, how far the influences of each fade with distance,
+//! and which level of detail each uses.
 //!
-//! The fade goes in steps, so that an instance that hardly moves keeps its vertices: one step moves none of them
-//! noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`]); seen again, it is skinned as a whole.
+//! The fade has discrete steps, so that an instance that hardly moves keeps its vertices; a single step moves
+//! no vertex noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`]); when it is seen
+//! again, all of it is skinned.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -25,31 +26,32 @@ pub use pass::{LodJob, LodPass};
 #[cfg(feature = "gpu")]
 pub(crate) use pass::{draws_at, numbers_at};
 
-/// Where a crowd is seen from, and how it fades.
+/// The view of a crowd, and its fade and levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LodView {
-    /// From world to clip space, depth 0 to 1.
+    /// The matrix from world space to clip space, depth 0 to 1.
     pub clip_from_world: Mat4,
-    /// The eye, world units.
+    /// Position of the eye in world units.
     pub eye: Vec3,
-    /// Every influence counts up to here, world units as [`LodView::projected_distance`] counts them.
+    /// The distance up to which every influence counts, in world units as [`LodView::projected_distance`]
+    /// measures them.
     pub near: f32,
-    /// From here on vertices follow one bone, likewise.
+    /// The distance from which on vertices follow one bone, measured likewise.
     pub far: f32,
-    /// Steps of the fade; 64 is a good number.
+    /// Number of steps of the fade; 64 is a good number.
     pub steps: u32,
-    /// The most influences of those that are seen, 1 to 8.
+    /// The largest number of influences of instances that are seen, 1 to 8.
     pub most: u32,
-    /// The middle of a ball around the model in all of its clips.
+    /// The centre of a sphere around the model in all of its clips.
     pub center: Vec3,
-    /// Its radius.
+    /// The radius of the sphere.
     pub radius: f32,
-    /// Where instances are drawn with levels of detail of their mesh.
+    /// The distances at which instances change their level of detail.
     pub levels: LevelRanges,
 }
 
-/// World units, as [`LodView::projected_distance`] counts them, from which on levels 1, 2 … of a character
-/// ([`level_errors`](super::level_errors)) are used, in place of finer ones.
+/// The distances, in world units as [`LodView::projected_distance`] measures them, from which on levels 1, 2 …
+/// of a character ([`level_errors`](super::level_errors)) replace finer ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelRanges {
     distances: [f32; MAX_LEVELS - 1],
@@ -57,13 +59,15 @@ pub struct LevelRanges {
 }
 
 impl LevelRanges {
-    /// Level 0 everywhere: the mesh itself.
+    /// Level 0, the mesh itself, at all distances.
     pub const NONE: Self = Self { distances: [f32::MAX; MAX_LEVELS - 1], coarser: 0 };
 
-    /// Where level 1 begins, level 2 and so on. A level that begins where the next one does is not used.
+    /// The distances at which level 1, level 2 and so on begin. A level that begins where the next one does is
+    /// not used.
     ///
     /// # Errors
-    /// [`InputError`] for distances that are not finite, or descend, and for [`MAX_LEVELS`] or more of them.
+    /// [`InputError`] for distances that are not finite or that descend, and for [`MAX_LEVELS`] or more of
+    /// them.
     pub fn new(distances: &[f32]) -> Result<Self, InputError> {
         let mut ranges = Self { coarser: distances.len(), ..Self::NONE };
         let Some(to) = ranges.distances.get_mut(..distances.len()) else {
@@ -82,7 +86,7 @@ impl LevelRanges {
         Ok(ranges)
     }
 
-    /// Where level 1 begins, level 2 and so on.
+    /// The distances at which level 1, level 2 and so on begin.
     pub fn distances(&self) -> &[f32] {
         &self.distances[..self.coarser]
     }
@@ -93,18 +97,19 @@ impl LevelRanges {
     }
 }
 
-/// Words from one level's list of drawn instances to the next one's: a multiple of 64, so that each list can be bound.
+/// Words from one level's list of drawn instances to the next: a multiple of 64, so that each list can be
+/// bound.
 pub fn list_stride(instances: usize) -> usize {
     instances.next_multiple_of(64)
 }
 
-/// Words of the lists of drawn instances of so many levels, 1 to [`MAX_LEVELS`]: [`list_stride`] each, but for a single
-/// one, which needs no more than there are instances.
+/// Number of words of the lists of drawn instances of `levels` levels, 1 to [`MAX_LEVELS`]: [`list_stride`]
+/// each. A single list needs only one word per instance.
 pub fn list_words(instances: usize, levels: usize) -> usize {
     if levels == 1 { instances } else { levels * list_stride(instances) }
 }
 
-/// [`LodView::near`] and [`LodView::far`] of crowds that do not fade.
+/// [`LodView::near`] and [`LodView::far`] for crowds that do not fade.
 pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
 
 impl LodView {
@@ -131,10 +136,10 @@ impl LodView {
             .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
     }
 
-    /// How far away a place counts: its distance from the eye where that is straight ahead, less to the side, where a
-    /// perspective makes things larger; 0 beside the eye and behind it. For a place at a depth z and a distance d that is
-    /// z²/d, since what moves there by a small step moves on screen by focal·step·d/z² pixels at most. Of a parallel view
-    /// the distance.
+    /// The distance at which a point counts. It equals the distance from the eye straight ahead, is less to the
+    /// side, where perspective enlarges, and is 0 beside the eye and behind it. For a point at depth z and
+    /// distance d it is z²/d, because a small displacement there moves the point on screen by at most
+    /// focal·displacement·d/z² pixels. In a parallel view it is the distance.
     pub fn projected_distance(&self, place: Vec3) -> f32 {
         let towards = place - self.eye;
         let distance = towards.length();
@@ -147,15 +152,15 @@ impl LodView {
         }
     }
 
-    /// A unit vector, where the view is a perspective.
+    /// The unit vector ahead, if the view is a perspective.
     pub(crate) fn ahead(&self) -> Option<Vec3> {
         self.clip_from_world.row(3).truncate().try_normalize()
     }
 
-    /// The planes of the view's volume: unit normals inwards, and distances.
+    /// The planes of the view volume: unit normals that point inwards, and distances.
     pub fn planes(&self) -> [Vec4; 6] {
         let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_world.row(row));
-        // A plane that lies at infinity cuts nothing off.
+        // A plane at infinity cuts nothing off.
         let unit = |plane: Vec4| match plane.truncate().length() {
             length if length > 0.0 => plane / length,
             _ => Vec4::W,
@@ -164,23 +169,23 @@ impl LodView {
     }
 }
 
-/// A ball around a model: around these places of its vertices, with a margin for what lies between. Around a model in
-/// its clips: [`Extent`](super::extent::Extent).
+/// A sphere around these positions of a model's vertices, with a margin for what lies between them. For a model
+/// in its clips see [`Extent`](super::extent::Extent).
 pub fn bounding_sphere(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
     let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
     let center = middle_of(low, high);
     (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
 }
 
-/// Of a ball.
+/// The factor by which a sphere's radius is enlarged.
 pub(crate) const MARGIN: f32 = 1.05;
 
-/// The middle of a box, if it has any.
+/// The centre of a box, if the box is not empty.
 pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
     if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }
 
-/// Where an instance of uniform scale stands: turned about +Y, then moved.
+/// The placement of an instance of uniform scale: rotated about +Y by `turn` radians, then translated.
 pub fn placed(at: Vec3, turn: f32, scale: f32) -> Affine {
     let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
     [[cosine, 0.0, sine, at.x], [0.0, scale, 0.0, at.y], [-sine, 0.0, cosine, at.z]]

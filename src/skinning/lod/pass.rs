@@ -1,4 +1,4 @@
-//! `kernels/skinning/lod.wgsl`.
+//! The GPU pass of `kernels/skinning/lod.wgsl`.
 
 use encase::ShaderType;
 use glam::Vec4;
@@ -11,7 +11,7 @@ use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
 
-/// `LodParams` of the kernel.
+/// The kernel's `LodParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct LodParams {
     pub planes: [Vec4; 6],
@@ -51,23 +51,23 @@ impl LodParams {
     }
 }
 
-/// Words of the arguments of an indirect draw with indices.
+/// Words of the arguments of an indexed indirect draw.
 const DRAW_WORDS: usize = 5;
 
-/// Words of the arguments of a level: of the draw of its list, and of that of the mirrored ones in it.
+/// Words of a level's arguments: those of its draw, and of its draw of mirrored instances.
 const LEVEL_WORDS: usize = 2 * DRAW_WORDS;
 
-/// The bytes of arguments where a level's two draws begin.
+/// The byte offsets at which the two draws of a level begin.
 pub(crate) fn draws_at(level: usize) -> [u64; 2] {
     [0, DRAW_WORDS].map(|draw| (size_of::<u32>() * (LEVEL_WORDS * level + draw)) as u64)
 }
 
-/// The bytes of arguments where the numbers of instances of a level's two draws are.
+/// The byte offsets of the numbers of instances of a level's two draws.
 pub(crate) fn numbers_at(level: usize) -> [u64; 2] {
     draws_at(level).map(|draw| draw + size_of::<u32>() as u64)
 }
 
-/// Decides what is drawn.
+/// Decides visibility, fade and level of detail.
 #[derive(Debug, Clone)]
 pub struct LodPass {
     kernel: Kernel,
@@ -82,13 +82,13 @@ impl LodPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_LOD, &[])? })
     }
 
-    /// Prepares the reductions of all instances; of each level of the view the list of those that are seen, in
-    /// [`list_words`] words of `drawn` together; and of the ten `arguments` a level of indirect draws
-    /// ([`crate::render::SkinnedScene::arguments`]) the second, their number, and the seventh, the list's length up to the
-    /// last instance that is mirrored.
+    /// Prepares the decisions for all instances. The job writes an InstanceLod for each; for each level of the
+    /// view the list of instances that are seen, all together [`list_words`] words of `drawn`; and, of the ten
+    /// `arguments` of each level ([`crate::render::SkinnedScene::arguments`]), the second, which is the number
+    /// of these instances, and the seventh, which is the length of the list up to its last mirrored instance.
     ///
     /// # Errors
-    /// [`InputError`] for a view out of range and too small buffers; [`GpuError`].
+    /// [`InputError`] for a view out of range and for buffers that are too small; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -133,10 +133,11 @@ pub struct LodJob {
 }
 
 impl LodJob {
-    /// Chooses the view of the next submission.
+    /// Sets the view of the next submission.
     ///
     /// # Errors
-    /// [`InputError`] for a view out of range, or of more levels than the one that was prepared; [`GpuError`].
+    /// [`InputError`] for a view out of range, and for one with more levels than the prepared view;
+    /// [`GpuError`].
     pub fn set(&self, gpu: &Gpu, view: &LodView) -> Result<(), Error> {
         view.validate()?;
         let coarser = view.levels.distances().len();
@@ -158,7 +159,7 @@ impl LodJob {
         all: impl IntoIterator<Item = &'a Self, IntoIter: Clone>,
     ) {
         let all = all.into_iter();
-        // The numbers of instances.
+        // Clears the numbers of instances.
         for lod in all.clone() {
             for number in (0..lod.levels).flat_map(numbers_at) {
                 encoder.clear_buffer(lod.arguments.raw(), number, Some(4));
@@ -178,7 +179,7 @@ mod tests {
     use crate::skinning::lod::{LevelRanges, NO_FADE, placed};
     use glam::{Mat4, Vec3};
 
-    /// Lists of levels that a view no longer has are empty; more levels than there are lists are refused.
+    /// Lists of levels that a view no longer has become empty; more levels than there are lists are refused.
     #[test]
     fn views_may_have_fewer_levels() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");

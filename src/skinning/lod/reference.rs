@@ -1,4 +1,4 @@
-//! What is drawn: reference of `kernels/skinning/lod.wgsl`.
+//! Culling and level of detail of instances: the CPU reference of `kernels/skinning/lod.wgsl`.
 
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
@@ -7,19 +7,20 @@ use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::LodView;
 use crate::skinning::picture::is_mirrored;
 
-/// How an instance at this place is seen.
+/// How an instance is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
-    /// How far the model's ball reaches into the view's volume; negative where it does not.
+    /// How far the model's sphere extends into the view volume; negative if it is outside.
     pub depth: f32,
-    /// How far away the middle of the ball counts.
+    /// The projected distance of the sphere's centre.
     pub projected_distance: f32,
-    /// The way from the beginning of the fade to its end, 0 to 1, before it is cut into steps.
+    /// The position between the beginning and the end of the fade, 0 to 1, before it is rounded to steps.
     pub fade_fraction: f32,
 }
 
-/// At least as much as a matrix of these rows stretches: the root of its columns' products' largest row sum (Gershgorin),
-/// or of their squares' sum. Exact, but for rounding, for a turn with any scale.
+/// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of the
+/// products of columns (Gershgorin), or of the sum of their squares, whichever is less. Up to rounding it is
+/// exact for a rotation combined with any scale before it.
 fn stretch(rows: [Vec3; 3]) -> f32 {
     let squares: Vec3 = rows.iter().map(|row| row * row).sum();
     let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
@@ -41,15 +42,15 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     }
 }
 
-/// Whether an instance may be seen as a mirror image: its placement mirrors, or the view does, and not both. What is
-/// nearly flat may be either.
+/// Whether an instance may appear mirrored: its placement mirrors or the view does, but not both. A nearly
+/// singular matrix may count as either.
 pub fn may_mirror(view: &LodView, placement: &Affine) -> bool {
     let [x, y, z] = placement.map(|row| Vec4::from_array(row).truncate());
     let side = if is_mirrored(&view.clip_from_world) { -1.0 } else { 1.0 };
     side * x.dot(y.cross(z)) < 1e-5 * (x.length() * y.length() * z.length())
 }
 
-/// What an instance is drawn with; [`InstanceLod::UNSEEN`] where it is not seen.
+/// The level of detail of an instance; [`InstanceLod::UNSEEN`] if it is not seen.
 pub fn lod(view: &LodView, placement: &Affine) -> InstanceLod {
     let Seen { depth, projected_distance, fade_fraction } = seen(view, placement);
     let steps = view.steps as f32;
@@ -78,7 +79,7 @@ mod tests {
         let of = |matrix: Mat3| stretch(matrix.transpose().to_cols_array_2d().map(Vec3::from));
         for at in 0..100 {
             let scale = Vec3::new(0.2 + 0.02 * at as f32, -1.0, 1.5);
-            // A scale before a turn is exact; between two of them it shears.
+            // A scale followed by a rotation is bounded exactly; a scale between two rotations shears.
             assert!((of(turn(at) * Mat3::from_diagonal(scale)) - scale.abs().max_element()).abs() < 1e-5);
             let sheared = turn(at) * Mat3::from_diagonal(scale) * turn(3 * at + 1);
             let found = of(sheared);

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/lod.wgsl`.
+//! Parity cases of `kernels/skinning/lod.wgsl`.
 
 use glam::{Mat4, Vec3, camera};
 
@@ -13,17 +13,18 @@ use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::reference::{Seen, lod, may_mirror, seen};
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, placed};
 
-/// Of a level: indices, instances and the first index of two draws, before the decision.
+/// The arguments of a level before the decision: indices, instances and first index of two draws.
 const ARGUMENTS: [u32; 10] = [7, 99, 3, 0, 0, 7, 98, 3, 0, 0];
 
-/// How far a fade may lie from its reference: the quotient of a whole number of steps and how many there are, at most 1, 2.5 ULP.
+/// The largest error of a fade: it is the quotient of a whole number of steps and their total, at most 1,
+/// within 2.5 ULP.
 const FADE_BOUND: f32 = 3e-7;
 
-/// How near to a decision rounding may decide otherwise: places are within 200 of the origin, and their sums carry some
-/// 20ε of that.
+/// The distance from a threshold within which rounding may decide either way: positions are within 200 of the
+/// origin, and their sums carry some 20ε of that.
 const TOUCH: f32 = 3e-4;
 
-/// Where cameras look, and where levels begin. The second is a mirror image.
+/// The directions of cameras, and the distances of levels. The second camera mirrors.
 const DIRECTIONS: [(&str, Vec3, &[f32]); 4] = [
     ("south", Vec3::Z, &[]),
     (MIRROR, Vec3::new(1.0, -0.2, 0.3), &[40.0]),
@@ -37,9 +38,10 @@ const DIRECTIONS: [(&str, Vec3, &[f32]); 4] = [
 
 const MIRROR: &str = "aside, mirrored";
 
-/// Instances everywhere around several cameras, every third mirrored; nobody in sight, and all; without levels, with one more, and with as many
-/// as there may be, some of them empty. Of those at the very edge of the view, of a step of the fade and of a level it is
-/// left out what was decided, and they are counted. What is not listed stays as it was.
+/// The cases cover instances everywhere around several cameras, with every third one mirrored; views that see
+/// no instance, and all of them; no levels, one more, and as many as there may be, some of them empty. For
+/// instances at the very edge of the view, of a fade step or of a level, the decision is left out of the
+/// comparison and counted. Memory beyond the lists must stay untouched.
 ///
 /// # Errors
 /// What the device reports.
@@ -55,7 +57,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 3.0 * draw.signed(),
                 1.0 + 0.5 * draw.signed(),
             );
-            // Above the ground, as in water.
+            // Mirrored at the ground, as in water.
             [x, if instance % 3 == 1 { [-y[0], -y[1], -y[2], y[3]] } else { y }, z]
         };
         let placements: Vec<Affine> = (0..count).map(&mut place).collect();
@@ -70,7 +72,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 (Poisoned::<InstanceLod>::new(gpu, count)?, Poisoned::new(gpu, list_words(count, levels))?);
             let arguments = Buffer::from_slice(gpu, "arguments", &ARGUMENTS.repeat(levels))?;
             let job = pass.prepare(gpu, &view, &buffer, &instance_lods.buffer, &drawn.buffer, &arguments)?;
-            // Twice: the number of instances begins anew.
+            // Runs twice, because the number of instances must start again from 0.
             gpu.run("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
             let arguments = arguments.read_blocking(gpu)?;
             let (mut lists, mut found) = (Vec::new(), Vec::new());
@@ -107,8 +109,8 @@ fn view(towards: Vec3) -> LodView {
     }
 }
 
-/// The lists of all levels, as long as the arguments say. What is behind each is still poison, and the arguments' other
-/// words are as they were.
+/// Splits the lists of all levels by the lengths in the arguments. Memory beyond each list must still be
+/// poison, and the other words of the arguments must be unchanged.
 fn split(drawn: &[u32], arguments: &[u32], count: usize, lists: &mut Vec<Vec<u32>>) -> Comparison {
     let stride = if arguments.len() == 10 { count } else { list_stride(count) };
     let mut behind = Vec::new();
@@ -122,7 +124,7 @@ fn split(drawn: &[u32], arguments: &[u32], count: usize, lists: &mut Vec<Vec<u32
     compare::exact(&behind, &vec![0; behind.len()])
 }
 
-/// How many of each list have all of those that are mirrored.
+/// Checks that the second draw of each list reaches all mirrored instances.
 fn mirrored(view: &LodView, placements: &[Affine], arguments: &[u32], lists: &[Vec<u32>]) -> Comparison {
     let is_mirrored = |drawn: &u32| may_mirror(view, &placements[*drawn as usize]);
     let last = |list: &Vec<u32>| list.iter().rposition(is_mirrored).map_or(0, |place| place as u32 + 1);
@@ -130,8 +132,9 @@ fn mirrored(view: &LodView, placements: &[Affine], arguments: &[u32], lists: &[V
     compare::exact(&found, &lists.iter().map(last).collect::<Vec<_>>())
 }
 
-/// Whether lists and reductions tell the same, of every instance; and of those that are not at an edge, what they tell.
-/// Who is at an edge is left out of the latter alone, and counted: one in 200 may be, so none of few.
+/// Checks that lists and InstanceLods agree for every instance and, except for instances at an edge, that they
+/// are right. Instances at an edge are left out of the second check only, and counted: one in 200 is allowed,
+/// so none in small cases.
 fn compared(
     view: &LodView,
     placements: &[Affine],
@@ -166,15 +169,16 @@ fn compared(
     compare::absolute(&actual, &expected, FADE_BOUND).leaving_out(left_out)
 }
 
-/// Whether rounding may decide otherwise: at the very edge of the view, of a step of the fade or of a level.
+/// Whether rounding may decide either way: the instance is at the very edge of the view, of a fade step or of a
+/// level.
 fn is_at_an_edge(view: &LodView, placement: &Affine) -> bool {
     let Seen { depth, projected_distance, fade_fraction } = seen(view, placement);
     let step = fade_fraction * view.steps as f32;
     let at_step = fade_fraction > 0.0 && fade_fraction < 1.0 && (step - step.round()).abs() < TOUCH;
-    // z²/d moves with z twice as far, and with d as far.
+    // z²/d changes twice as much as z does, and as much as d does.
     let at_level =
         view.levels.distances().iter().any(|begin| (projected_distance - begin).abs() < 3.0 * TOUCH);
-    // Who is out of view has neither.
+    // An instance out of view has neither fade nor level.
     depth.abs() < TOUCH || depth > 0.0 && (at_step || at_level)
 }
 
@@ -182,7 +186,8 @@ fn is_at_an_edge(view: &LodView, placement: &Affine) -> bool {
 mod tests {
     use super::*;
 
-    /// The view, places along its middle, and what the reference has of them: all in the lists of their levels.
+    /// A view, placements along its axis, and the reference's decisions, with all instances in the lists of
+    /// their levels.
     struct Right {
         view: LodView,
         placements: Vec<Affine>,
@@ -191,7 +196,7 @@ mod tests {
     }
 
     impl Right {
-        /// `far`: how far each is along the middle of the view.
+        /// `far` gives the distance of each instance along the axis of the view.
         fn new(far: impl Iterator<Item = f32>) -> Self {
             let view = view(Vec3::Z);
             let levels = LevelRanges::new(&[20.0, 40.0]).expect("ascending");
@@ -249,7 +254,8 @@ mod tests {
         assert!(!right.with(|instance_lods, _| instance_lods[unseen].most = 5).holds);
     }
 
-    /// Level 1 begins at 20. One of 400 there does not hide the others, and neither hides that it is not listed.
+    /// Level 1 begins at 20. One instance of 400 at this edge must hide neither an error in the others nor its
+    /// own absence from the lists.
     #[test]
     fn one_at_an_edge_is_left_out_alone_and_few_may_be() {
         let far = |at: usize, edges: usize| if at < edges { 20.0 } else { 3.03 + 0.25 * at as f32 };

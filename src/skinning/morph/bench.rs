@@ -1,4 +1,4 @@
-//! Morph targets of crowds.
+//! Benchmark cases of `skinning/morph`: morph targets of crowds.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -7,7 +7,7 @@ use crate::skinning::morph::MorphPass;
 use crate::skinning::morph::reference::morph;
 use crate::terrain::bench::copy_of;
 
-/// Four targets that move a quarter of the vertices.
+/// Measures four targets that move a quarter of the vertices.
 ///
 /// # Errors
 /// What the device reports.
@@ -19,7 +19,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         scene.crowd.weights.write(gpu, &vec![0.5; 4 * instances])?;
         let job = pass.prepare(gpu, &scene.mesh, &scene.crowd)?;
         let all = RING * RING * instances;
-        // A vertex and two offsets in, one delta of 12 words and its weight, a vertex out.
+        // The kernel reads a vertex, two offsets, a delta of 12 words and its weight, and writes a vertex.
         let words = 10 + 2 + 13 + 10;
         let copied = copy_of(gpu, words * all / 2)?;
         let reference = || {

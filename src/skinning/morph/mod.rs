@@ -1,5 +1,5 @@
-//! Morph targets: how vertices move before they are skinned, and the keys of the targets' weights (glTF 2.0, sections
-//! 3.7.2.2 and 3.11).
+//! Morph targets: displacements of vertices, added before skinning, and the keys of their weights (glTF 2.0,
+//! sections 3.7.2.2 and 3.11).
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -12,6 +12,7 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::MorphPass;
 
-/// How far a component may lie from the reference's for four targets of deltas of at most 1, weights of at most 1.5 and
-/// vertices of at most 2, on any device: each sum of at most 8 adds 2ε of it and 2ε of the product, ε = 2⁻²⁴.
+/// The largest difference allowed between a component and the reference, on any device, for four targets with
+/// deltas of at most 1, weights of at most 1.5 and vertices of at most 2: each sum, of at most 8, adds 2ε of
+/// itself and 2ε of the product, with ε = 2⁻²⁴.
 pub const MORPH_BOUND: f32 = 5e-6;

@@ -1,4 +1,4 @@
-//! `kernels/skinning/morph.wgsl`.
+//! The GPU pass of `kernels/skinning/morph.wgsl`.
 
 use encase::ShaderType;
 use glam::UVec4;
@@ -10,7 +10,7 @@ use crate::gpu::{
 };
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 
-/// `MorphParams` of the kernel.
+/// The kernel's `MorphParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct MorphParams {
     pub vertices: u32,
@@ -20,7 +20,7 @@ pub(crate) struct MorphParams {
     pub levels: [UVec4; MAX_LEVELS / 4],
 }
 
-/// Adds morph targets.
+/// Applies morph targets.
 #[derive(Debug, Clone)]
 pub struct MorphPass {
     all: Kernel,
@@ -37,8 +37,8 @@ impl MorphPass {
         Ok(Self { all: kernel(0.0)?, active: kernel(1.0)? })
     }
 
-    /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail stay as they
-    /// were. Of a mesh without targets there are none, and nothing is done.
+    /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail keep
+    /// their previous contents. For a mesh without targets the job is empty.
     ///
     /// # Errors
     /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
@@ -56,8 +56,8 @@ impl MorphPass {
         Ok(Job::new(gpu, "skinning/morph", steps)?)
     }
 
-    /// Prepares the active clusters of all instances, of those that are seen and not beyond their level of detail; the
-    /// other vertices stay. Nothing for a mesh without targets.
+    /// Prepares the active clusters, as far as their instances are seen and the clusters are within the level
+    /// of detail; all other vertices stay unchanged. For a mesh without targets the job is empty.
     ///
     /// # Errors
     /// As [`MorphPass::prepare`].

@@ -1,10 +1,10 @@
-//! Morph targets: reference of `kernels/skinning/morph.wgsl`.
+//! Morph targets: the CPU reference of `kernels/skinning/morph.wgsl`.
 
 use crate::asset::Mesh;
 use crate::skinning::vertex::{Vertex, vertices_of};
 
-/// A mesh's vertices with these weights of its targets, before skinning. Normals and tangents keep the length that the
-/// sum has.
+/// The vertices of a mesh before skinning, with these weights of its targets. Normals and tangents are sums and
+/// not normalized.
 ///
 /// # Panics
 /// For a mesh that [`Mesh::validate`] refuses.

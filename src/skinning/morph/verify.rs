@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/morph.wgsl`.
+//! Parity cases of `kernels/skinning/morph.wgsl`.
 
 use crate::Error;
 use crate::animation::verify::Draw;
@@ -14,9 +14,10 @@ use crate::skinning::morph::{MORPH_BOUND, MorphPass};
 use crate::skinning::verify::{SHAPES, Shape, flat, poisoned, random_model};
 use crate::skinning::vertex::{Blend, Vertex};
 
-/// Vertices that no, one or every target moves; weights of 0, of either sign and above 1; all clusters, none and some.
-/// The fourth of five instances is not seen: its vertices stay, as those of other clusters do, and those beyond the level
-/// of an instance: the second has the coarsest, the third level 1.
+/// The cases cover vertices that no target, one, or every target moves; weights of 0, of either sign and above
+/// 1; all clusters, none and some. The fourth of five instances is not seen: its vertices must stay unchanged,
+/// as must those of other clusters and those beyond the level of an instance. The second instance has the
+/// coarsest level, the third level 1.
 ///
 /// # Errors
 /// What the device reports.

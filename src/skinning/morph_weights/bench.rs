@@ -1,4 +1,4 @@
-//! Weights of morph targets of crowds.
+//! Benchmark cases of `skinning/morph_weights`: weights of morph targets of crowds.
 
 use crate::Error;
 use crate::animation::clip_set::ClipSet;
@@ -19,7 +19,7 @@ use crate::terrain::bench::copy_of;
 const TARGETS: usize = 4;
 const KEYS: usize = 30;
 
-/// Four targets on straight lines between 30 keys.
+/// Measures four targets with linear interpolation between 30 keys.
 ///
 /// # Errors
 /// What the device reports.
@@ -44,7 +44,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let playing = Buffer::from_slice(gpu, "instances", &instances)?;
         let job = pass.prepare(gpu, &WeightSet::new(mesh, &set, &[0])?, &playing, &scene.crowd)?;
         job.set(gpu, 0.5)?;
-        // An instance, a reduction, four times and two values in, a weight out.
+        // The kernel reads an instance, an InstanceLod, four times and two values, and writes a weight.
         let (all, words) = (count * TARGETS, 4 + 2 + 4 + 2 + 1);
         let copied = copy_of(gpu, words * all / 2)?;
         let mut weights = vec![0.0; all];

@@ -1,5 +1,5 @@
-//! The weights of a mesh's morph targets in the clips of a set, laid out for the kernel that finds them for each instance
-//! of a crowd in each frame.
+//! The weights of a mesh's morph targets in a set of clips, arranged for the kernel that evaluates them for
+//! each instance of a crowd in each frame.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
@@ -16,49 +16,49 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{MorphWeightsJob, MorphWeightsPass};
 
-/// How far a weight may lie from the reference's, on any device, for values and tangents (per second) of at most 1, keys 1/8 to
-/// 1 s apart, and times up to 16 s.
+/// The largest difference allowed between a weight and the reference, on any device, for values and tangents
+/// (per second) of at most 1, keys 1/8 to 1 s apart, and times up to 16 s.
 ///
-/// With ε = 2⁻²⁴ a time carries 3ε of 16 s, in stretches of 1/8 s 2.3e-5 of a stretch; a spline's slope there is at most
-/// 1.5·2 + 2·1 = 5: 1.2e-4. Its arithmetic carries some 40ε.
+/// Let ε = 2⁻²⁴. A time carries 3ε of 16 s, which in segments of 1/8 s is 2.3e-5 of a segment. The slope of a
+/// spline there is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline carries some 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
 
-/// A clip's keys in a set.
+/// The keys of a clip in a set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct WeightEntry {
-    /// The clip's, in seconds.
+    /// The clip's duration in seconds.
     pub duration: f32,
-    /// Where its key times begin.
+    /// Index of its first key time.
     pub first_time: u32,
-    /// How many, at least 1.
+    /// Number of keys, at least 1.
     pub keys: u32,
-    /// Where its values begin.
+    /// Index of its first value.
     pub first_value: u32,
-    /// [`Interpolation`](crate::asset::Interpolation).
+    /// The code of the [`Interpolation`](crate::asset::Interpolation).
     pub interpolation: u32,
 }
 
-/// The weights of a mesh's targets in several clips.
+/// The keys of a mesh's morph weights in several clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightSet {
-    /// One a clip of the set.
+    /// One per clip of the set.
     pub entries: Vec<WeightEntry>,
-    /// Seconds.
+    /// Key times in seconds.
     pub times: Vec<f32>,
-    /// Key by key one a target, in splines three.
+    /// Values, key by key: one per target, in splines three.
     pub values: Vec<f32>,
-    /// Morph targets.
+    /// Number of morph targets.
     pub targets: usize,
 }
 
 impl WeightSet {
-    /// The weights of a mesh in a set of clips; `clips` says which of the model's each of them is. A clip that does not
-    /// move the targets has one key, [`Mesh::weights`].
+    /// The weights of a mesh in a set of clips; `clips` gives the index in the model of each clip of the set. A
+    /// clip that does not animate the weights gets one key, [`Mesh::weights`].
     ///
     /// # Errors
-    /// [`InputError`] unless there is a clip of the model for each of the set.
+    /// [`InputError`] if there is not one clip of the model for each clip of the set.
     pub fn new(mesh: &Mesh, set: &ClipSet, clips: &[usize]) -> Result<Self, InputError> {
         if clips.len() != set.clips().len() {
             let bound = format!("must be {}, one a clip of the set", set.clips().len());

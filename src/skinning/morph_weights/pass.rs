@@ -1,4 +1,4 @@
-//! `kernels/skinning/morph_weights.wgsl`.
+//! The GPU pass of `kernels/skinning/morph_weights.wgsl`.
 
 use encase::ShaderType;
 
@@ -8,7 +8,7 @@ use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::SkinnedCrowd;
 
-/// `MorphWeightsParams` of the kernel.
+/// The kernel's `MorphWeightsParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct MorphWeightsParams {
     pub targets: u32,
@@ -16,7 +16,7 @@ pub(crate) struct MorphWeightsParams {
     pub elapsed: f32,
 }
 
-/// Finds the weights of morph targets.
+/// Evaluates the weights of morph targets.
 #[derive(Debug, Clone)]
 pub struct MorphWeightsPass {
     kernel: Kernel,
@@ -31,11 +31,12 @@ impl MorphWeightsPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_MORPH_WEIGHTS, &[])? })
     }
 
-    /// Prepares the weights of a crowd that plays `instances` of the set's clips. Of layers above them nothing is known.
-    /// For a mesh without targets nothing is done.
+    /// Prepares the weights of a crowd that plays `instances` of the set's clips. Layers above them are
+    /// ignored. For a mesh without targets the job is empty.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer instances than the crowd has, and a crowd of another mesh; [`GpuError`].
+    /// [`crate::InputError`] for fewer instances than the crowd has, and for a crowd of another mesh;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -82,7 +83,7 @@ pub struct MorphWeightsJob {
 }
 
 impl MorphWeightsJob {
-    /// Chooses the time of the next submission: seconds since the instances' starts.
+    /// Sets the time of the next submission: seconds since the starts of the instances.
     ///
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].

@@ -1,4 +1,4 @@
-//! Weights of morph targets: reference of `kernels/skinning/morph_weights.wgsl`.
+//! Weights of morph targets: the CPU reference of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
@@ -6,11 +6,11 @@ use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::asset::Mesh;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The weights of a mesh's targets where instances stand in the clips of a set, instance by instance; those of instances
-/// that are not seen stay. `clips` says which of the model's each of the set is.
+/// The weights of a mesh's targets at each instance's time in its clip, instance by instance; those of
+/// instances that are not seen stay unchanged. `clips` gives the index in the model of each clip of the set.
 ///
 /// # Panics
-/// For lists of other lengths, and instances of no clip of the set.
+/// If the lengths of the lists differ, and for instances of a clip that the set does not have.
 pub fn morph_weights(
     mesh: &Mesh,
     (set, clips): (&ClipSet, &[usize]),

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/morph_weights.wgsl`.
+//! Parity cases of `kernels/skinning/morph_weights.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
@@ -20,18 +20,20 @@ use crate::skinning::verify::{SHAPES, Shape, random_model};
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
-/// How near to a key, or to the clip's end, rounding may decide otherwise: times up to 16 s, three roundings.
+/// The distance in seconds from a key, or from the clip's end, within which rounding may decide either way:
+/// three roundings of times up to 16 s.
 const TOUCH: f32 = 5e-6;
 
-/// [`Interpolation::Step`] in a [`WeightSet`].
+/// The code of [`Interpolation::Step`] in a [`WeightSet`].
 const STEP: u32 = Interpolation::Step as u32;
 
-/// Seconds since the starts.
+/// Times in seconds since the starts.
 const ELAPSED: [f32; 3] = [0.0, 2.71, -1.3];
 
-/// Steps, lines and splines of one key to nine, and clips that move no target; loops and clamps, forwards and backwards,
-/// inside and outside the clip. Every fifth instance is not seen: its weights stay. Steps at their very keys and loops at
-/// their very ends are left out, and counted.
+/// The cases cover steps, lines and splines of one to nine keys, and clips that animate no target; loops and
+/// clamps, forwards and backwards, inside and outside the clip. Every fifth instance is not seen, and its
+/// weights must stay unchanged. Steps at their very keys and loops at their very ends are left out, and
+/// counted.
 ///
 /// # Errors
 /// What the device reports.
@@ -79,7 +81,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Weights of instances, but of those at a jump, which are counted: one in 200 may be, so none of few.
+/// Compares the weights of instances, except those at a jump, which are counted: one in 200 is allowed, so none
+/// in small cases.
 fn compared(actual: &[f32], expected: &[f32], jumps: &[bool]) -> Comparison {
     let targets = expected.len() / jumps.len();
     let kept = |weights: &[f32]| -> Vec<f32> {
@@ -91,8 +94,9 @@ fn compared(actual: &[f32], expected: &[f32], jumps: &[bool]) -> Comparison {
     compare::absolute(&kept(actual), &kept(expected), MORPH_WEIGHTS_BOUND).leaving_out(left_out)
 }
 
-/// Whether rounding may put an instance on the other side of a jump: from the end of a loop to its start, or at the key of
-/// a step. Lines and splines go through their keys, and a clamped time stays at its clip's end.
+/// Whether rounding may put an instance on the other side of a jump: between the end of a loop and its start,
+/// or at the key of a step. Lines and splines are continuous at their keys, and a clamped time stays at its
+/// clip's end.
 fn is_at_a_jump(instance: &Instance, weights: &WeightSet, elapsed: f32) -> bool {
     let entry = &weights.entries[instance.clip as usize];
     let asked = instance.start + instance.rate * elapsed;
@@ -103,7 +107,7 @@ fn is_at_a_jump(instance: &Instance, weights: &WeightSet, elapsed: f32) -> bool 
     entry.keys > 1 && (is_at_end || entry.interpolation == STEP && times.iter().any(is_near))
 }
 
-/// A model with four clips, of which three move the targets, each in another way.
+/// A model with four clips, three of which animate the weights, each with another interpolation.
 fn keyed_model(case: u32, shape: Shape) -> Result<(Model, ClipSet), InputError> {
     let mut draw = Draw::new(case ^ 0x1ce);
     let mut model = random_model(case, shape)?;
@@ -137,7 +141,7 @@ mod tests {
     use super::*;
     use crate::skinning::morph_weights::WeightEntry;
 
-    /// One of 400 instances of two targets stands at a jump: its own weights are left out, and no others.
+    /// One of 400 instances of two targets is at a jump: its own weights are left out, and no others.
     #[test]
     fn one_at_a_jump_is_left_out_alone_and_few_may_be() {
         let expected = vec![0.5; 800];
@@ -152,7 +156,7 @@ mod tests {
         assert!(!three.holds && three.fault.expect("a fault").contains("3 of 400 are left out"));
     }
 
-    /// Steps jump at their keys, loops at their ends, if they have two keys.
+    /// Steps jump at their keys, and loops at their ends if they have two keys.
     #[test]
     fn lines_and_splines_jump_nowhere_but_at_the_ends_of_loops() {
         let entry = |first_time, keys, interpolation| WeightEntry {

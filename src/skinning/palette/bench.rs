@@ -1,4 +1,4 @@
-//! Palettes of crowds.
+//! Benchmark cases of `skinning/palette`: palettes of crowds.
 
 use crate::Error;
 use crate::animation::ModelMatrices;
@@ -10,7 +10,7 @@ use crate::skinning::palette::reference::palette;
 use crate::skinning::verify::random_matrices;
 use crate::terrain::bench::copy_of;
 
-/// For linear blending.
+/// Measures palettes for linear blending.
 ///
 /// # Errors
 /// What the device reports.
@@ -23,7 +23,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
         let job = pass.prepare(gpu, &scene.mesh, &model_matrices, &scene.crowd)?;
         let pairs = BONES * instances;
-        // Two matrices and a number in, a matrix out.
+        // The kernel reads two matrices and an index, and writes a matrix.
         let copied = copy_of(gpu, 37 * pairs / 2)?;
         let reference = || {
             for model_matrices in matrices.chunks(2 * BONES) {

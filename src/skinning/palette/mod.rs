@@ -1,8 +1,10 @@
-//! Palettes: for each bone of a skin what takes a vertex from where it was bound to where it is in the model's space.
+//! Palettes: for each bone of a skin, the transform that takes a vertex from the space of binding to its
+//! position in the model's space.
 //!
-//! Linear blending takes affine matrices. Dual-quaternion blending (Kavan et al. 2008) takes each matrix apart into a
-//! stretch, upper triangular, and a rigid motion after it (Gram–Schmidt on its columns): stretches blend linearly,
-//! motions as dual quaternions. So one bone alone does the same in both, sheared and mirrored or not.
+//! Linear blending uses affine matrices. Dual-quaternion blending (Kavan et al. 2008) decomposes each matrix
+//! into an upper triangular stretch and a rigid motion after it (Gram–Schmidt on its columns): stretches are
+//! blended linearly, motions as dual quaternions. A single bone thus gives the same result in both, sheared and
+//! mirrored or not.
 
 use crate::asset::transform::Affine;
 
@@ -17,33 +19,35 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::PalettePass;
 
-/// How far a component may lie from the reference's, on any device: times the palette's largest (at least 1), for matrices
-/// whose columns are no shorter than ½ and no nearer to each other than 45°. A product of rows carries 16ε (ε = 2⁻²⁴);
-/// Gram–Schmidt's axes carry twice that over the length (64ε), again over the sine (128ε), and their cross product
-/// 256ε; the quaternion's components, differences of these over at least 1, 512ε; the dual part as much times the
-/// translation: 3.1e-5.
+/// The largest difference allowed between a component and the reference, on any device, relative to the
+/// palette's largest component (at least 1), for matrices whose columns are no shorter than ½ and no closer to
+/// each other than 45°.
+///
+/// A product of rows carries 16ε (ε = 2⁻²⁴). The axes of Gram–Schmidt carry twice that over the length (64ε),
+/// again over the sine (128ε), and their cross product 256ε. The quaternion's components, differences of these
+/// over at least 1, carry 512ε, and the dual part as much times the translation: 3.1e-5.
 pub const PALETTE_BOUND: f32 = 3.2e-5;
 
-/// A bone's stretch, and its rigid motion after it, as kernels keep it.
+/// A bone's stretch, and the rigid motion after it, in the layout of the kernels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct DualBone {
     /// The rotation, a unit quaternion (x, y, z, w).
     pub real: [f32; 4],
-    /// Half the translation times the rotation.
+    /// Half of the translation times the rotation.
     pub dual: [f32; 4],
-    /// The stretch's diagonal, and a word that means nothing.
+    /// The diagonal of the stretch, and an unused word.
     pub diagonal: [f32; 4],
-    /// What is above it, row by row, and a word that means nothing.
+    /// The elements above the diagonal, row by row, and an unused word.
     pub above: [f32; 4],
 }
 
-/// What bones do to vertices.
+/// The transforms of bones, for one kind of blending.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Palette {
-    /// For linear blending.
+    /// Matrices for linear blending.
     Linear(Vec<Affine>),
-    /// For dual-quaternion blending.
+    /// Stretches and motions for dual-quaternion blending.
     Dual(Vec<DualBone>),
 }

@@ -1,4 +1,4 @@
-//! `kernels/skinning/palette.wgsl`.
+//! The GPU pass of `kernels/skinning/palette.wgsl`.
 
 use encase::ShaderType;
 
@@ -9,7 +9,7 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
 
-/// `PaletteParams` of the kernel.
+/// The kernel's `PaletteParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct PaletteParams {
     pub bones: u32,
@@ -17,7 +17,7 @@ pub(crate) struct PaletteParams {
     pub pairs: u32,
 }
 
-/// Makes palettes.
+/// Computes palettes.
 #[derive(Debug, Clone)]
 pub struct PalettePass {
     linear: Kernel,
@@ -37,9 +37,9 @@ impl PalettePass {
     /// Prepares the palettes of all instances that are seen.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over those of a crowd
-    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending alone;
-    /// [`GpuError`].
+    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over matrices of
+    /// a crowd under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending
+    /// only; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Palettes: reference of `kernels/skinning/palette.wgsl`.
+//! Palettes: the CPU reference of `kernels/skinning/palette.wgsl`.
 
 use crate::animation::local_to_model::reference::product;
 use crate::asset::skeleton::Skin;
@@ -7,16 +7,16 @@ use crate::asset::transform::rows;
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::vertex::Blend;
 
-/// What takes vertices from where they were bound to the model's space: one matrix a bone of the skin.
+/// The palette of a skin, one matrix per bone: model matrix × inverse bind matrix.
 ///
 /// # Panics
-/// For a skin that does not fit the skeleton of `model_matrices`.
+/// For a skin that does not match the skeleton of `model_matrices`.
 pub fn palette(skin: &Skin, model_matrices: &[Affine]) -> Vec<Affine> {
     let bones = skin.bones.iter().zip(&skin.inverse_binds);
     bones.map(|(bone, bind)| product(&model_matrices[*bone as usize], &rows(bind))).collect()
 }
 
-/// The palette of a kind of blending.
+/// The palette for a kind of blending.
 pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Palette {
     let linear = palette(skin, model_matrices);
     match blend {
@@ -25,11 +25,11 @@ pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Pale
     }
 }
 
-/// A matrix taken apart into a stretch and a rigid motion after it.
+/// Decomposes a matrix into a stretch and a rigid motion after it.
 pub fn dual(matrix: &Affine) -> DualBone {
     let column = |at: usize| [matrix[0][at], matrix[1][at], matrix[2][at]];
     let [a, b, c] = [0, 1, 2].map(column);
-    // What has no direction gets one that leaves the others alone.
+    // A column without direction is replaced by one that leaves the others unchanged.
     let x = unit_or(a, [1.0, 0.0, 0.0]);
     let along = dot(x, b);
     let rest = [b[0] - along * x[0], b[1] - along * x[1], b[2] - along * x[2]];
@@ -45,10 +45,10 @@ pub fn dual(matrix: &Affine) -> DualBone {
     }
 }
 
-/// A vector of length 1, or the other one where it has no direction.
+/// The vector scaled to length 1, or `other` if it has no direction.
 pub fn unit_or(vector: [f32; 3], other: [f32; 3]) -> [f32; 3] {
     let size = vector[0].abs().max(vector[1].abs()).max(vector[2].abs());
-    // What is smaller than this, devices may flush to zero.
+    // Devices may flush values smaller than this to zero.
     if size < 1e-30 {
         return other;
     }
@@ -57,15 +57,15 @@ pub fn unit_or(vector: [f32; 3], other: [f32; 3]) -> [f32; 3] {
     scaled.map(|component| component * inverse)
 }
 
-/// A unit vector at a right angle to a unit vector: Duff et al. 2017.
+/// A unit vector at a right angle to a unit vector (Duff et al. 2017).
 fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
     let side = if z < 0.0 { -1.0 } else { 1.0 };
     let a = -1.0 / (side + z);
     [1.0 + side * x * x * a, side * x * y * a, -side * x]
 }
 
-/// The unit quaternion of a rotation's columns, of whichever sign. Its largest component is at least ½, and found
-/// without a cancelling sum.
+/// The unit quaternion, of either sign, of a rotation given by its columns. Its largest component is at least ½
+/// and is computed without cancellation.
 fn quaternion(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [f32; 4] {
     let squares = [
         1.0 + x[0] - y[1] - z[2],

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/palette.wgsl`.
+//! Parity cases of `kernels/skinning/palette.wgsl`.
 
 use crate::Error;
 use crate::animation::ModelMatrices;
@@ -12,8 +12,9 @@ use crate::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
 use crate::skinning::verify::{SHAPES, poisoned, random_matrices, random_model};
 use crate::skinning::vertex::Blend;
 
-/// Random skins of some of a skeleton's bones, mirrored and stretched, for both kinds of blending. A quaternion may be
-/// the other one of the same rotation, its dual part with it. The second instance is not seen: its palette stays.
+/// The cases cover random skins with some of a skeleton's bones, mirrored and stretched, for both kinds of
+/// blending. A quaternion may have the opposite sign, its dual part with it. The second instance is not seen,
+/// and its palette must stay unchanged.
 ///
 /// # Errors
 /// What the device reports.
@@ -57,7 +58,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Turns quaternions to the side of the expected ones.
+/// Gives quaternions the signs of the expected ones.
 fn same_side(actual: &[[f32; 4]], expected: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let bones = actual.chunks_exact(4).zip(expected.chunks_exact(4));
     let turned = |(actual, expected): (&[[f32; 4]], &[[f32; 4]])| {

@@ -1,4 +1,4 @@
-//! How a picture of skinned meshes is lit and framed.
+//! Lighting and framing of pictures of skinned meshes.
 
 pub mod reference;
 pub mod texture;
@@ -11,9 +11,9 @@ use crate::skinning::vertex::Vertex;
 /// A directional light, in linear light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// Towards the light, of any length but 0.
+    /// The direction towards the light, of any length but 0.
     pub direction: Vec3,
-    /// What faces away from it still gets, 0 to 1.
+    /// Light that surfaces facing away still receive, 0 to 1.
     pub ambient: f32,
 }
 
@@ -40,18 +40,18 @@ impl Light {
     }
 }
 
-/// Whether what is seen through this matrix, from some space to clip space, is a mirror image: triangles that run
-/// counter-clockwise in that space, seen from outside, then run clockwise on the screen. Of a parallel view, whose depth
-/// must grow with the distance, that of all three axes decides.
+/// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space,
+/// seen from outside, then run clockwise on the screen. For a parallel view, whose depth must grow with
+/// distance, the sign of the determinant of all three axes decides.
 pub fn is_mirrored(clip: &Mat4) -> bool {
-    // Wide: a product of three small scales may be no f32.
+    // In f64, because the product of three small scales may underflow f32.
     let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());
     let ahead = if ahead == DVec3::ZERO { depth } else { ahead };
     right.cross(up).dot(ahead) > 0.0
 }
 
-/// From the model's space to clip space: all of these vertices in the middle of a square picture, seen from +Z, a little
-/// from the left and above.
+/// A matrix from the model's space to clip space that puts all of these vertices in the middle of a square
+/// picture, seen from +Z, slightly from the left and from above.
 pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
     let places = vertices.map(|vertex| Vec3::from(vertex.position));
     let wide = around(places.clone());
@@ -61,14 +61,14 @@ pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
     if !low.cmple(high).all() {
         return wide;
     }
-    // What is seen moves to the middle, and fills nine tenths.
+    // The contents are centred and fill nine tenths.
     let zoom = 1.8 / (high - low).max_element().max(1e-3);
     let middle = low.midpoint(high) * zoom;
     let crop = Mat4::from_translation(-middle.extend(0.0)) * Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
     crop * wide
 }
 
-/// A camera that sees a ball around the places.
+/// A camera that sees a sphere around the points.
 fn around(places: impl Iterator<Item = Vec3>) -> Mat4 {
     let (low, high) =
         places.fold((Vec3::MAX, Vec3::MIN), |(low, high), place| (low.min(place), high.max(place)));

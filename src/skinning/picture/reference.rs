@@ -1,4 +1,4 @@
-//! A picture of skinned meshes without a GPU: reference of `wgsl/render/skinned.wgsl`, for one instance.
+//! Pictures of skinned meshes without a GPU: the CPU reference of `wgsl/render/skinned.wgsl`, for one instance.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -9,32 +9,32 @@ use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
 
-/// Where and how meshes are seen.
+/// The view and lighting of meshes.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene {
-    /// From the model's space to clip space. It may mirror; outside stays outside.
+    /// The matrix from the model's space to clip space. It may mirror; the outside of meshes is still shown.
     pub clip_from_model: Mat4,
-    /// What lights them.
+    /// The light.
     pub light: Light,
-    /// Columns and rows.
+    /// Pixels along x and y.
     pub size: [u32; 2],
 }
 
-/// A mesh, where its vertices are, and what it looks like.
+/// A mesh with its vertices and its surface.
 #[derive(Debug, Clone, Copy)]
 pub struct Part<'a> {
     /// Triangles and texture coordinates.
     pub mesh: &'a Mesh,
-    /// The mesh's level of detail: 0 is the mesh itself, and one that it lacks its last.
+    /// The mesh's level of detail: 0 is the mesh itself; a number beyond the last level gives the last.
     pub level: u32,
-    /// One a vertex of the mesh, in its order; of those that the level has.
+    /// One vertex per vertex of the mesh, in its order; only those that the level uses matter.
     pub vertices: &'a [Vertex],
-    /// Colour.
+    /// The base colour.
     pub surface: &'a Surface,
 }
 
 impl Scene {
-    /// The meshes over a linear `background`; one sample a pixel.
+    /// Draws the meshes over a linear `background`, with one sample per pixel.
     pub fn draw(&self, parts: &[Part<'_>], background: [f32; 3]) -> LinearImage {
         let pixels = (self.size[0] * self.size[1]) as usize;
         let mut canvas = Canvas {
@@ -82,12 +82,12 @@ struct Triangle<'a> {
     corners: [Corner; 3],
     screen: [Vec4; 3],
     area: f32,
-    /// Seen from outside.
+    /// Whether its outside is seen.
     is_front: bool,
 }
 
 impl Canvas<'_> {
-    /// A triangle in front of the near plane; others are left out whole.
+    /// Draws a triangle if it lies in front of the near plane as a whole.
     fn triangle(&mut self, part: &Part<'_>, corners: [Corner; 3]) {
         if corners.iter().any(|corner| corner.clip.w <= 0.0 || !corner.clip.is_finite()) {
             return;
@@ -98,7 +98,7 @@ impl Canvas<'_> {
             Vec4::new((0.5 + 0.5 * x) * size[0], (0.5 - 0.5 * y) * size[1], z, 1.0 / clip.w)
         });
         let [a, b, c] = screen;
-        // Negative from outside, but for mirror images: y points down here.
+        // Negative if seen from outside, unless mirrored, because y points down here.
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
         let is_front = (area < 0.0) != self.is_mirrored;
         if area == 0.0 || !is_front && !part.mesh.double_sided {
@@ -151,14 +151,14 @@ impl Canvas<'_> {
 }
 
 impl Triangle<'_> {
-    /// What each corner has of a place on the screen.
+    /// The perspective-correct weight of each corner at a point of the screen.
     fn barycentric(&self, x: f32, y: f32) -> Vec3 {
         let [a, b, c] = self.screen;
         let edge = |p: Vec4, q: Vec4| ((p.x - x) * (q.y - y) - (q.x - x) * (p.y - y)) / self.area;
         Vec3::new(edge(b, c), edge(c, a), edge(a, b))
     }
 
-    /// The same of the triangle itself.
+    /// The weights of the corners on the screen.
     fn weights(&self, x: f32, y: f32) -> Vec3 {
         let weights = self.barycentric(x, y) * Vec3::from(self.screen.map(|corner| corner.w));
         weights / weights.element_sum()

@@ -1,5 +1,5 @@
-//! Reading a texture between its texels and beyond its edges, as samplers do (Vulkan, chapter 16); what they may round
-//! is exact here.
+//! Texture filtering and wrapping as samplers define them (Vulkan, chapter 16), computed exactly where samplers
+//! may round.
 
 use image::RgbaImage;
 
@@ -8,41 +8,41 @@ use crate::asset::material::{Alpha, Filter, Material, Sampling, Wrapping};
 use crate::srgb::linear;
 use crate::surface::mips::Mips;
 
-/// What a surface looks like.
+/// The base colour of a surface.
 #[derive(Debug, Clone)]
 pub struct Surface {
-    /// Linear, and alpha: what the texture is multiplied with.
+    /// The factor of the texture: linear colour and alpha.
     pub factor: [f32; 4],
-    /// Colour and alpha.
+    /// The texture of colour and alpha.
     pub texture: Option<Texels>,
-    /// What becomes of alpha.
+    /// How alpha is used.
     pub alpha: Alpha,
 }
 
 impl Surface {
-    /// Opaque, of one linear colour.
+    /// An opaque surface of one linear colour.
     pub fn plain([r, g, b]: [f32; 3]) -> Self {
         Self { factor: [r, g, b, 1.0], texture: None, alpha: Alpha::Opaque }
     }
 
-    /// A model's material.
+    /// The surface of a model's material.
     ///
     /// # Panics
-    /// For an image that the model lacks: see [`Model::material`].
+    /// For an image that the model does not have; see [`Model::material`].
     pub fn of(model: &Model, material: &Material) -> Self {
         let texture =
             material.texture.map(|texture| Texels::new(&model.images[texture.image], texture.sampling));
         Self { factor: material.color, texture, alpha: material.alpha }
     }
 
-    /// Linear colour and alpha at a place, whose coordinates change so much a pixel along x and y.
+    /// Linear colour and alpha at `uv`, given the change of uv per pixel along x and along y.
     pub fn at(&self, uv: [f32; 2], steps: [[f32; 2]; 2]) -> [f32; 4] {
         let texel = self.texture.as_ref().map_or([1.0; 4], |texture| texture.sample(uv, steps));
         std::array::from_fn(|channel| texel[channel] * self.factor[channel])
     }
 }
 
-/// An image with its mip levels in linear light, and how it is read.
+/// An image with its mip levels in linear light, and its sampler settings.
 #[derive(Debug, Clone)]
 pub struct Texels {
     levels: Vec<Level>,
@@ -56,7 +56,7 @@ struct Level {
 }
 
 impl Texels {
-    /// An sRGB image.
+    /// Converts an sRGB image.
     pub fn new(image: &RgbaImage, sampling: Sampling) -> Self {
         let images = match sampling.mips {
             Some(_) => Mips::of_color(image.clone()).levels,
@@ -75,7 +75,7 @@ impl Texels {
         Self { levels: images.iter().map(level).collect(), sampling }
     }
 
-    /// See [`Surface::at`].
+    /// The value at `uv`; see [`Surface::at`].
     pub fn sample(&self, uv: [f32; 2], steps: [[f32; 2]; 2]) -> [f32; 4] {
         let Sampling { magnified, minified, mips, .. } = self.sampling;
         let size = self.levels[0].size.map(|edge| edge as f32);
@@ -158,9 +158,9 @@ mod tests {
         let linear = texels(Sampling::default());
         assert_eq!(red(&linear, [0.25, 0.25], 0.1), 0.0);
         assert_eq!(red(&linear, [0.5, 0.25], 0.1), 0.5);
-        // Light is averaged as light.
+        // Averages are taken in linear light.
         assert!((red(&linear, [0.25, 0.25], 1.0) - 0.5).abs() < 0.01);
-        // Half way between the levels.
+        // Halfway between two mip levels.
         assert!((red(&linear, [0.25, 0.25], 0.5_f32.sqrt()) - 0.25).abs() < 0.01);
         let plain = texels(Sampling { mips: None, minified: Filter::Nearest, ..sampling });
         assert_eq!(red(&plain, [0.1, 0.1], 5.0), 0.0);

@@ -1,4 +1,4 @@
-//! Selection of clusters.
+//! Benchmark cases of `skinning/select`: selection of clusters.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -8,7 +8,7 @@ use crate::skinning::select::reference::{Now, Skinned, select};
 use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
 use crate::terrain::bench::copy_of;
 
-/// One bone in eight moves; of all instances, or of a quarter that is seen.
+/// Measures crowds in which one bone in eight is updated, with all instances seen or a quarter of them.
 ///
 /// # Errors
 /// What the device reports.
@@ -28,7 +28,8 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let last: Vec<Skinned> =
             instance_lods.iter().map(|now| Skinned { instance_lod: *now, ..Skinned::nothing(0) }).collect();
         let words = scene.mesh.mask_words;
-        // A reduction and what is remembered in, and of what is seen a mask and a set of bones.
+        // The kernel reads an InstanceLod and the remembered state and, for instances that are seen, a mask and
+        // a set of bones.
         let read = 2 + SKINNED_WORDS + 2 * words / seen;
         let copied = copy_of(gpu, read * pairs / 2)?;
         let contenders = vec![

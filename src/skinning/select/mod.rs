@@ -1,10 +1,11 @@
-//! Which clusters are skinned in a frame, of instances that are seen, at their level of detail: those with a bone that
-//! moved, those of instances whose influences count otherwise, and where morph targets move vertices, those of instances
-//! whose weights changed. Skipping a bone so saves its vertices, and what is not seen costs nothing. The list's order
-//! differs from run to run; what is skinned does not.
+//! Selection of the clusters that are skinned in a frame, among instances that are seen, at their level of
+//! detail: clusters with an updated bone, clusters of instances whose influences changed and, where morph
+//! targets move vertices, clusters of instances whose weights changed. Skipping a bone thus saves its vertices,
+//! and instances that are not seen cost nothing. The order of the list may differ between runs; its set does
+//! not.
 //!
-//! An instance that is not seen keeps the vertices that it had. Seen again, all of it is skinned, whatever moved.
-//! Clusters beyond its level keep their vertices likewise, and are skinned once the level is a finer one.
+//! An instance that is not seen keeps its vertices. When it is seen again, all of it is skinned, whatever
+//! moved. Clusters beyond its level keep their vertices likewise, and are skinned when the level becomes finer.
 
 #[cfg(feature = "verify")]
 pub mod bench;

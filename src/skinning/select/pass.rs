@@ -1,4 +1,4 @@
-//! `kernels/skinning/select.wgsl`.
+//! The GPU pass of `kernels/skinning/select.wgsl`.
 
 use encase::ShaderType;
 use glam::UVec4;
@@ -8,7 +8,7 @@ use crate::asset::mesh::MAX_LEVELS;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
 
-/// `SelectParams` of the kernel.
+/// The kernel's `SelectParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct SelectParams {
     pub instances: u32,
@@ -20,28 +20,32 @@ pub(crate) struct SelectParams {
     pub levels: [UVec4; MAX_LEVELS / 4],
 }
 
-/// What a selection reads and remembers.
+/// The inputs of a selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
 pub struct SelectBuffers {
-    /// The bones of each instance that were recomputed this frame, a bit a slot of the skeleton's order, in
-    /// [`MeshBuffers::mask_words`] words an instance. [`SkinFrame`](crate::skinning::frame::SkinFrame) puts
-    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here where a gate decides. A bone below one that moved has moved too.
+    /// The bones of each instance that were updated this frame, one bit per slot of the skeleton's order, in
+    /// [`MeshBuffers::mask_words`] words per instance. Under a gate,
+    /// [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
+    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) for it. Every bone below an
+    /// updated one must be set too.
     pub updated_bones: Buffer<u32>,
-    /// Of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: its reduction's fade, as bits, most
-    /// influences and level; for how many frames it has been seen; the weights of its targets, as bits. All 0 at first,
-    /// so that what is seen then is skinned.
+    /// The state of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: the fade (as
+    /// bits), largest number of influences and level of its InstanceLod; the number of frames for which it has
+    /// been seen; and the weights of its targets, as bits. All words are 0 at first, so that everything that is
+    /// seen then is skinned.
     ///
-    /// The fourth word is 0 of what is not seen, 1 of what is seen for the first time or again, 2 of what was seen in the
-    /// frame before too. At 1, vertices that [`keep_last`](crate::skinning::skin::keep_last) copied are of another time,
-    /// or nothing: motion vectors then know of the placement alone.
+    /// The fourth word is 0 for an instance that is not seen, 1 for one that is seen for the first time or
+    /// again, and 2 for one that was seen in the frame before too. At 1, the vertices that
+    /// [`keep_last`](crate::skinning::skin::keep_last) copied belong to an earlier time or are unwritten;
+    /// motion vectors can then use the placement only.
     pub skinned: Buffer<u32>,
 }
 
-/// Words of an instance in [`SelectBuffers::skinned`], before its weights.
+/// Words per instance in [`SelectBuffers::skinned`], before its weights.
 pub const SKINNED_WORDS: usize = 4;
 
 impl SelectBuffers {
-    /// Room for a crowd. No bone has moved.
+    /// Allocates the buffers for a crowd, with no updated bone.
     ///
     /// # Errors
     /// [`GpuError`].

@@ -1,49 +1,50 @@
-//! Which clusters are skinned: reference of `kernels/skinning/select.wgsl`.
+//! Selection of the clusters that are skinned: the CPU reference of `kernels/skinning/select.wgsl`.
 
 use crate::skinning::clusters::Clusters;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// What decides in a frame.
+/// The inputs of a frame's selection.
 #[derive(Debug, Clone, Copy)]
 pub struct Now<'a> {
-    /// The bones of each instance that moved, [`Clusters::mask_words`] words an instance.
+    /// The updated bones of each instance, in [`Clusters::mask_words`] words per instance.
     pub updated_bones: &'a [u32],
-    /// One an instance.
+    /// One per instance.
     pub instance_lods: &'a [InstanceLod],
-    /// Of morph targets, instance by instance.
+    /// Weights of morph targets, instance by instance.
     pub weights: &'a [f32],
 }
 
-/// What is known of an instance from the frame before.
+/// The state of an instance in the frame before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skinned {
-    /// Its reduction then.
+    /// Its InstanceLod in that frame.
     pub instance_lod: InstanceLod,
-    /// For how many frames it has been seen, 2 for more: see
+    /// The number of frames for which it has been seen, 2 for more; see
     /// [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned).
     pub seen: u32,
-    /// Its weights then.
+    /// Its weights in that frame.
     pub weights: Vec<f32>,
 }
 
 impl Skinned {
-    /// Before the first frame.
+    /// The state before the first frame.
     pub fn nothing(targets: usize) -> Self {
         Self { instance_lod: InstanceLod::UNSEEN, seen: 0, weights: vec![0.0; targets] }
     }
 }
 
-/// How influences count.
+/// The bits of what determines the influences.
 fn bits(instance_lod: &InstanceLod) -> [u32; 2] {
     [instance_lod.fade.to_bits(), instance_lod.most]
 }
 
-/// `cluster · instances + instance` of what is skinned, of the instances that are seen, at their level of detail:
-/// clusters with a bone that moved, clusters that targets move, where a weight is another than in the frame before,
-/// those beyond the level of the frame before, and all of instances whose influences count otherwise; ascending.
+/// The pairs `cluster · instances + instance` to be skinned, ascending, among instances that are seen, at their
+/// level of detail: clusters with an updated bone, clusters that morph targets move if a weight has changed
+/// since the frame before, clusters beyond the level of the frame before, and all clusters of instances whose
+/// influences changed.
 ///
 /// # Panics
-/// For lists of other lengths than the instances that `last` has.
+/// If the lengths of the lists do not match the number of instances in `last`.
 pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> {
     let words = clusters.mask_words;
     let is_selected = |pair: &u32| {
@@ -65,7 +66,7 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
     (0..(clusters.len() * last.len()) as u32).filter(is_selected).collect()
 }
 
-/// Takes note of a frame, after [`select`].
+/// Stores the state of a frame; call it after [`select`].
 pub fn remember(now: &Now<'_>, last: &mut [Skinned]) {
     for (instance, last) in last.iter_mut().enumerate() {
         last.instance_lod = now.instance_lods[instance];

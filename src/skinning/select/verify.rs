@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/select.wgsl`.
+//! Parity cases of `kernels/skinning/select.wgsl`.
 
 use crate::animation::verify::Draw;
 use crate::asset::Model;
@@ -17,7 +17,7 @@ use crate::skinning::verify::{SHAPES, Shape, random_instance_lods, random_model}
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
-/// Frames in a row; of 64 bones how many move; whether reductions and weights are other ones.
+/// A sequence of frames: name, how many of 64 bones are updated, and whether InstanceLods and weights change.
 const FRAMES: [(&str, u32, bool); 10] = [
     ("the first", 8, true),
     ("others seen and faded", 2, true),
@@ -31,7 +31,7 @@ const FRAMES: [(&str, u32, bool); 10] = [
     ("all whole", 0, false),
 ];
 
-/// What decides in a frame.
+/// The inputs of a frame's selection.
 struct Frame {
     updated_bones: Vec<u32>,
     instance_lods: Vec<InstanceLod>,
@@ -43,7 +43,7 @@ impl Frame {
         Now { updated_bones: &self.updated_bones, instance_lods: &self.instance_lods, weights: &self.weights }
     }
 
-    /// The frame after this one.
+    /// The next frame.
     fn next(&self, draw: &mut Draw, case: u32, (name, fraction, is_other): (&str, u32, bool)) -> Self {
         let word =
             |_: &u32| (0..32).fold(0_u32, |word, bit| word | u32::from(draw.word() % 64 < fraction) << bit);
@@ -59,7 +59,7 @@ impl Frame {
             _ if is_other => random_instance_lods(case + fraction, instances),
             _ => self.instance_lods.clone(),
         };
-        // Every third one changes, and all of them while nobody is seen.
+        // Every third weight changes, and all of them while no instance is seen.
         let weight = |(at, old): (usize, &f32)| {
             if is_other && at % 3 == 0 || name == "all unseen" { draw.signed() } else { *old }
         };
@@ -68,9 +68,10 @@ impl Frame {
     }
 }
 
-/// No bone, some and all; reductions that change and such as do not; instances that leave the view and come back; levels
-/// that get coarser and finer; weights of targets that move some of the clusters. Lists are compared sorted, with what is
-/// behind them, which stays untouched, their number, the workgroups for them, and what is remembered.
+/// The cases cover no updated bone, some and all; InstanceLods that change and that do not; instances that
+/// leave the view and come back; levels that become coarser and finer; weights of targets that move some of the
+/// clusters. Lists are compared sorted, together with the untouched memory beyond them, their length, the
+/// workgroups, and the stored state.
 ///
 /// # Errors
 /// What the device reports.
@@ -139,7 +140,7 @@ fn words_of(last: &[Skinned]) -> Vec<u32> {
     last.iter().flat_map(words).collect()
 }
 
-/// A random model whose targets move vertices of every second cluster alone.
+/// A random model whose targets move only vertices of every second cluster.
 fn model(case: u32, shape: Shape) -> Result<Model, InputError> {
     let mut model = random_model(case, shape)?;
     let order = Clusters::new(&model.meshes[0], &model.skins, &model.skeleton)?.order;
@@ -161,7 +162,8 @@ fn model(case: u32, shape: Shape) -> Result<Model, InputError> {
 mod tests {
     use super::*;
 
-    /// Two pairs of four, in any order; one too few, another one, and one that was written behind the list.
+    /// Two pairs of four, in any order; then one too few, a wrong one, and one that was written beyond the
+    /// list.
     #[test]
     fn lists_are_compared_with_what_is_behind_them() {
         let holds = |actual: &[u32], count| listed(actual, &[count, 1, 1, count, 0], &[3, 9]).holds;

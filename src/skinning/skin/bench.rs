@@ -1,4 +1,4 @@
-//! Skinning of crowds.
+//! Benchmark cases of `skinning/skin`: skinning of crowds.
 
 use crate::Error;
 use crate::asset::mesh::MeshLevel;
@@ -16,7 +16,7 @@ use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::terrain::bench::copy_of;
 
-/// Eight, four, two influences and one.
+/// Measures vertices with eight, four, two influences and one.
 ///
 /// # Errors
 /// What the device reports.
@@ -27,7 +27,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     for influences in [8, 4, 2, 1] {
         for instances in CROWDS {
             let scene = Scene::new(gpu, influences, 0, instances)?;
-            // A vertex and its influences in, its bones' rows in, a vertex out.
+            // The kernel reads a vertex, its influences and its bones' rows, and writes a vertex.
             let words = 10 + influences.div_ceil(2) + (influences - 1) + 12 * influences + 10;
             let batch = batch(gpu, instances, 4 * words / 2);
             let jobs = batches(gpu, &pass, &scene, [instances, batch])?;
@@ -68,7 +68,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     faded(bench, &pass)
 }
 
-/// Every eighth cluster of a hundred instances.
+/// Measures a list with every eighth cluster of a hundred instances.
 fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
@@ -94,8 +94,8 @@ fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     bench.case("an eighth of 4, 10k × 100", (vertices, "vertex"), 292 * vertices as u64, contenders)
 }
 
-/// A hundred instances, a quarter of them seen, without a list that leaves out the others: nanoseconds a vertex of
-/// those that are seen.
+/// Measures a hundred instances of which a quarter is seen, without a list: nanoseconds per vertex of those
+/// that are seen.
 fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
@@ -105,8 +105,8 @@ fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     crowd(bench, pass, &scene, "4, a quarter of 10k × 100 seen, no list", &work)
 }
 
-/// A hundred instances at a level of a quarter of the vertices, without a list that leaves out the others' clusters:
-/// nanoseconds a vertex of those clusters that it has.
+/// Measures a hundred instances at a level with a quarter of the vertices, without a list: nanoseconds per
+/// vertex of the level's clusters.
 fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let mut model = tube(4, 0)?;
@@ -121,16 +121,17 @@ fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     crowd(bench, pass, &scene, "4, 10k × 100 at a level of a quarter, no list", &work)
 }
 
-/// What is skinned of a crowd. Which vertices of an instance these are does not matter to the reference.
+/// The part of a crowd that is skinned. Which vertices of an instance these are does not matter to the
+/// reference.
 struct Work {
     instances: usize,
     vertices: usize,
-    /// That are loaded and stored, a vertex.
+    /// Words that are loaded and stored per vertex.
     words: usize,
     instance_lod: InstanceLod,
 }
 
-/// A hundred instances without a list: nanoseconds a vertex of those that are skinned.
+/// Measures a hundred instances without a list: nanoseconds per skinned vertex.
 fn crowd(
     bench: &mut Bench<'_>,
     pass: &SkinPass,
@@ -159,18 +160,18 @@ fn crowd(
     bench.case(name, (all, "vertex"), (4 * work.words * all) as u64, contenders)
 }
 
-/// A hundred instances at full fade: the weight that decides is read, and one bone.
+/// Measures a hundred instances at full fade: the weight that decides is read, and one bone.
 fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
     let rigid = InstanceLod { fade: 1.0, ..InstanceLod::FULL };
     scene.crowd.instance_lods.write(gpu, &[rigid; CROWDS[1]])?;
-    // A vertex, a bone and a weight in, the bone's rows, a vertex out.
+    // The kernel reads a vertex, a bone, a weight and the bone's rows, and writes a vertex.
     let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, instance_lod: rigid };
     crowd(bench, pass, &scene, "4 faded to 1, 10k × 100", &work)
 }
 
-/// Instances of which a buffer holds so many bytes a vertex, a divisor of them all.
+/// The number of instances, a divisor of `instances`, whose vertices of `bytes` bytes fit one buffer.
 fn batch(gpu: &Gpu, instances: usize, bytes: usize) -> usize {
     let room = gpu.max_binding() as usize / (RING * RING * bytes.max(size_of::<Vertex>()));
     (1..=instances).rev().find(|batch| instances.is_multiple_of(*batch) && *batch <= room.max(1)).unwrap_or(1)

@@ -1,4 +1,4 @@
-//! `kernels/skinning/skin.wgsl`.
+//! The GPU pass of `kernels/skinning/skin.wgsl`.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
-/// `SkinParams` of the kernel.
+/// The kernel's `SkinParams`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct SkinParams {
     pub vertices: u32,
@@ -27,12 +27,12 @@ pub(crate) struct SkinParams {
 /// Skins vertices.
 #[derive(Debug, Clone)]
 pub struct SkinPass {
-    // All and compacted; each unmorphed and morphed.
+    // Kernels for all clusters and for a list; each for the mesh's vertices and for morphed ones.
     kernels: [[Kernel; 2]; 2],
     blend: Blend,
 }
 
-/// Prepared skinning of clusters that a kernel or the host chooses.
+/// The prepared skinning of clusters that a kernel or the host selects.
 pub type SkinActiveJob = IndirectJob;
 
 impl SkinPass {
@@ -50,12 +50,13 @@ impl SkinPass {
         Ok(Self { kernels, blend })
     }
 
-    /// Prepares every vertex of those that are seen of some instances, which are `skinned` one after the other, in the
-    /// mesh's clusters. Clusters beyond an instance's level of detail stay as they were.
+    /// Prepares the skinning of a range of instances into `skinned`, one instance after the other, in the order
+    /// of the mesh's clusters. Instances that are not seen, and clusters beyond an instance's level of detail,
+    /// keep their previous contents.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another mesh or kind of blending, instances that it lacks, and too small an
-    /// output; [`GpuError`].
+    /// [`InputError`] for a crowd of another mesh or kind of blending, for instances that it does not have, and
+    /// for an output that is too small; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -70,15 +71,15 @@ impl SkinPass {
         };
         let kernel = self.kernel(false, mesh);
         let pairs = (instances.len() * mesh.clusters()) as u32;
-        // A workgroup a pair.
+        // One workgroup per pair of cluster and instance.
         let group = self.bind(gpu, kernel, (mesh, crowd), instances, (skinned, &nothing))?;
         let workgroups = rows_of_workgroups(gpu, pairs);
         let step = Step { groups: vec![group], workgroups, kernel: kernel.clone() };
         Ok(Job::new(gpu, "skinning/skin", vec![step])?)
     }
 
-    /// Prepares the active clusters of all instances, of those that are seen and not beyond their level of detail; the
-    /// other vertices stay.
+    /// Prepares the active clusters, as far as their instances are seen and the clusters are within the level
+    /// of detail; all other vertices stay unchanged.
     ///
     /// # Errors
     /// As [`SkinPass::prepare`].
@@ -145,12 +146,14 @@ impl SkinPass {
     }
 }
 
-/// Records a copy of vertices as they are, before the next skinning changes them: last frame's, for motion vectors.
+/// Records a copy of the skinned vertices, before the next skinning changes them. Motion vectors need these
+/// vertices of the frame before.
 ///
-/// Instances that were not seen in the frame before have no vertices of that frame: theirs are of the time when they
-/// were. [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says who they are. Vertices beyond
-/// the level that an instance had are of an earlier time too: that level stands there until the next selection, so whoever
-/// needs it copies it here as well.
+/// Instances that were not seen in the frame before have no vertices of that frame: their vertices keep the
+/// positions of the frame in which they were last skinned.
+/// [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned) says which instances these are.
+/// The vertices beyond the level that an instance had are older too. `SelectBuffers::skinned` holds that level
+/// until the next selection, so copy it at this point as well if you need it.
 ///
 /// # Errors
 /// [`InputError`] for buffers of different lengths.

@@ -1,4 +1,4 @@
-//! Parity of `kernels/skinning/skin.wgsl`.
+//! Parity cases of `kernels/skinning/skin.wgsl`.
 
 use crate::Error;
 use crate::asset::Model;
@@ -21,11 +21,12 @@ use crate::skinning::verify::{
 };
 use crate::skinning::vertex::{Blend, Vertex};
 
-/// Instances of a case: full, truncated, fading and unseen ones.
+/// Number of instances of a case: full, truncated, fading and unseen ones.
 const INSTANCES: usize = 9;
 
-/// One influence to eight, linear and by dual quaternions, morphed or not; all instances, some, and lists of clusters,
-/// where the others stay untouched, as those of unseen instances do and those beyond an instance's level. Errors are shares of each value's own bound.
+/// The cases cover one to eight influences, linear blending and dual quaternions, with and without morph
+/// targets; all instances, some, and lists of clusters. All other vertices must stay unchanged, as must those
+/// of unseen instances and those beyond an instance's level. Errors are divided by each value's own bound.
 ///
 /// # Errors
 /// What the device reports.
@@ -53,7 +54,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// A vertex, and how far it may lie from that.
+/// An expected vertex, and its tolerances.
 #[derive(Clone, Copy)]
 struct Expected {
     vertex: Vertex,
@@ -72,7 +73,7 @@ struct Scene {
     mesh: MeshBuffers,
     clusters: Clusters,
     crowd: SkinnedCrowd,
-    /// Instance by instance, in the mesh's order.
+    /// Vertices instance by instance, in the mesh's order.
     expected: Vec<Expected>,
 }
 
@@ -143,7 +144,7 @@ impl Scene {
     }
 }
 
-/// The reference's vertices, each with its own bounds: see [`SKIN_BOUND`].
+/// The reference's vertices, each with its own bounds; see [`SKIN_BOUND`].
 fn expect(
     model: &Model,
     (vertices, clusters): (&[Vertex], &Clusters),
@@ -158,7 +159,8 @@ fn expect(
     }
     let largest = match palette {
         Palette::Linear(bones) => size(bones.as_flattened().as_flattened()),
-        // Translations are twice the dual part; three products of three factors take the place of one matrix.
+        // Translations are twice the dual part, and three products of three factors take the place of one
+        // matrix.
         Palette::Dual(bones) => 8.0 * size(bytemuck::cast_slice(bones)),
     };
     let expected = |(at, vertex): (usize, Vertex)| {
@@ -185,7 +187,7 @@ fn size(values: &[f32]) -> f32 {
     values.iter().fold(1.0, |a: f32, b| a.max(b.abs()))
 }
 
-/// How long a vertex's normal and tangent are before they are made units.
+/// The lengths of a vertex's normal and tangent before normalization.
 fn lengths(matrix: &Affine, vertex: &Vertex) -> [f32; 2] {
     let linear = glam::Mat3::from_cols_array_2d(&matrix.map(|[x, y, z, _]| [x, y, z])).transpose();
     let cofactors = linear.determinant() * linear.inverse().transpose();
@@ -198,7 +200,8 @@ mod tests {
     use super::*;
     use crate::gpu::Options;
 
-    /// The reference's own vertices hold; one of them elsewhere, turned, or mirrored does not.
+    /// The reference's own vertices pass the comparison; a vertex that is displaced, rotated or mirrored fails
+    /// it.
     #[test]
     fn vertices_that_go_astray_are_seen() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");

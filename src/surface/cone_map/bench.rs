@@ -1,4 +1,4 @@
-//! Cone maps.
+//! Benchmark cases of `surface/cone_map`: cone maps.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -11,7 +11,7 @@ use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
 use crate::terrain::bench::copy_of;
 
-/// One map of cobbles at two sizes, pyramid included: a set-up cost.
+/// Measures maps of cobbles at two sizes, pyramid included; making a cone map is a set-up cost.
 ///
 /// # Errors
 /// What the device reports.

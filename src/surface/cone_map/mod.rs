@@ -1,10 +1,10 @@
-//! Cone maps: for each bilinear cell of a height map its highest corner, and the widest upright cone on it that a
-//! ray crosses with at most one crossing of the surface, the first. What `cone` steps over.
+//! Cone maps: for each bilinear cell of a height map its highest corner, and the widest upright cone on that
+//! corner in which a ray crosses the surface at most once. The method `cone` steps over these cones.
 //!
-//! Relaxed cones (Policarpo and Oliveira 2007) made safe under bilinear filtering, in the spirit of Bán and
-//! Valasek (2024): bounds hold for every point of both cells, not for texel centres alone.
+//! They are the relaxed cones of Policarpo and Oliveira (2007), made safe under bilinear filtering in the
+//! spirit of Bán and Valasek (2024): the bounds hold for every point of both cells, not only for texel centres.
 //!
-//! A radius is at most the shorter edge of the map in cells: on maps of a few rows `quadtree` is far cheaper.
+//! A radius is at most the shorter edge of the map, in cells. On maps with few rows `quadtree` is far cheaper.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -17,13 +17,15 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{ConeMapPass, Cones};
 
-/// Distance over size from which a node counts whole. Larger is tighter and slower: 4 saves
-/// a march one load in twenty-five, and takes half as long again to make.
+/// The ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give
+/// wider cones and a slower computation: 4 saves one load in twenty-five in a march, and takes half as long
+/// again to compute.
 pub const OPENING: f32 = 2.0;
 
-/// How far a radius may lie from the reference's, relative to it, on any device.
+/// The largest relative difference allowed between a radius and the reference, on any device.
 ///
 /// A radius is a quotient (2.5 ULP) of a distance (a square root of exact integers, 1.5 ULP, or a sum of two
-/// products of them: 3 ULP) and a difference of heights (1 ULP), less a millionth (1 ULP): 8 ULP < 1e-6. Which
-/// nodes are skipped depends on comparisons of the same quantities, and changes the least by as much again.
+/// products of such roots, 3 ULP) and a difference of heights (1 ULP), reduced by a millionth (1 ULP): 8 ULP <
+/// 1e-6. Which nodes are skipped depends on comparisons of the same quantities, and changes the minimum by as
+/// much again.
 pub const RADIUS_BOUND: f32 = 2e-6;

@@ -1,4 +1,4 @@
-//! `kernels/surface/cone_map.wgsl`.
+//! The GPU pass of `kernels/surface/cone_map.wgsl`.
 
 use glam::UVec2;
 
@@ -10,20 +10,20 @@ use crate::surface::height_batch::{HeightBatch, with_remedy};
 use crate::surface::height_pyramid::Pyramids;
 use crate::{Error, InputError};
 
-/// Cone maps of a batch, one after another.
+/// The cone maps of a batch, one after another.
 #[derive(Debug, Clone)]
 pub struct Cones {
-    /// Highest corner and radius of each cell, rows of `pitch`.
+    /// Highest corner and radius of each cell, in rows of `pitch`.
     pub cones: Buffer<[f32; 2]>,
     /// Cells along x and y.
     pub cells: [u32; 2],
-    /// Cones a row: padded, so that rows can be copied to a texture.
+    /// Cones per row, padded so that rows can be copied to a texture.
     pub pitch: u32,
-    /// How many maps.
+    /// Number of maps.
     pub count: u32,
 }
 
-/// Makes cone maps.
+/// Computes cone maps.
 #[derive(Debug, Clone)]
 pub struct ConeMapPass {
     kernel: Kernel,
@@ -38,23 +38,23 @@ impl ConeMapPass {
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { opening: OPENING })? })
     }
 
-    /// Room for the cone maps of a batch with these pyramids.
+    /// Allocates the cone maps of a batch with these pyramids.
     ///
     /// # Errors
     /// [`GpuError`].
     pub fn output(&self, gpu: &Gpu, pyramids: &Pyramids) -> Result<Cones, GpuError> {
         let cells = pyramids.layout.cells;
-        // A texture's rows start at multiples of 256 bytes.
+        // Rows of a texture copy start at multiples of 256 bytes.
         let pitch = cells[0].next_multiple_of(32);
         let cones = Buffer::new(gpu, "cones", (pitch * cells[1]) as usize * pyramids.count as usize)
             .map_err(with_remedy)?;
         Ok(Cones { cones, cells, pitch, count: pyramids.count })
     }
 
-    /// Prepares the cone maps of a batch from its pyramids, in their address mode.
+    /// Prepares the cone maps of a batch from its pyramids, for their address mode.
     ///
     /// # Errors
-    /// [`InputError`] when pyramids or cones are not those of the batch; [`GpuError`].
+    /// [`InputError`] when pyramids or cones do not belong to the batch; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/cone_map.wgsl`.
+//! Parity cases of `kernels/surface/cone_map.wgsl`.
 
 use crate::Error;
 use crate::harness::poison::POISON;
@@ -12,7 +12,7 @@ use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::Address;
 use crate::surface::verify::{Shape, random_map};
 
-/// Every shape, sizes around the workgroup's, batches, both address modes.
+/// The cases cover every shape, sizes around the workgroup's, batches, both address modes.
 ///
 /// # Errors
 /// What the device reports.

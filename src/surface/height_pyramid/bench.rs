@@ -1,4 +1,4 @@
-//! Max-mip pyramids.
+//! Benchmark cases of `surface/height_pyramid`: max-mip pyramids.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -9,7 +9,7 @@ use crate::surface::map::Address;
 use crate::surface::verify::{Shape, random_map};
 use crate::terrain::bench::copy_of;
 
-/// A batch of 64: 4 bytes in, 5⅓ out a texel.
+/// Measures a batch of 64 maps: the kernel reads 4 bytes and writes 5⅓ per texel.
 ///
 /// # Errors
 /// What the device reports.
@@ -22,7 +22,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let pyramids = Pyramids::new(gpu, &batch, Address::Wrap)?;
         let job = pass.prepare(gpu, &batch, &pyramids)?;
         let texels = (edge * edge) as usize * count;
-        // A third more is written than read: a copy of the mean of both.
+        // The kernel writes a third more than it reads, so the copy moves the mean of both.
         let copied = copy_of(gpu, texels * 7 / 6)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),

@@ -1,5 +1,5 @@
-//! Max-mip pyramids of height maps (B section 2.3.4): a leaf is the highest corner of a bilinear cell, a node the
-//! highest of its four children. What `quadtree` traverses, and what cone maps are made from.
+//! Max-mip pyramids of height maps (B section 2.3.4): a leaf is the highest corner of a bilinear cell, and a
+//! node the highest of its four children. `quadtree` traverses them, and cone maps are computed from them.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -14,18 +14,20 @@ pub use pass::{HeightPyramidPass, Pyramids};
 
 use crate::surface::map::Address;
 
-/// Where a pyramid keeps its nodes: all levels in one plane, rows padded so that it can be copied to a texture.
+/// The arrangement of a pyramid's nodes: all levels in one plane, with rows padded so that the plane can be
+/// copied to a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PyramidLayout {
     /// Texels of the map along x and y.
     pub size: [u32; 2],
-    /// Bilinear cells: as many with [`Address::Wrap`], one more an axis with [`Address::Clamp`].
+    /// Bilinear cells along x and y: as many as texels with [`Address::Wrap`], one more per axis with
+    /// [`Address::Clamp`].
     pub cells: [u32; 2],
-    /// Nodes a row of the plane.
+    /// Nodes per row of the plane.
     pub pitch: u32,
     /// Rows of the plane.
     pub rows: u32,
-    /// Levels, the one of single cells and the one of a single node included.
+    /// Number of levels, from the one of single cells to the one with a single node.
     pub levels: u32,
 }
 
@@ -37,7 +39,7 @@ impl PyramidLayout {
             Address::Clamp => size.map(|edge| edge + 1),
         };
         let levels = cells[0].max(cells[1]).next_power_of_two().ilog2() + 1;
-        // A texture's rows start at multiples of 256 bytes.
+        // Rows of a texture copy start at multiples of 256 bytes.
         let width = cells[0].next_multiple_of(4) + cells[0].div_ceil(2);
         let mut layout = Self { size, cells, pitch: width.next_multiple_of(64), rows: cells[1], levels };
         for level in 1..levels {
@@ -51,18 +53,18 @@ impl PyramidLayout {
         self.cells.map(|cells| cells.div_ceil(1 << level))
     }
 
-    /// Nodes of the whole plane, padding included.
+    /// Number of nodes in the plane, padding included.
     pub fn len(&self) -> usize {
         self.pitch as usize * self.rows as usize
     }
 
-    /// Whether there are none; never.
+    /// Always false, since a pyramid has at least one node.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The plane's index of a node. Between the end of a row of level 0 and the next multiple of four, and wherever
-    /// no level stands, is padding of any value.
+    /// The index of a node in the plane. The padding, which follows each row of level 0 up to a multiple of
+    /// four and lies wherever there is no level, may have any value.
     pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
         let first = self.first(level);
         ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize

@@ -1,4 +1,4 @@
-//! `kernels/surface/height_pyramid.wgsl`.
+//! The GPU pass of `kernels/surface/height_pyramid.wgsl`.
 
 use glam::UVec2;
 
@@ -10,21 +10,21 @@ use crate::surface::height_batch::{HeightBatch, with_remedy};
 use crate::surface::map::Address;
 use crate::{Error, InputError};
 
-/// Pyramids of a batch of height maps, one after another.
+/// The pyramids of a batch of height maps, one after another.
 #[derive(Debug, Clone)]
 pub struct Pyramids {
-    /// Nodes: [`PyramidLayout::index`] within each pyramid of [`PyramidLayout::len`].
+    /// Nodes; [`PyramidLayout::index`] gives the index within each pyramid of [`PyramidLayout::len`] nodes.
     pub nodes: Buffer<f32>,
-    /// Where each keeps its nodes.
+    /// The arrangement of each pyramid's nodes.
     pub layout: PyramidLayout,
     /// The address mode of the maps.
     pub address: Address,
-    /// How many.
+    /// Number of pyramids.
     pub count: u32,
 }
 
 impl Pyramids {
-    /// Room for the pyramids of a batch.
+    /// Allocates the pyramids of a batch.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -34,7 +34,7 @@ impl Pyramids {
         Ok(Self { nodes, layout, address, count: maps.count })
     }
 
-    /// Refuses pyramids that are not those of a batch.
+    /// Refuses pyramids that do not belong to a batch.
     pub(crate) fn check(&self, maps: &HeightBatch) -> Result<(), InputError> {
         if self.layout.size != maps.size || self.count != maps.count {
             let value = format!("{:?} × {}", self.layout.size, self.count);
@@ -45,7 +45,7 @@ impl Pyramids {
     }
 }
 
-/// Makes pyramids, two or three levels a dispatch.
+/// Computes pyramids, two or three levels per dispatch.
 #[derive(Debug, Clone)]
 pub struct HeightPyramidPass {
     leaves: Kernel,
@@ -72,7 +72,7 @@ impl HeightPyramidPass {
     /// Prepares the pyramids of a batch.
     ///
     /// # Errors
-    /// [`InputError`] when they are not those of the batch; [`GpuError`].
+    /// [`InputError`] when the pyramids do not belong to the batch; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, maps: &HeightBatch, pyramids: &Pyramids) -> Result<Job, Error> {
         pyramids.check(maps)?;
         let layout = pyramids.layout;

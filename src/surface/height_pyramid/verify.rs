@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/height_pyramid.wgsl`.
+//! Parity cases of `kernels/surface/height_pyramid.wgsl`.
 
 use crate::Error;
 use crate::harness::poison::{POISON, Poisoned};
@@ -9,7 +9,8 @@ use crate::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids}
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::verify::{Shape, random_map};
 
-/// Sizes around every block boundary, batches, both address modes. The padding between levels stays untouched.
+/// The cases cover sizes around every block boundary, batches, and both address modes. The padding between
+/// levels must stay untouched.
 ///
 /// # Errors
 /// What the device reports.
@@ -57,7 +58,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The reference's pyramid as bits, with poison where no node lies, and what fills a row of level 0 to a multiple of four.
+/// The reference pyramid as bits, with poison where no node lies, and with the values that fill a row of level
+/// 0 to a multiple of four.
 fn with_poison(map: &HeightMap, layout: &PyramidLayout, address: Address) -> Vec<u32> {
     let pyramid = height_pyramid(map, address);
     let mut bits = vec![POISON; layout.len()];

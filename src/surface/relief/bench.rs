@@ -1,4 +1,5 @@
-//! The fragment pass, each method beside `plain` and beside as many bare texel loads.
+//! Benchmark cases of `surface/relief`: each method, on lists of rays and in the fragment pass, against `plain`
+//! and against the same number of bare texel loads.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -23,15 +24,16 @@ const TEXELS: u32 = 512;
 /// Pixels along an edge of the target.
 const EDGE: u32 = 1024;
 
-/// Degrees from the normal.
+/// Angle between eye and normal, in degrees.
 const ANGLE: f32 = 60.0;
 
-/// Cobbles at 60°, relief depth 0.1. Lists of 1024² rays: `copy` is as many texel loads a ray as the method makes
-/// (the case names them), and nothing else. Then 1024² pixels by the fragment pass: `limit` is `plain` drawn the
-/// same, the reference marches and does not shade.
+/// Measures cobbles at 60° with a relief depth of 0.1. The first cases trace lists of 1024² rays: `copy` makes
+/// as many texel loads per ray as the method does (the case's name says how many), and nothing else. Further
+/// cases draw 1024² pixels by the fragment pass: `limit` draws `plain` in the same way; the reference marches
+/// but does not shade.
 ///
-/// All kernels come before all pictures: lavapipe's timestamps around compute work are too short once a picture
-/// has been drawn.
+/// All kernels come before all pictures, because lavapipe's timestamps around compute work are too short once a
+/// picture has been drawn.
 ///
 /// # Errors
 /// What the device reports.
@@ -70,7 +72,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// One method by the kernel.
+/// Measures one method with the compute kernel.
 fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), Error> {
     let gpu = bench.gpu;
     let rays = rays(EDGE);
@@ -101,7 +103,7 @@ fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTexture
     SurfaceTextures::new(gpu, map, method, Address::Wrap)
 }
 
-/// The square over the whole target.
+/// The square, which fills the target.
 fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> Result<ReliefScene, Error> {
     let options = ReliefOptions { method, ..ReliefOptions::default() };
     let textures = textures(gpu, map, method)?;
@@ -115,7 +117,7 @@ fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> R
     Ok(scene)
 }
 
-/// The rays of the picture, `edge` of them along each edge.
+/// The rays of the picture, `edge` along each edge.
 fn rays(edge: u32) -> Vec<Ray> {
     let (sine, cosine) = ANGLE.to_radians().sin_cos();
     let at = |index: u32| (index as f32 + 0.5) / edge as f32;

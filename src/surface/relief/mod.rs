@@ -1,7 +1,7 @@
-//! Ray-height methods: which there are, what a ray is, how it is marched, and what it hits (B section 3.1).
+//! Ray-height methods: their list, their rays, their march and its results (B section 3.1).
 //!
-//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them flat. The kernel here
-//! runs them on lists of rays.
+//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
+//! kernel of this folder runs them on lists of rays.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -23,7 +23,7 @@ use std::str::FromStr;
 use crate::InputError;
 use crate::surface::map::Address;
 
-/// The flattest cosine that rays are marched at: 89.55° from the normal.
+/// The smallest cosine with which rays are marched: 89.55° from the normal.
 pub const LEAST_COSINE: f32 = 1.0 / 128.0;
 
 /// The most linear steps of a march.
@@ -35,28 +35,28 @@ pub const MAX_BINARY: u32 = 24;
 /// The deepest relief, in uv units.
 pub const MAX_SCALE: f32 = 1.0;
 
-/// How the surface is found.
+/// The method that finds the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Not at all: the polygon's own coordinates.
+    /// None: the polygon's own texture coordinates.
     Plain,
-    /// One height, one shift (Kaneko 2001).
+    /// Parallax mapping: one height, one shift (Kaneko 2001).
     Parallax,
-    /// The same with Welsh's offset limiting.
+    /// Parallax mapping with Welsh's offset limiting.
     ParallaxLimited,
-    /// Linear, then binary search (Policarpo 2005; B table 4.4).
+    /// Linear search, then binary search (Policarpo 2005; B table 4.4).
     Relief,
     /// Linear search, then the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
     Occlusion,
-    /// Relaxed cones, safe under bilinear filtering, then binary search. Needs a cone map.
+    /// Relaxed cones that are safe under bilinear filtering, then binary search. Needs a cone map.
     Cone,
-    /// Max-mip traversal with exact patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
+    /// Max-mip traversal with exact bilinear patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
     Quadtree,
 }
 
 impl Method {
-    /// Every method, in the order of their numbers in the shaders.
+    /// All methods, in the order of their values in the shaders.
     pub const ALL: [Self; 7] = [
         Self::Plain,
         Self::Parallax,
@@ -67,7 +67,7 @@ impl Method {
         Self::Quadtree,
     ];
 
-    /// Its name in options and reports.
+    /// The method's name in options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -80,7 +80,7 @@ impl Method {
         }
     }
 
-    /// Its number in the shaders: `SURFACE_PLAIN` and its kin of `wgsl/surface/trace.wgsl`.
+    /// The method's value in the shaders: `SURFACE_PLAIN` and so on, of `wgsl/surface/trace.wgsl`.
     pub fn code(self) -> u32 {
         self as u32
     }
@@ -107,19 +107,20 @@ impl FromStr for Method {
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Ray {
-    /// uv where it enters the volume, at height 1.
+    /// uv at which the ray enters the volume, at height 1.
     pub origin: [f32; 2],
-    /// uv that it travels while it falls to height 0.
+    /// Change of uv while the ray falls to height 0.
     pub slope: [f32; 2],
-    /// Cosine of the angle between eye and normal; 0 or less is a miss.
+    /// Cosine of the angle between eye and normal; a ray with 0 or less is a miss.
     pub cosine: f32,
-    /// The parameter at which it meets the polygon: 0 where the polygon is the top of the volume.
+    /// The parameter at which the ray meets the polygon; 0 if the polygon is the top of the volume.
     pub polygon: f32,
 }
 
 impl Ray {
-    /// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space, `scale`
-    /// the relief's depth in uv units, `plane` the polygon's height in the volume, 1 (top) to 0.
+    /// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space,
+    /// `scale` the depth of the relief in uv units, and `plane` the polygon's height in the volume, 0 (bottom)
+    /// to 1 (top).
     pub fn new(uv: [f32; 2], view: [f32; 3], scale: f32, plane: f32) -> Self {
         let steepness = -scale / view[2].max(LEAST_COSINE);
         let slope = [view[0] * steepness, view[1] * steepness];
@@ -134,14 +135,15 @@ impl Ray {
     }
 }
 
-/// How rays are marched.
+/// Parameters of a march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct March {
-    /// What lies beyond the map's edge. Acceleration maps are made for one address mode.
+    /// What lies beyond the map's edge. An acceleration map is computed for one address mode.
     pub address: Address,
-    /// Linear steps straight down and at the horizon, 1 to [`MAX_STEPS`]; between, ⌈mix(min, max, 1 − V.z)⌉.
+    /// Numbers of linear steps for rays straight down and at the horizon, each 1 to [`MAX_STEPS`]; in between
+    /// ⌈mix(min, max, 1 − V.z)⌉.
     pub steps: [u32; 2],
-    /// Binary steps behind them, and behind cones, up to [`MAX_BINARY`].
+    /// Number of binary steps after the linear steps or the cones, up to [`MAX_BINARY`].
     pub binary_steps: u32,
 }
 
@@ -170,42 +172,42 @@ impl March {
     }
 }
 
-/// Whether a ray met the surface.
+/// The outcome of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// It came from behind.
+    /// The ray comes from behind.
     Miss,
-    /// It did.
+    /// The ray met the surface.
     Hit,
-    /// The method ran out of steps; the result is where it stood. `cone` and `quadtree` look at 32,774 nodes at the
-    /// most: enough for rays that cross 16,384 cells.
+    /// The method ran out of steps; the result is the point that it had reached. `cone` and `quadtree` visit at
+    /// most 32,774 nodes, which is enough for rays that cross 16,384 cells.
     Exhausted,
 }
 
-/// What a ray hit.
+/// The result of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Hit {
-    /// Displaced texture coordinates; beyond the tile where the ray left it.
+    /// Displaced texture coordinates; outside the tile if the ray left it.
     pub uv: [f32; 2],
-    /// Height of the surface there.
+    /// Height of the surface at the hit.
     pub height: f32,
-    /// The ray's parameter there.
+    /// The ray's parameter at the hit.
     pub parameter: f32,
-    /// Texels loaded, those of acceleration maps included.
+    /// Number of texels loaded, including those of acceleration maps.
     pub samples: u32,
-    /// 0 miss, 1 hit, 2 exhausted: see [`Hit::outcome`].
+    /// 0 for a miss, 1 for a hit, 2 for exhausted; see [`Hit::outcome`].
     pub code: u32,
 }
 
 impl Hit {
-    /// A point of the ray as the result.
+    /// The result at a point of the ray.
     pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self { uv: ray.at(parameter), height: 1.0 - parameter, parameter, samples, code: outcome as u32 }
     }
 
-    /// Whether the ray met the surface.
+    /// The outcome that `code` stands for.
     pub fn outcome(&self) -> Outcome {
         match self.code {
             0 => Outcome::Miss,
@@ -244,7 +246,7 @@ mod tests {
         let at = ray.at(ray.polygon);
         assert!((at[0] - 0.25).abs() < 1e-7 && at[1] == 0.5, "{at:?}");
         assert!(ray.slope[0] < 0.0, "rays go away from the eye");
-        // At the horizon the slope is bounded.
+        // The slope is bounded at the horizon.
         assert!(Ray::new([0.0; 2], [1.0, 0.0, 1e-9], 0.1, 1.0).slope[0] >= -12.8);
     }
 }

@@ -1,4 +1,4 @@
-//! `kernels/surface/relief.wgsl`.
+//! The GPU pass of `kernels/surface/relief.wgsl`.
 
 use encase::ShaderType;
 
@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::{Error, InputError};
 
-/// `SurfaceMarch` of the shaders.
+/// The shaders' `SurfaceMarch`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 pub(crate) struct SurfaceMarch {
     pub address: u32,
@@ -42,11 +42,11 @@ impl ReliefPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::SURFACE_RELIEF, &overrides)?, method })
     }
 
-    /// Prepares the tracing of all `rays`: one hit each.
+    /// Prepares the tracing of all `rays`, with one hit each.
     ///
     /// # Errors
-    /// [`InputError`] for a march out of bounds, textures of another method or address mode, or too few hits;
-    /// [`GpuError`].
+    /// [`InputError`] for a march out of bounds, for textures of another method or address mode, and for a
+    /// buffer with too few hits; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

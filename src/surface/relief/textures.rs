@@ -1,4 +1,4 @@
-//! Height maps on the device: batches in buffers, which kernels read, and textures, which shaders march over.
+//! Height maps on the device: batches in buffers, which kernels read, and textures, over which shaders march.
 
 use crate::gpu::{Gpu, GpuError};
 use crate::surface::cone_map::ConeMapPass;
@@ -8,21 +8,22 @@ use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{March, Method};
 use crate::{Error, InputError};
 
-/// What a method marches over: the height map, and its acceleration map.
+/// The textures of a method: the height map, and its acceleration map.
 #[derive(Debug, Clone)]
 pub struct SurfaceTextures {
-    /// Heights in red, `R32Float`, with all mip levels.
+    /// Heights in the red channel, `R32Float`, with all mip levels.
     pub heights: wgpu::Texture,
-    /// The pyramid (`R32Float`), the cones (`Rg32Float`), or a single texel for methods that need neither.
+    /// The pyramid (`R32Float`) or the cones (`Rg32Float`); a single texel for methods that need neither.
     pub acceleration: wgpu::Texture,
-    /// The method that they serve.
+    /// The method for which the acceleration map was computed.
     pub method: Method,
-    /// The address mode that the acceleration map was made for.
+    /// The address mode for which the acceleration map was computed.
     pub address: Address,
 }
 
 impl SurfaceTextures {
-    /// Uploads the heights, and makes the acceleration map of `method` on the device. Waits for it: this is set-up.
+    /// Uploads the heights and computes the acceleration map of `method` on the device. This is set-up work: it
+    /// waits for the device.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -35,7 +36,7 @@ impl SurfaceTextures {
         Ok(Self { heights, acceleration, method, address })
     }
 
-    /// Refuses a method or an address mode that they were not made for.
+    /// Refuses a method or an address mode for which the textures were not computed.
     pub(crate) fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
         if self.method != method {
             let bound = format!("must be {}, which its maps were made for", self.method.name());
@@ -113,7 +114,7 @@ fn copy(encoder: &mut wgpu::CommandEncoder, from: &wgpu::Buffer, to: &wgpu::Text
     encoder.copy_buffer_to_texture(from, to.as_image_copy(), to.size());
 }
 
-/// The heights with all mip levels, each the mean of the four texels below it.
+/// Uploads the heights with all mip levels; each texel is the mean of the four below it.
 fn upload(gpu: &Gpu, map: &HeightMap) -> Result<wgpu::Texture, GpuError> {
     let levels = map.width().max(map.height()).ilog2() + 1;
     let size = [map.width(), map.height()];

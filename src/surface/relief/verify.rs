@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/relief.wgsl`: the functions of `wgsl/surface/` that material shaders import.
+//! Parity cases of `kernels/surface/relief.wgsl`: the functions of `wgsl/surface/` that material shaders import.
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
@@ -12,11 +12,12 @@ use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
 use crate::surface::verify::bounds::{Judged, Source, judge};
 use crate::surface::verify::{Shape, random_map, random_rays};
 
-/// The share of a case's rays that may touch the surface within rounding ([`Judged::touches`]). How many do follows
-/// from the rays alone. No ray may exceed its bound.
+/// The largest fraction of a case's rays that may touch the surface within rounding ([`Judged::touches`]).
+/// Which rays do follows from the rays alone. No ray may exceed its bound.
 pub const TOUCHING: f64 = 0.2;
 
-/// Every method on every shape: odd sizes, both address modes, numbers of rays around the workgroup's.
+/// The cases cover every method on every shape, with odd sizes, both address modes, and numbers of rays around
+/// the workgroup's.
 ///
 /// # Errors
 /// What the device reports.
@@ -30,7 +31,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         for (case, ((size, count), shape)) in sizes.into_iter().zip(counts).zip(all).enumerate() {
             for address in [Address::Wrap, Address::Clamp] {
                 let map = random_map(case as u32, size, shape)?;
-                // The bound of a cone's hit includes what binary steps leave of its last step.
+                // The bound of a cone's hit includes what the binary search leaves of the last step.
                 let fewest = if method == Method::Cone { 12 } else { 4 };
                 let march =
                     March { address, steps: [6, 24 + case as u32], binary_steps: fewest + case as u32 };
@@ -64,8 +65,8 @@ fn compared(
     Ok(output.check(gpu, |actual| hits(actual, &judged, [map.width(), map.height()]))?)
 }
 
-/// Compares hits: the same outcome, the same loads where rounding changes no branch, and within each ray's own bound;
-/// at most [`TOUCHING`] of the rays touch.
+/// Compares hits: outcomes must be equal, numbers of loads must be equal where rounding changes no branch, and
+/// errors must be within each ray's own bound. At most the fraction [`TOUCHING`] of the rays may touch.
 pub fn hits(actual: &[Hit], judged: &[Judged], size: [u32; 2]) -> Comparison {
     if actual.len() != judged.len() {
         let fault = format!("{} hits instead of {}", actual.len(), judged.len());
@@ -89,7 +90,7 @@ fn judgement(hit: &Hit, judged: &Judged, size: [u32; 2]) -> Judgement {
         off(hit.height, expected.height) / judged.height,
     ];
     let is_other = hit.code != expected.code || (judged.is_steady && hit.samples != expected.samples);
-    // Not `f64::max`, which prefers numbers to NaN.
+    // Unlike `f64::max`, this keeps NaN.
     let largest = ratios.into_iter().fold(0.0, |most, ratio| if ratio <= most { most } else { ratio });
     let ratio = if is_other || ratios.iter().any(|ratio| ratio.is_nan()) { f64::INFINITY } else { largest };
     Judgement { ratio, error, touches: judged.touches() }

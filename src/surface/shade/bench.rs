@@ -1,4 +1,5 @@
-//! Self-shadow and depth of lists of points, beside as many bare texel loads.
+//! Benchmark cases of `surface/shade`: self-shadow and depth of lists of points, against the same number of
+//! bare texel loads.
 
 use crate::Error;
 use crate::baseline::loads::LoadsPass;
@@ -17,11 +18,12 @@ use crate::surface::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 /// Points along each edge.
 const EDGE: u32 = 512;
 
-/// Texel loads of one bilinear height.
+/// Number of texel loads of one bilinear height.
 const BILINEAR: u32 = 4;
 
-/// 512² points on cobbles of 512² texels, seen straight from above and lit by the default light; hard shadows by
-/// `quadtree` and by `relief`. `copy` is as many texel loads a point as both shadows make, and nothing else.
+/// Measures 512² points on cobbles of 512² texels, seen straight from above under the default light, with hard
+/// shadows by `quadtree` and by `relief`. `copy` makes as many texel loads per point as both shadows together,
+/// and nothing else.
 ///
 /// # Errors
 /// What the device reports.
@@ -60,7 +62,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// A point a texel.
+/// One point per texel.
 fn points(surface: &Surface<'_>, method: Method, march: &March) -> Vec<ShadePoint> {
     let material = Material::default();
     let at = |index: u32| (index as f32 + 0.5) / EDGE as f32;

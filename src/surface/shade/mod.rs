@@ -1,8 +1,8 @@
-//! How points of a relief are shaded, as numbers: hard and soft self-shadow, and the depth that is written for them
-//! (B section 3.1.2).
+//! Shading of points of a relief: hard and soft self-shadow, and the depth that is written for them (B section
+//! 3.1.2).
 //!
-//! Material shaders import the functions from `wgsl/surface/`; `relievo shaders` writes them flat. The kernel here
-//! runs them on lists of points.
+//! Material shaders import the functions from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
+//! kernel of this folder runs them on lists of points.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -20,22 +20,24 @@ use glam::{Mat4, Vec4};
 use crate::InputError;
 use crate::surface::relief::{Hit, MAX_STEPS, Ray};
 
-/// What all points of a list are shaded with.
+/// The view and shadow parameters that all points of a list share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadeView {
-    /// From world to clip space, depth 0 to 1.
+    /// The matrix from world space to clip space, depth 0 to 1.
     pub clip_from_world: Mat4,
-    /// The eye with w = 1, or the direction towards it with w = 0 for a parallel projection; world space.
+    /// The position of the eye with w = 1, or for a parallel projection the direction towards it with w = 0;
+    /// world space.
     pub eye: Vec4,
-    /// Heights on the way to the light that a soft shadow looks at, 1 to [`MAX_STEPS`].
+    /// Number of heights that a soft shadow samples on the way to the light, 1 to [`MAX_STEPS`].
     pub shadow_steps: u32,
-    /// How far the surface rises above the way to the light, over its distance, where a soft shadow is full; 0.001 to
-    /// 1000.
+    /// The ratio of the surface's height above the way to the light to its distance at which a soft shadow is
+    /// full; 0.001 to 1000.
     pub softness: f32,
 }
 
 impl Default for ShadeView {
-    /// Seen straight from above, in parallel: a point's depth is −z. Shadows as [`Material`](super::Material) has them.
+    /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
+    /// [`Material`](super::Material)'s default.
     fn default() -> Self {
         let clip_from_world = Mat4::from_scale(glam::Vec3::new(1.0, 1.0, -1.0));
         let material = super::Material::default();
@@ -72,35 +74,35 @@ impl ShadeView {
     }
 }
 
-/// A point of a relief, as the eye's ray met it.
+/// A point of a relief where an eye's ray met it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct ShadePoint {
-    /// The unit vector towards the light, tangent space.
+    /// Unit vector towards the light, in tangent space.
     pub light: [f32; 3],
     /// Depth of the relief in uv units.
     pub scale: f32,
-    /// Where the eye's ray meets the polygon, world space.
+    /// The point where the eye's ray meets the polygon, in world space.
     pub position: [f32; 3],
-    /// World units a uv unit.
+    /// World units per uv unit.
     pub world: f32,
     /// The eye's ray.
     pub ray: Ray,
-    /// What it hit.
+    /// The hit of that ray.
     pub hit: Hit,
 }
 
-/// How a point is shaded.
+/// The shading of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Shade {
-    /// 1 where the light's own ray ends in the point, else 0.
+    /// 1 if the light's ray ends in the point, else 0.
     pub hard: f32,
-    /// 0 in full shadow to 1 in full light, with penumbras.
+    /// Light with penumbras, 0 in full shadow to 1 in full light.
     pub soft: f32,
-    /// The depth of the relief there, 0 (near) to 1 (far).
+    /// Depth of the relief at the point, 0 (near) to 1 (far).
     pub depth: f32,
 }
 

@@ -1,4 +1,4 @@
-//! `kernels/surface/shade.wgsl`.
+//! The GPU pass of `kernels/surface/shade.wgsl`.
 
 use encase::ShaderType;
 use glam::{Mat4, Vec4};
@@ -9,7 +9,7 @@ use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{March, Method, SurfaceMarch};
 use crate::{Error, InputError};
 
-/// `ShadeView` of the shader.
+/// The shader's `ShadeView`.
 #[derive(Debug, Clone, Copy, ShaderType)]
 struct ShadeView {
     clip_from_world: Mat4,
@@ -18,7 +18,7 @@ struct ShadeView {
     softness: f32,
 }
 
-/// Shades lists of points; hard shadows trace the light's rays with one method.
+/// Shades lists of points. Hard shadows trace the light's rays with one method.
 #[derive(Debug, Clone)]
 pub struct ShadePass {
     kernel: Kernel,
@@ -35,11 +35,11 @@ impl ShadePass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::SURFACE_SHADE, &overrides)?, method })
     }
 
-    /// Prepares the shading of all `points`: one [`Shade`] each.
+    /// Prepares the shading of all `points`, with one [`Shade`] each.
     ///
     /// # Errors
-    /// [`InputError`] for a view or a march out of bounds, textures of another method or address mode, or too few
-    /// shades; [`GpuError`].
+    /// [`InputError`] for a view or a march out of bounds, for textures of another method or address mode, and
+    /// for a buffer with too few shades; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

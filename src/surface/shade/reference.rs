@@ -1,4 +1,5 @@
-//! Reference of `kernels/surface/shade.wgsl` and of what `wgsl/surface/shade.wgsl` says about depth.
+//! Shading of points: the CPU reference of `kernels/surface/shade.wgsl` and of the depth in
+//! `wgsl/surface/shade.wgsl`.
 
 use rayon::prelude::*;
 
@@ -7,21 +8,22 @@ use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
 use crate::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
 use crate::surface::shade::{Shade, ShadePoint, ShadeView};
 
-/// How far behind the polygon a hit lies on the eye's ray, in uv units. `scale` is the relief's depth in uv units.
+/// The distance of a hit behind the polygon along the eye's ray, in uv units. `scale` is the relief's depth in
+/// uv units.
 pub fn distance(ray: &Ray, hit: &Hit, scale: f32) -> f32 {
     (hit.parameter - ray.polygon) * scale / ray.cosine.max(LEAST_COSINE)
 }
 
-/// The unit vector towards the eye from a point of the polygon. `eye` is where it is (w = 1), or the direction towards
-/// it (w = 0).
+/// The unit vector from a point of the polygon towards the eye. `eye` is its position (w = 1), or the direction
+/// towards it (w = 0).
 pub fn towards(eye: [f32; 4], position: [f32; 3]) -> [f32; 3] {
     let way = [0, 1, 2].map(|i| eye[i] - eye[3] * position[i]);
     let length = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]).sqrt();
     way.map(|axis| axis / length)
 }
 
-/// The depth, 0 (near) to 1 (far), of what lies `distance` behind a point of the polygon on the eye's ray, all in world
-/// units. `clip_from_world` is given by columns.
+/// The depth, 0 (near) to 1 (far), of the point that lies `distance` behind a point of the polygon along the
+/// eye's ray, all in world units. `clip_from_world` is given by columns.
 pub fn depth(clip_from_world: [[f32; 4]; 4], position: [f32; 3], towards: [f32; 3], distance: f32) -> f32 {
     let world = [0, 1, 2].map(|i| position[i] - towards[i] * distance);
     let clip = |row: usize| {
@@ -31,7 +33,7 @@ pub fn depth(clip_from_world: [[f32; 4]; 4], position: [f32; 3], towards: [f32; 
     (clip(2) / clip(3)).clamp(0.0, 1.0)
 }
 
-/// Shades a point; hard shadows trace the light's ray with `method`.
+/// Shades a point. Hard shadows trace the light's ray with `method`.
 pub fn shade(
     surface: &Surface<'_>,
     method: Method,
@@ -50,7 +52,7 @@ pub fn shade(
     Shade { hard: if shaded(&first, hit) { 0.0 } else { 1.0 }, soft, depth }
 }
 
-/// [`shade`] for a list of points, on all threads.
+/// As [`shade`], for a list of points, on all threads.
 pub fn shade_all(
     surface: &Surface<'_>,
     method: Method,
@@ -65,7 +67,7 @@ pub fn shade_all(
 mod tests {
     use super::*;
 
-    /// Seen straight from above, in parallel: a hit is as deep as the relief there.
+    /// In a parallel view straight from above, a hit is as deep as the relief is there.
     #[test]
     fn depth_is_that_of_the_hit_rather_than_the_polygon() {
         let ray = Ray::new([0.5, 0.5], [0.0, 0.0, 1.0], 0.2, 0.75);
@@ -80,13 +82,14 @@ mod tests {
         }
     }
 
-    /// In perspective at an angle: where the eye's ray goes on, not where the normal does.
+    /// In perspective at an angle, the depth is that of a point further along the eye's ray, not along the
+    /// normal.
     #[test]
     fn depth_follows_the_eyes_ray() {
         let eye = [3.0, 0.0, 4.0, 1.0];
         let towards = towards(eye, [0.0; 3]);
         assert_eq!(towards, [0.6, 0.0, 0.8]);
-        // Depth is z / (5 − z) of the point −2 · towards.
+        // The depth is z / (5 − z) of the point −2 · towards.
         let rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 0.0, -1.0, 5.0]];
         let columns = [0, 1, 2, 3].map(|column| rows.map(|row| row[column]));
         let depth = depth(columns, [0.0; 3], towards, 2.0);

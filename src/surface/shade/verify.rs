@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/shade.wgsl`: hard and soft shadow, and the depth of the relief.
+//! Parity cases of `kernels/surface/shade.wgsl`: hard and soft shadow, and the depth of the relief.
 
 use glam::{Mat4, Vec3, Vec4, camera};
 
@@ -20,17 +20,18 @@ use crate::surface::verify::{Shape, random_map};
 use crate::terrain::verify::random_words;
 use crate::{Error, InputError};
 
-/// The share of points that may be so near the edge of a hard shadow that rounding decides.
+/// The largest fraction of points that may be so close to the edge of a hard shadow that rounding decides.
 pub const AT_EDGES: f64 = 0.04;
 
-/// The share of points whose light is known to no better than [`BLUNT`]: at the foot of walls a texel thick.
+/// The largest fraction of points whose light is known no better than to [`BLUNT`]; they lie at the foot of
+/// walls that are one texel thick.
 pub const BLURRED: f64 = 0.1;
 
-/// The share of points whose depth is known to no better: those in the plane of the eye.
+/// The largest fraction of points whose depth is known no better than that; they lie in the plane of the eye.
 pub const AT_EYE: f64 = 0.01;
 
-/// Every method on every shape, in both address modes, in parallel and in perspective; numbers of points around the
-/// workgroup's.
+/// The cases cover every method on every shape, in both address modes, in parallel and in perspective views,
+/// with numbers of points around the workgroup's.
 ///
 /// # Errors
 /// What the device reports.
@@ -71,7 +72,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// From above at an angle.
+/// A perspective view from above, at an angle.
 pub fn perspective() -> ShadeView {
     let eye = Vec3::new(1.5, -2.0, 4.0);
     let view = camera::rh::view::look_at_mat4(eye, Vec3::ZERO, Vec3::Y);
@@ -79,7 +80,7 @@ pub fn perspective() -> ShadeView {
     ShadeView { clip_from_world: projection * view, eye: eye.extend(1.0), ..ShadeView::default() }
 }
 
-/// The same without perspective.
+/// The same view in parallel projection.
 pub fn parallel() -> ShadeView {
     let towards = Vec3::new(0.48, -0.6, 0.64);
     let depth = -0.1 * towards;
@@ -88,7 +89,7 @@ pub fn parallel() -> ShadeView {
     ShadeView { clip_from_world, eye: towards.extend(0.0), ..ShadeView::default() }
 }
 
-/// Hits of random rays, lit from above, at grazing angles, straight down, and from below.
+/// Hits of random rays, with the light overhead, at grazing angles, straight down, and from below.
 pub fn random_points(
     case: u32,
     count: usize,
@@ -124,20 +125,21 @@ pub fn random_points(
     points.collect()
 }
 
-/// What the reference computes for a point, and how far a device may be off.
+/// The reference's result for a point, and the tolerances for a device.
 #[derive(Debug, Clone, Copy)]
 pub struct JudgedShade {
-    /// The reference's.
+    /// The reference's result.
     pub expected: Shade,
-    /// Whether the light's ray ends so far above the point, or so near it, that no rounding decides on hard shadow.
+    /// Whether the light's ray ends so far above the point, or so close to it, that rounding cannot decide the
+    /// hard shadow.
     pub is_certain: bool,
-    /// The least and the most that soft shadow may be, computed apart from the reference.
+    /// The smallest and the largest value allowed for the soft shadow, computed independently of the reference.
     pub soft: [f64; 2],
-    /// How far depth may be off.
+    /// The largest error allowed for the depth.
     pub depth: f64,
 }
 
-/// Judges points.
+/// Computes results and tolerances for points.
 ///
 /// # Errors
 /// As [`judge`].
@@ -169,9 +171,9 @@ pub fn judged(
 /// A part of a [`Shade`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Hard shadow: 0 or 1, and the reference's but at edges.
+    /// Hard shadow: 0 or 1, equal to the reference except at edges.
     Hard,
-    /// Soft shadow: between the least and the most that it may be.
+    /// Soft shadow: within its smallest and largest value.
     Soft,
     /// Depth.
     Depth,
@@ -181,7 +183,7 @@ pub enum Part {
 pub const PARTS: [(&str, Part); 3] =
     [("hard shadow", Part::Hard), ("soft shadow", Part::Soft), ("depth", Part::Depth)];
 
-/// Compares one part of shades.
+/// Compares one part of the shades.
 pub fn compare(actual: &[Shade], judged: &[JudgedShade], part: Part) -> Comparison {
     if actual.len() != judged.len() {
         let fault = format!("{} shades instead of {}", actual.len(), judged.len());
@@ -217,7 +219,7 @@ fn soft(actual: f32, judged: &JudgedShade) -> Judgement {
 
 fn within(actual: f32, expected: f32, bound: f64) -> Judgement {
     let error = (f64::from(actual) - f64::from(expected)).abs();
-    // Infinite bounds belong to points in the plane of the eye: nothing is said about those.
+    // Infinite bounds belong to points in the plane of the eye, about which nothing is claimed.
     let ratio = if bound.is_infinite() { 0.0 } else { error / bound };
     Judgement { ratio, error, touches: bound > BLUNT }
 }

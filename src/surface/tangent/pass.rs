@@ -1,4 +1,4 @@
-//! `kernels/surface/tangent.wgsl`.
+//! The GPU pass of `kernels/surface/tangent.wgsl`.
 
 use super::{Adjacency, Mesh};
 use crate::gpu::bindings::surface::tangent as bindings;
@@ -7,14 +7,14 @@ use crate::shared::surface::tangent::TangentParams;
 use crate::{Error, InputError};
 
 /// A mesh on the device. Positions, normals and uv may be rewritten, by other kernels too, as long as positions
-/// and uv keep [`Mesh`]'s bounds.
+/// and uv stay within the bounds of [`Mesh`].
 #[derive(Debug, Clone)]
 pub struct TangentBuffers {
-    /// One a vertex.
+    /// One position per vertex.
     pub positions: Buffer<[f32; 3]>,
-    /// One a vertex.
+    /// One normal per vertex.
     pub normals: Buffer<[f32; 3]>,
-    /// One a vertex.
+    /// One pair of texture coordinates per vertex.
     pub uv: Buffer<[f32; 2]>,
     indices: Buffer<u32>,
     offsets: Buffer<u32>,
@@ -55,11 +55,11 @@ impl TangentPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the frames of `mesh` into `tangents`: tangent x, y, z and handedness for each vertex. A vertex
-    /// buffer too.
+    /// Prepares the frames of `mesh` into `tangents`: tangent x, y, z and handedness for each vertex. The
+    /// buffer can also serve as a vertex buffer.
     ///
     /// # Errors
-    /// [`InputError`] for fewer tangents than vertices; [`GpuError`].
+    /// [`InputError`] for a buffer with fewer tangents than vertices; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

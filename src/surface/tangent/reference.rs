@@ -1,4 +1,4 @@
-//! Tangent frames of meshes: the reference of `kernels/surface/tangent.wgsl`. It lies with the data that it is also
-//! used to import.
+//! Tangent frames of meshes: the CPU reference of `kernels/surface/tangent.wgsl`. The code lies in `asset`,
+//! because the import uses it too.
 
 pub use crate::asset::tangents::{Frame, frames, tangents};

@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/tangent.wgsl`.
+//! Parity cases of `kernels/surface/tangent.wgsl`.
 
 use crate::Error;
 use crate::harness::Cases;
@@ -9,7 +9,7 @@ use crate::surface::tangent::reference::{Frame, frames};
 use crate::surface::tangent::{DEGENERATE, Mesh, TANGENT_BOUND, TangentBuffers, TangentPass, VANISHING};
 use crate::terrain::verify::random_words;
 
-/// A mesh that owns what it is made of.
+/// A mesh that owns its data.
 #[derive(Debug, Clone, Default)]
 pub struct Owned {
     /// See [`Mesh`].
@@ -23,14 +23,14 @@ pub struct Owned {
 }
 
 impl Owned {
-    /// As what the pass and the reference take.
+    /// The mesh in the form that the pass and the reference take.
     pub fn mesh(&self) -> Mesh<'_> {
         Mesh { positions: &self.positions, normals: &self.normals, uv: &self.uv, indices: &self.indices }
     }
 }
 
-/// Literal frames; thresholds from both sides; soups of triangles around workgroup boundaries; many triangles at
-/// a vertex; large and small units; mirrored, seamed and degenerate meshes.
+/// The cases cover literal frames; thresholds from both sides; triangle soups around workgroup boundaries; many
+/// triangles at a vertex; large and small units; mirrored, seamed and degenerate meshes.
 ///
 /// # Errors
 /// What the device reports.
@@ -64,8 +64,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Takes the normal from vertices where rounding decides between a frame and the fallback: they get another one, of which
-/// it does not. They count as left out: one may be, and one in 500.
+/// Replaces the normals of vertices where rounding decides between a frame and the fallback by one for which it
+/// does not. These vertices count as left out; one in 500 is allowed, and one in any case.
 fn settled(mut mesh: Owned) -> Result<(Owned, Vec<Frame>, LeftOut), Error> {
     let expected = frames(&mesh.mesh())?;
     let open = |frame: &Frame| !frame.sensitivity.is_finite();
@@ -105,7 +105,7 @@ fn check(
     Ok(())
 }
 
-/// Compares tangents, each error divided by its sensitivity.
+/// Compares tangents after dividing each error by its sensitivity.
 fn directions(actual: &[[f32; 4]], expected: &[Frame]) -> Comparison {
     if let Some(vertex) = expected.iter().position(|frame| !frame.sensitivity.is_finite()) {
         let fault = format!("rounding decides at vertex {vertex}: a case that proves nothing");
@@ -122,7 +122,7 @@ fn directions(actual: &[[f32; 4]], expected: &[Frame]) -> Comparison {
     absolute(&actual, &expected, TANGENT_BOUND)
 }
 
-/// A right triangle in the plane z = 0 with the given uv at (0, 0), (1, 0) and (0, 1).
+/// A right triangle in the plane z = 0 with corners at (0, 0), (1, 0) and (0, 1) and the given uv.
 fn triangle(uv: [[f32; 2]; 3]) -> Owned {
     Owned {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
@@ -132,7 +132,7 @@ fn triangle(uv: [[f32; 2]; 3]) -> Owned {
     }
 }
 
-/// Frames that follow from the definition, worked out by hand.
+/// Frames that were worked out by hand from the definition.
 fn literals() -> Vec<(&'static str, Owned, [[f32; 4]; 3])> {
     let plain = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let [east, north] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -171,15 +171,15 @@ fn literals() -> Vec<(&'static str, Owned, [[f32; 4]; 3])> {
     ]
 }
 
-/// A tenth below and above each threshold. The fallback would be another frame than what is above.
+/// Meshes a tenth below and a tenth above each threshold; below it, the fallback gives a different frame.
 fn thresholds() -> Vec<(&'static str, Owned)> {
-    // A line in uv, but for a little in v.
+    // In uv the triangle is a line except for a small extent in v.
     let sliver = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [1.0, 1.0], [1.0, 1.0 - fraction * DEGENERATE]]);
         mesh.normals = vec![[0.3, 0.2, 1.0]; 3];
         mesh
     };
-    // A line in space, but for a little in y: along it lies u, or v.
+    // In space the triangle is a line except for a small extent in y; u or v runs along it.
     let flat = |fraction: f32, uv: [[f32; 2]; 3]| {
         let mut mesh = triangle(uv);
         mesh.positions[2] = [1.0, -fraction * DEGENERATE, 0.0];
@@ -188,13 +188,14 @@ fn thresholds() -> Vec<(&'static str, Owned)> {
     };
     let along = [[1.0, 0.0], [0.0, 0.0], [1.0, 1.0]];
     let across = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-    // The tangent is +Y, of which a share is left when the normal's part is taken off.
+    // The tangent is +Y, of which a small fraction is left after the normal's part is subtracted.
     let leaning = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [0.0, -1.0], [1.0, 0.0]]);
         mesh.normals[0] = [0.0, (1.0 - fraction * fraction).sqrt(), fraction];
         mesh
     };
-    // The face's normal is +Z, which the vertices' normals turn away from by a little more than a right angle.
+    // The normal of the face is +Z; the normals of the vertices differ from it by slightly more than a right
+    // angle.
     let turned = |fraction: f32| {
         let mut mesh = triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
         mesh.normals = vec![[0.0, (1.0 - fraction * fraction).sqrt(), -fraction]; 3];
@@ -214,7 +215,7 @@ fn thresholds() -> Vec<(&'static str, Owned)> {
     ]
 }
 
-/// Numbers in −1..1.
+/// Random numbers in −1..1.
 fn random(case: u32, count: usize) -> impl Iterator<Item = f32> {
     random_words(case, count).into_iter().map(|word| (word >> 8) as f32 / (1 << 23) as f32 - 1.0)
 }
@@ -224,7 +225,7 @@ fn vectors<const N: usize>(case: u32, count: usize) -> Vec<[f32; N]> {
     numbers.chunks_exact(N).map(|vector| std::array::from_fn(|axis| vector[axis])).collect()
 }
 
-/// Twice as many triangles as vertices, between any of them.
+/// Twice as many triangles as vertices, with random corners.
 fn soup(vertices: usize) -> Owned {
     let case = vertices as u32;
     let words = random_words(case ^ 0x5eed, 6 * vertices);
@@ -236,7 +237,7 @@ fn soup(vertices: usize) -> Owned {
     }
 }
 
-/// A torus of `around` × `across` quads, closed but for the seams of uv.
+/// A torus of `around` × `across` quads, closed except for the seams of uv.
 pub fn torus(around: u32, across: u32) -> Owned {
     let mut torus = Owned::default();
     for j in 0..=across {
@@ -268,7 +269,7 @@ fn scaled(mut mesh: Owned, size: f32, texture: f32) -> Owned {
     mesh
 }
 
-/// A disc of triangles around vertex 0, a little crumpled.
+/// A slightly crumpled disc of triangles around vertex 0.
 fn fan(triangles: u32) -> Owned {
     let mut fan = Owned {
         positions: vec![[0.0; 3]],
@@ -287,7 +288,8 @@ fn fan(triangles: u32) -> Owned {
     fan
 }
 
-/// Every third triangle has no area, every fifth none in uv, every seventh is mirrored.
+/// The mesh with degenerate triangles: every third has no area, every fifth none in uv, every seventh is
+/// mirrored.
 fn with_degenerate_triangles(mesh: Owned) -> Owned {
     let mut changed = Owned::default();
     for (index, triangle) in mesh.indices.chunks_exact(3).enumerate() {
@@ -307,14 +309,14 @@ fn with_degenerate_triangles(mesh: Owned) -> Owned {
             });
         }
     }
-    // Neighbours in the list share vertices, degenerate or not.
+    // Neighbouring triangles in the list share vertices, degenerate or not.
     let vertices = changed.positions.len() as u32;
     changed.indices = (0..vertices).collect();
     changed.indices.extend((0..vertices - vertices % 3).map(|index| index / 6 * 6 + index % 3));
     changed
 }
 
-/// Zero, infinite, tiny, huge and no numbers at all, on every axis.
+/// The mesh with normals that are zero, infinite, tiny, huge or NaN, on every axis.
 fn with_strange_normals(mut mesh: Owned) -> Owned {
     let strange =
         [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-40, 1e-38, 1e-31, 1e-30, 1e30, 2e30, f32::MAX, -0.0];

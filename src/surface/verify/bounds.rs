@@ -1,5 +1,5 @@
-//! How far rounding may move what a ray hits: a bound for each ray, from the reference on heights that are raised and
-//! lowered by what rounding may amount to. `docs/relief-bounds.md` derives it.
+//! Error bounds for hits: how far rounding may move each one, computed by the reference on heights that are
+//! raised and lowered by the possible rounding errors. `docs/relief-bounds.md` has the derivation.
 
 use std::collections::BTreeMap;
 
@@ -11,32 +11,34 @@ use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::reference::Surface;
 use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
 
-/// A unit in the last place of 1: WGSL's sums and products are within one of the exact result, relative to it.
+/// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
+/// result.
 pub const ULP: f64 = 1.0 / 8_388_608.0;
 
-/// A ray whose bound is wider, in texels, proves little: it counts as one that touches.
+/// Rays with a bound wider than this, in texels, prove little and count as touching.
 pub const BLUNT: f64 = 1.0 / 32.0;
 
-/// How long of itself a step over a cone may be: that of its radius, and its own arithmetic.
+/// The relative error of a step over a cone: that of the radius, and that of the step's own arithmetic.
 const CONE_STEP: f64 = RADIUS_BOUND as f64 + 12.0 * ULP;
 
-/// The hit of a ray by the reference, and how far that of any device may lie from it.
+/// The reference's hit of a ray, and how far a device's hit may be from it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Judged {
-    /// What the reference hits.
+    /// The reference's hit.
     pub expected: Hit,
-    /// How far the parameter may be off.
+    /// The largest error allowed for the parameter.
     pub parameter: f64,
-    /// How far the height may be off.
+    /// The largest error allowed for the height.
     pub height: f64,
-    /// How far the place may be off, in texels.
+    /// The largest error allowed for the position, in texels.
     pub texels: f64,
-    /// Whether rounding changes no branch, so that every device makes the same loads.
+    /// Whether rounding changes no branch, so that every device makes the same number of loads.
     pub is_steady: bool,
 }
 
 impl Judged {
-    /// Whether ray and surface touch within rounding: the hit proves little, or the loads may differ.
+    /// Whether ray and surface touch within rounding, so that the hit proves little or the number of loads may
+    /// differ.
     pub fn touches(&self) -> bool {
         !self.is_steady || self.texels > BLUNT
     }
@@ -45,16 +47,16 @@ impl Judged {
 /// Where rays come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// Every device is given the same.
+    /// Every device receives the same rays.
     Given,
-    /// Every device computes them itself, as `surface_light_ray` does.
+    /// Every device computes the rays itself, as `surface_light_ray` does.
     Computed,
 }
 
-/// Judges rays.
+/// Computes the hits and bounds of rays.
 ///
 /// # Errors
-/// [`InputError`] never for maps that [`HeightMap::new`] made.
+/// None, for maps that [`HeightMap::new`] made.
 pub fn judge(
     map: &HeightMap,
     method: Method,
@@ -64,14 +66,14 @@ pub fn judge(
 ) -> Result<Vec<Judged>, InputError> {
     let surface = Surface::new(map, method, march.address);
     let steepness = steepness(map, march.address);
-    // Rays of about the same error of position share their raised and lowered maps.
+    // Rays with about the same position error share their raised and lowered maps.
     let mut classes: BTreeMap<i32, Vec<usize>> = BTreeMap::new();
     for (index, ray) in rays.iter().enumerate() {
         let positions = positions(ray, map, method, march.address, source);
         classes.entry(felt(ray, map, march.address, positions).log2().ceil() as i32).or_default().push(index);
     }
     let mut judged = vec![Judged::default(); rays.len()];
-    // Where the cones' search ends in binary steps it lies around the crossing that the quadtree finds.
+    // If the search over cones ends in binary steps, it is close to the crossing that the quadtree finds.
     let crossing = if method == Method::Cone { Method::Quadtree } else { method };
     for (exponent, indices) in classes {
         let lifted = if method == Method::Cone { CONE_STEP } else { 0.0 };
@@ -113,8 +115,8 @@ fn positions(ray: &Ray, map: &HeightMap, method: Method, address: Address, sourc
     })
 }
 
-/// How far rounding may move a point where that changes heights: not along an axis on which the whole ray is beyond
-/// the edge of a clamped map.
+/// How far rounding may move a point in a direction in which heights change: an axis along which the whole ray
+/// is beyond the edge of a clamped map does not count.
 fn felt(ray: &Ray, map: &HeightMap, address: Address, positions: [f64; 2]) -> f64 {
     let size = [map.width(), map.height()].map(f64::from);
     let felt = |axis: usize| {
@@ -126,7 +128,7 @@ fn felt(ray: &Ray, map: &HeightMap, address: Address, positions: [f64; 2]) -> f6
     felt(0).max(felt(1)).max(ULP)
 }
 
-/// For each texel the most that heights change over a texel along x, and along y, in the cells around it.
+/// For each texel, the largest change in height per texel along x, and along y, in the cells around it.
 pub fn steepness(map: &HeightMap, address: Address) -> Vec<[f64; 2]> {
     let (width, height) = (map.width() as i32, map.height() as i32);
     let rise = |x: i32, y: i32, [dx, dy]: [i32; 2]| {
@@ -143,7 +145,8 @@ pub fn steepness(map: &HeightMap, address: Address) -> Vec<[f64; 2]> {
     (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| around(x, y)).collect()
 }
 
-/// The heights with what rounding may add (`sign` 1) or take (-1) where points may be off by `position` texels.
+/// The heights raised (`sign` 1) or lowered (−1) by the possible rounding errors, if points may be off by
+/// `position` texels.
 fn moved(
     map: &HeightMap,
     steepness: &[[f64; 2]],
@@ -152,19 +155,20 @@ fn moved(
     lifted: f64,
 ) -> Result<HeightMap, InputError> {
     let heights = map.heights().iter().zip(steepness).map(|(height, [x, y])| {
-        // The reference rounds, too, by half as much.
+        // The reference rounds too, by half as much.
         let by = 1.5 * (off(x + y, position) + lifted) + ULP;
         (f64::from(*height) + sign * by).clamp(0.0, 1.0) as f32
     });
     HeightMap::new(map.width(), map.height(), heights.collect())
 }
 
-/// How far a height may be off, where heights change by `steepness` a texel and points may be off by `position` texels.
+/// The possible error of a height that changes by `steepness` per texel at a point that may be off by
+/// `position` texels.
 pub fn off(steepness: f64, position: f64) -> f64 {
     position / (1.0 - 2.0 * position.min(0.25)) * steepness + ULP * (12.0 + 40.0 * steepness)
 }
 
-/// What rays of one class are judged by.
+/// The data that one class of rays shares.
 struct Judge<'a> {
     surface: &'a Surface<'a>,
     method: Method,
@@ -210,7 +214,7 @@ impl Judge<'_> {
         positions(ray, self.surface.map, self.method, self.march.address, self.source)
     }
 
-    /// Whether rounding leaves the number of linear steps, ⌈mix(min, max, 1 − V.z)⌉.
+    /// Whether rounding cannot change the number of linear steps, ⌈mix(min, max, 1 − V.z)⌉.
     fn has_steps(&self, ray: &Ray) -> bool {
         let [low, high] = self.march.steps.map(f64::from);
         let flatness = (1.0 - f64::from(ray.cosine)).max(0.0);
@@ -218,7 +222,8 @@ impl Judge<'_> {
         !self.method.is_stepped() || flatness == 0.0 || (steps - off).ceil() == (steps + off).ceil()
     }
 
-    /// The ray a little to every side, steeper or flatter: whatever rounding may do to a branch, one of them does.
+    /// The ray shifted slightly to every side, steeper and flatter: whatever rounding does to a branch, one of
+    /// these rays takes it.
     fn shifted(&self, ray: &Ray) -> [Ray; 4] {
         let size = [self.surface.map.width(), self.surface.map.height()].map(f64::from);
         let position = self.positions(ray);
@@ -237,7 +242,8 @@ impl Judge<'_> {
         })
     }
 
-    /// How far the result of binary steps between the last two points of a cone's search may lie from the crossing.
+    /// How far the result of a binary search between the last two points of the search over cones may be from
+    /// the crossing.
     fn around(&self, ray: &Ray, is_steady: bool) -> f64 {
         if self.method != Method::Cone {
             return 0.0;
@@ -246,7 +252,7 @@ impl Judge<'_> {
             let march = March { binary_steps, ..*self.march };
             f64::from(self.surface.trace(self.method, ray, &march).parameter)
         };
-        // The first step moves the middle by a quarter.
+        // The first step moves the middle by a quarter of the interval.
         let between = if is_steady { 4.0 * (by_steps(1) - by_steps(0)).abs() } else { 1.0 };
         between * f64::from(self.march.binary_steps).exp2().recip()
     }

@@ -1,4 +1,4 @@
-//! Parity of `kernels/surface/`.
+//! What the parity cases of `kernels/surface/` share.
 
 pub mod bounds;
 pub mod depth;
@@ -12,9 +12,9 @@ use crate::terrain::verify::random_words;
 /// The shapes of random maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Every texel by itself.
+    /// Every texel is independent.
     Noise,
-    /// 0, ½ and 1: flat plains, walls of one texel, and the ends of the range.
+    /// Values 0, ½ and 1: flat plains, walls one texel thick, and the ends of the range.
     Plateaus,
     /// Low ground with single high texels.
     Posts,
@@ -30,10 +30,10 @@ impl Shape {
 /// A random map of a test case, the same on every machine.
 ///
 /// # Errors
-/// [`InputError`] for sizes that no map has.
+/// [`InputError`] for a size that no map can have.
 pub fn random_map(case: u32, [width, height]: [u32; 2], shape: Shape) -> Result<HeightMap, InputError> {
     let words = random_words(case, (width * height) as usize);
-    // 24 bits: exact in f32.
+    // 24 bits, which f32 represents exactly.
     let unit = |word: u32| (word >> 8) as f32 / 16_777_215.0;
     let heights = words.iter().enumerate().map(|(index, &word)| {
         let (x, y) = (index as u32 % width, index as u32 / width);
@@ -51,8 +51,8 @@ pub fn random_map(case: u32, [width, height]: [u32; 2], shape: Shape) -> Result<
     HeightMap::new(width, height, heights.collect())
 }
 
-/// Random rays: from straight down to flatter than is marched, along the axes, from behind, and from far outside
-/// the tile.
+/// Random rays: from straight down to flatter than the marching limit, along the axes, from behind, and
+/// starting far outside the tile.
 pub fn random_rays(case: u32, count: usize) -> Vec<Ray> {
     let words = random_words(case ^ 0x5eed, 6 * count);
     let rays = words.chunks_exact(6).map(|words| {

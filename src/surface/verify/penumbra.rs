@@ -1,26 +1,26 @@
-//! Where a soft shadow lies, in f64, whatever a device rounds. `docs/relief-bounds.md` derives it.
+//! Bounds on soft shadow in f64, whatever a device rounds. `docs/relief-bounds.md` has the derivation.
 
 use super::bounds::{ULP, off};
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{LEAST_COSINE, MAX_STEPS};
 use crate::surface::shade::{ShadePoint, ShadeView};
 
-/// What heights may differ by before a point shades itself: `SURFACE_SHADOW_BIAS`.
+/// The height difference below which a point does not shade itself: `SURFACE_SHADOW_BIAS`.
 pub(crate) const BIAS: f64 = 0.005_f32 as f64;
 
-/// A map with how steep it is at each texel ([`steepness`](super::bounds::steepness)).
+/// A map with its steepness at each texel ([`steepness`](super::bounds::steepness)).
 #[derive(Debug, Clone, Copy)]
 pub struct Terrain<'a> {
     /// The heights.
     pub map: &'a HeightMap,
-    /// The most that they change over a texel along x, and along y.
+    /// The largest change in height per texel along x, and along y.
     pub steepness: &'a [[f64; 2]],
-    /// What lies beyond the edge.
+    /// What lies beyond the map's edge.
     pub address: Address,
 }
 
 impl Terrain<'_> {
-    /// Height and steepness at `uv`, bilinear.
+    /// Height and steepness at `uv`, interpolated bilinearly.
     fn at(&self, uv: [f64; 2]) -> [f64; 2] {
         let size = [self.map.width(), self.map.height()];
         let [x, y] = [0, 1].map(|i| uv[i] * f64::from(size[i]) - 0.5);
@@ -42,7 +42,7 @@ impl Terrain<'_> {
     }
 }
 
-/// The least and the most light that reaches a point, 0 to 1.
+/// The least and the most light that may reach a point, 0 to 1.
 pub fn penumbra(terrain: &Terrain<'_>, view: &ShadeView, point: &ShadePoint) -> [f64; 2] {
     let [light_x, light_y, light_z] = point.light.map(f64::from);
     if light_z <= 0.0 {
@@ -60,7 +60,7 @@ pub fn penumbra(terrain: &Terrain<'_>, view: &ShadeView, point: &ShadePoint) -> 
     let height = f64::from(point.hit.height);
     let start_off = if height > own + own_off { 0.0 } else { own_off };
     let rise = 1.0 - height.max(own);
-    // How far off the way to the light may be, in texels.
+    // How far a point on the way to the light may be off, in texels.
     let position = texels(&|i| {
         let (way, farthest) = (rise * slope[i].abs(), uv[i].abs() + rise * slope[i].abs());
         20.0 * way + 2.0 * farthest + looked_up(farthest)

@@ -1,4 +1,4 @@
-//! The colour map.
+//! Benchmark cases of `terrain/blend`: the colour map.
 
 use crate::Error;
 use crate::gpu::Buffer;
@@ -8,7 +8,7 @@ use crate::terrain::blend::reference::blend;
 use crate::terrain::blend::{BlendPass, MapZone, Shading};
 use crate::terrain::fields::Fields;
 
-/// A batch of 64 with four zones.
+/// Measures a batch of 64 patches with four zones.
 ///
 /// # Errors
 /// What the device reports.

@@ -17,19 +17,19 @@ pub use pass::BlendPass;
 #[cfg(feature = "gpu")]
 pub(crate) use pass::{Light, ZoneRange};
 
-/// How zone weights make a colour.
+/// How zone weights are combined into a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WeightMode {
-    /// Weights sum to 1; where all are 0 the nearest zone has 1.
+    /// Weights are divided by their sum; where all of them are 0, the nearest zone has weight 1.
     #[default]
     Normalized,
-    /// B's: the weights as they are.
+    /// B's rule: colours are summed with the weights as they are.
     Additive,
 }
 
 impl WeightMode {
-    /// The value of the shaders' `additive`.
+    /// The value of the shaders' `additive` for this mode: 0 or 1.
     pub fn code(self) -> u32 {
         u32::from(self == Self::Additive)
     }
@@ -40,21 +40,21 @@ impl WeightMode {
 pub struct Shading {
     /// Unit vector towards the light: x east, y up, z south.
     pub light: [f32; 3],
-    /// What faces away from the light still gets, 0 to 1.
+    /// Light that a surface facing away from the light still receives: a fraction of the full light, 0 to 1.
     pub ambient: f32,
-    /// How zone weights make a colour.
+    /// How zone weights are combined into a colour.
     pub weights: WeightMode,
 }
 
 impl Default for Shading {
     fn default() -> Self {
-        // From the north-west, 40° high: what relief maps use.
+        // The light stands in the north-west, 40° high, as is usual for relief maps.
         Self { light: [-0.541_675, 0.642_788, -0.541_675], ambient: 0.25, weights: WeightMode::Normalized }
     }
 }
 
 impl Shading {
-    /// Checks that the light's direction is a unit vector and the ambient share in 0..=1.
+    /// Checks that the light's direction is a unit vector and that `ambient` is in 0..=1.
     ///
     /// # Errors
     /// [`InputError`] that names `light` or `ambient`.
@@ -68,18 +68,19 @@ impl Shading {
     }
 }
 
-/// A zone of a colour map.
+/// A height zone as the colour map uses it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapZone {
     /// Mean linear colour of the zone's texture.
     pub color: [f32; 3],
-    /// Lower end, height units.
+    /// Lower end of the range, in height units.
     pub min: f32,
-    /// Upper end, height units.
+    /// Upper end of the range, in height units.
     pub max: f32,
 }
 
-/// Checks that there are 1 to [`MAX_ZONES`] zones, each a range of heights with a finite colour.
+/// Checks that there are 1 to [`MAX_ZONES`] zones, and that each has a valid range of heights and a finite
+/// colour.
 ///
 /// # Errors
 /// [`InputError`] that names the zone.
@@ -97,7 +98,7 @@ pub fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
     Ok(())
 }
 
-/// How far a pixel of a colour map may lie from the reference's: one level of 255. The colour carries some tens of
-/// rounding errors of 2⁻²³ and `pow`'s 28 ULP, far less than a level, but rounding to 8 bits may fall on
-/// either side.
+/// The largest difference allowed between a channel of a colour map and the reference: one level of 255. The
+/// colour carries some tens of rounding errors of 2⁻²³ and the 28 ULP of `pow`, far less than a level, but the
+/// rounding to 8 bits may go either way.
 pub const MAP_BOUND: u8 = 1;

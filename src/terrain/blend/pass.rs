@@ -1,4 +1,4 @@
-//! `kernels/terrain/blend.wgsl`.
+//! The GPU pass of `kernels/terrain/blend.wgsl`.
 
 use encase::ShaderType;
 use glam::Vec3;
@@ -46,7 +46,7 @@ impl From<&MapZone> for ShaderZone {
     }
 }
 
-/// Draws colour maps.
+/// Draws the top-down colour maps of patches.
 #[derive(Debug, Clone)]
 pub struct BlendPass {
     kernel: Kernel,
@@ -61,12 +61,12 @@ impl BlendPass {
         Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_BLEND, &[])? })
     }
 
-    /// Prepares the colour maps of `windows`: for every sample but the rim, a pixel in `pixels` (RGBA, red
-    /// lowest, sRGB).
+    /// Prepares the colour maps of `windows`: `pixels` receives a pixel for every sample but those of the
+    /// outermost ring (RGBA, 8 bits each, red in the lowest byte, sRGB).
     ///
     /// # Errors
-    /// [`crate::InputError`] for a spacing, zones or shading out of bounds, windows without a rim, or an
-    /// output that is too short; [`GpuError`].
+    /// [`crate::InputError`] for a spacing, zones or shading out of bounds, for windows with nothing inside the
+    /// outermost ring, and for an output that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,17 +1,18 @@
-//! Zone weights and the top-down colour map: reference of `kernels/terrain/blend.wgsl` and
+//! Zone weights and the top-down colour map: the CPU reference of `kernels/terrain/blend.wgsl` and
 //! `wgsl/terrain/zones.wgsl`.
 
 use crate::srgb;
 use crate::terrain::blend::{MapZone, Shading, WeightMode};
 use crate::terrain::normals::reference::unit_normal;
 
-/// B's weight: 1 at `max`, 0 at `max` ± (`max` − `min`).
+/// The weight of a zone at `height` (B equation 3.6): 1 at `max`, falling linearly to 0 at `max` ± (`max` −
+/// `min`).
 pub fn zone_weight(zone: &MapZone, height: f32) -> f32 {
     let range = zone.max - zone.min;
     ((range - (height - zone.max).abs()) / range).max(0.0)
 }
 
-/// The zones' parts of the colour at a height.
+/// The fraction of each zone's colour at `height`, in the order of `zones`.
 pub fn zone_fractions(zones: &[MapZone], height: f32, weights: WeightMode) -> Vec<f32> {
     let all: Vec<f32> = zones.iter().map(|zone| zone_weight(zone, height)).collect();
     let total: f32 = all.iter().sum();
@@ -28,7 +29,8 @@ pub fn zone_fractions(zones: &[MapZone], height: f32, weights: WeightMode) -> Ve
     (0..zones.len()).map(|index| if index == nearest { 1.0 } else { 0.0 }).collect()
 }
 
-/// The colour map of a window of `width` samples a row, cropped by one on every side: RGBA, red lowest.
+/// The colour map of a window with `width` samples per row, without the outermost ring of samples: RGBA, 8 bits
+/// each, red in the lowest byte.
 pub fn blend(
     window: &[i32],
     width: usize,

@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/blend.wgsl`, and with it of the zone weights.
+//! Parity cases of `kernels/terrain/blend.wgsl`, and with it of the zone weights.
 
 use crate::Error;
 use crate::harness::Cases;
@@ -9,7 +9,7 @@ use crate::terrain::blend::{BlendPass, MAP_BOUND, MapZone, Shading, WeightMode};
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::random_heights;
 
-/// One to 32 zones, overlapping and apart, both weight modes, heights beyond every zone.
+/// The cases cover one to 32 zones, overlapping and apart, both weight modes, heights beyond every zone.
 ///
 /// # Errors
 /// What the device reports.

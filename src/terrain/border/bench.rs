@@ -1,4 +1,4 @@
-//! B's transition area.
+//! Benchmark cases of `terrain/border`: B's transition area.
 
 use crate::Error;
 use crate::gpu::Buffer;
@@ -8,7 +8,7 @@ use crate::terrain::border::reference::border;
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::fields::Fields;
 
-/// An 8×8 grid.
+/// Measures a grid of 8 × 8 patches.
 ///
 /// # Errors
 /// What the device reports.

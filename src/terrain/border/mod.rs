@@ -1,9 +1,9 @@
-//! B's transition area (section 3.3.1; spec section 1.2, `blend`): along a border shared with a patch that
-//! already exists, a patch's samples move towards that patch's.
+//! B's transition area (section 3.3.1), the border mode `blend`: along a border that a patch shares with a
+//! patch that already exists, its samples move towards the neighbour's heights.
 //!
-//! The shared border takes the neighbour's heights exactly where only one neighbour reaches. Near a point
-//! where four patches meet, the top or bottom transition runs after the left or right one, so the vertical
-//! border is no longer exactly the neighbour's there: `seamless` has no such places.
+//! Where only one neighbour is within reach, the shared border takes the neighbour's heights exactly. Near a
+//! point where four patches meet, the top or bottom transition runs after the left or right one, so the
+//! vertical border no longer has exactly the neighbour's heights there. `seamless` terrain has no such places.
 
 use crate::InputError;
 
@@ -20,10 +20,10 @@ mod visits;
 #[cfg(feature = "gpu")]
 pub use pass::BorderPass;
 
-/// Indices of the patches left, right, above (y − 1) and below that exist before a patch.
+/// Indices of the patches to the left, to the right, above (y − 1) and below (y + 1) that exist before a patch.
 pub type Neighbours = [Option<usize>; 4];
 
-/// The neighbours of each patch that stand before it in `patches`.
+/// The neighbours of each patch that come before it in `patches`.
 pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
     let mut known = std::collections::HashMap::new();
     let mut all = Vec::with_capacity(patches.len());
@@ -35,11 +35,11 @@ pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
     all
 }
 
-/// Groups patches so that each stands after the neighbours it depends on; patches of a group are
-/// independent.
+/// Groups patches into waves, so that each patch comes in a later wave than the neighbours that it depends on.
+/// Patches of one wave are independent of each other.
 ///
 /// # Errors
-/// [`InputError`] when a patch does not stand after its neighbours.
+/// [`InputError`] when a patch comes before one of its neighbours.
 pub fn waves(neighbours: &[Neighbours]) -> Result<Vec<Vec<u32>>, InputError> {
     let mut wave_of = vec![0; neighbours.len()];
     let mut waves: Vec<Vec<u32>> = Vec::new();

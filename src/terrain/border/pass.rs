@@ -1,4 +1,5 @@
-//! `kernels/terrain/border.wgsl`, wave by wave, over the buffers that a batch lies in.
+//! The GPU pass of `kernels/terrain/border.wgsl`: one dispatch after the other, over the buffers that hold a
+//! batch.
 
 use super::Neighbours;
 use super::visits::{Visit, visits};
@@ -8,7 +9,7 @@ use crate::shared::terrain::border::BorderParams;
 use crate::terrain::fields::{Fields, places};
 use crate::{Error, InputError};
 
-/// Moves border samples of patches towards patches that exist already.
+/// Moves the border samples of patches towards the heights of patches that already exist.
 #[derive(Debug, Clone)]
 pub struct BorderPass {
     within: Kernel,
@@ -25,12 +26,12 @@ impl BorderPass {
         Ok(Self { within: kernel(false)?, across: kernel(true)? })
     }
 
-    /// Prepares the transition of `width` samples for patches that lie in `parts` one after the other; `neighbours`
-    /// are indices of earlier ones, counted through all parts.
+    /// Prepares the transition, `width` samples wide, of patches that lie in `parts` one after the other.
+    /// `neighbours` are indices of earlier patches, counted through all parts.
     ///
     /// # Errors
-    /// [`InputError`] as [`super::waves`], for a width outside 1..size of a patch, more neighbours than patches, and
-    /// parts of different widths or with heights that are too short; [`GpuError`].
+    /// [`InputError`] as [`super::waves`], for a width that is not in 1..size of a patch, for more neighbours
+    /// than patches, and for parts of different widths or with heights that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -60,7 +61,8 @@ impl BorderPass {
             starts[*part] += count;
             let uniform = Uniform::new(gpu, "border", &params)?;
             let Entries { neighbours, order } = &entries[*part];
-            // A buffer that is written cannot be bound once more; what stands in for it is never read.
+            // A buffer that is bound for writing cannot be bound a second time; the kernel never reads the one
+            // that stands in for it.
             let (kernel, others) = if source == part {
                 (&self.within, order.slice().cast())
             } else {
@@ -81,7 +83,7 @@ impl BorderPass {
     }
 }
 
-/// The entries of all visits to one part, one after the other.
+/// The entries of all visits to one part, one visit after the other.
 struct Entries {
     neighbours: Buffer<[u32; 4]>,
     order: Buffer<u32>,

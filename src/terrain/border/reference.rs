@@ -1,13 +1,14 @@
-//! B's transition area: reference of `kernels/terrain/border.wgsl`.
+//! B's transition area: the CPU reference of `kernels/terrain/border.wgsl`.
 
-/// Moves the samples of `patch` (rows of `size`) within `width` of a border towards the existing patches
-/// left, right, above and below it.
+/// Moves the samples of `patch` (rows of `size`) that lie within `width` of a border towards the existing
+/// patches to the left, to the right, above and below it.
 pub fn border(patch: &mut [i32], size: usize, width: u32, neighbours: [Option<&[i32]>; 4]) {
     let last = size - 1;
     for y in 0..size {
         for x in 0..size {
             let sample = &mut patch[y * size + x];
-            // Each border: our distance from it, and the neighbour's sample at that distance on its side.
+            // For each border: the sample's distance from it, and the neighbour's sample at that distance on
+            // the other side.
             let sides = [
                 (x, y * size + (last - x)),
                 (last - x, y * size + (last - x)),
@@ -23,7 +24,7 @@ pub fn border(patch: &mut [i32], size: usize, width: u32, neighbours: [Option<&[
     }
 }
 
-/// The neighbour's height at distance 0, ours at distance `width`.
+/// Blends linearly from the neighbour's height at distance 0 to the patch's own at distance `width`.
 fn towards(ours: i32, theirs: i32, distance: i32, width: i32) -> i32 {
     let difference = ours - theirs;
     let (quotient, remainder) = (difference.div_euclid(width), difference.rem_euclid(width));

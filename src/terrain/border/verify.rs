@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/border.wgsl`.
+//! Parity cases of `kernels/terrain/border.wgsl`.
 
 use crate::Error;
 use crate::harness::Cases;
@@ -9,8 +9,8 @@ use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::{LIMIT, random_heights};
 
-/// Widths up to overlapping ones, orders with up to four neighbours, heights at the limit, patches in one buffer and
-/// in several.
+/// The cases cover widths up to overlapping transitions, orders of generation with up to four neighbours,
+/// heights at the limit, and batches in one buffer and in several.
 ///
 /// # Errors
 /// What the device reports.
@@ -26,7 +26,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// `patches` with at most `most` to a buffer.
+/// Compares `patches`, stored with at most `most` to a buffer.
 fn case(
     cases: &mut Cases<'_>,
     pass: &BorderPass,

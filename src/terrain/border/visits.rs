@@ -1,4 +1,4 @@
-//! Which dispatches move the patches of a batch that lies in several buffers.
+//! The sequence of dispatches that moves the patches of a batch that lies in several buffers.
 
 use std::collections::BTreeMap;
 
@@ -6,19 +6,20 @@ use super::{Neighbours, waves};
 use crate::InputError;
 use crate::terrain::fields::Place;
 
-/// Patches of one part that a dispatch moves towards neighbours of one part.
+/// One dispatch: patches of one part that move towards neighbours that all lie in one part.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Visit {
-    /// Where the patches lie.
+    /// Index of the part that holds the patches.
     pub part: usize,
-    /// Where their neighbours lie.
+    /// Index of the part that holds their neighbours.
     pub source: usize,
-    /// The patches' indices in their part, with their neighbours' in theirs.
+    /// The index of each patch in its part, with the indices of its neighbours in theirs.
     pub entries: Vec<(u32, [u32; 4])>,
 }
 
-/// The dispatches in order, given where each patch lies. A patch whose neighbours lie in its own part moves at once;
-/// another moves side by side, in the order in which the kernel takes sides.
+/// The dispatches in order, given where each patch lies. A patch whose neighbours all lie in its own part takes
+/// one dispatch; any other takes one dispatch for each of its sides, in the order in which the kernel handles
+/// sides.
 ///
 /// # Errors
 /// [`InputError`] as [`waves`].
@@ -61,7 +62,7 @@ mod tests {
         counts.iter().enumerate().flat_map(part).collect()
     }
 
-    /// A patch with all four neighbours, which lie here and there.
+    /// A patch with all four neighbours, which lie in different parts.
     fn surrounded() -> Vec<Neighbours> {
         vec![[None; 4], [None; 4], [None; 4], [None; 4], [Some(2), Some(0), Some(3), Some(1)]]
     }

@@ -1,5 +1,5 @@
-//! Configurations and features as they stand in JSON: B's keys and relievo's optional ones. An error names the
-//! field, what stands there and what may.
+//! Configurations and features in JSON: B's keys and relievo's optional ones. An error names the field, its
+//! value and the allowed range.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::terrain::config::Zone;
 use crate::terrain::config::{Border, Config, Offset};
 use crate::{Error, InputError};
 
-/// `Config` as it stands in JSON.
+/// `Config` as JSON stores it.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 struct Raw {
@@ -79,7 +79,7 @@ impl<'de> Visitor<'de> for BorderVisitor {
     }
 }
 
-/// A struct that stands in JSON as an object: serde's own also takes a list of its fields.
+/// A struct that JSON stores as an object. Serde alone would also accept an array of its fields.
 struct Object<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -102,7 +102,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
     }
 }
 
-/// Reads one JSON object; an error names the field that it lies in, or `what` outside all fields.
+/// Reads one JSON object. An error names the field in which it lies, or `what` when it lies outside all fields.
 pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> Result<T, InputError> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
@@ -121,10 +121,10 @@ enum RawCorners {
 }
 
 impl Config {
-    /// Reads B's JSON.
+    /// Reads a configuration from B's JSON.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not such JSON, unknown keys, and values out of bounds.
+    /// [`InputError`] for text that is not such JSON, for unknown keys, and for values out of bounds.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         let raw: Raw = from_json_object("config", text)?;
         let border = match raw.border {
@@ -156,7 +156,7 @@ impl Config {
     }
 }
 
-/// A JSON number that must be whole and in `low..=high`.
+/// Reads a JSON number that must be an integer in `low..=high`.
 pub(crate) fn whole(
     field: &str,
     number: &serde_json::Number,
@@ -171,7 +171,7 @@ pub(crate) fn whole(
     .ok_or_else(|| InputError::new(field, number, format!("must be a whole number in {low}..={high}")))
 }
 
-/// A serde error as field, value and bound.
+/// Turns a serde error into field, value and bound.
 pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
     let place = format!("line {} column {}", error.line(), error.column());
     let message = error.to_string();
@@ -179,7 +179,7 @@ pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
     InputError::new(what, place, message.strip_suffix(&end).unwrap_or(&message))
 }
 
-/// A text file.
+/// Reads a text file.
 pub(crate) fn read_text(path: &Path) -> Result<String, Error> {
     std::fs::read_to_string(path).map_err(|error| Error::file(path, error))
 }

@@ -1,4 +1,4 @@
-//! What terrain is made of: B table 4.6's JSON with relievo's optional fields (spec section 1.1).
+//! The terrain configuration: the JSON of B table 4.6 with relievo's optional fields.
 
 mod json;
 mod zones;
@@ -14,19 +14,20 @@ use sha2::{Digest, Sha256};
 
 use crate::{Error, InputError};
 
-/// Bits below the point of a height: 1/65536 of a unit.
+/// Fixed-point one of heights: a height is an integer multiple of 1/65536 unit.
 pub const HEIGHT_ONE: f64 = 65_536.0;
 
-/// World coordinates along the edge of a patch.
+/// World coordinates along the edge of a patch: the world is addressed in 1/4096 of an edge.
 pub const PATCH_EDGE: i64 = 4096;
 
-/// No height ever exceeds this (2^30 − 1): sums of two and differences still fit `i32`.
+/// The largest absolute height, 2^30 − 1 in 1/65536 units: sums and differences of two heights still fit `i32`.
 pub const HEIGHT_LIMIT: i64 = (1 << 30) - 1;
 
-/// The most texture tiles along a patch's edge: `f32` texture coordinates then tell a quarter of a texel.
+/// The most texture tiles along a patch's edge: with more, `f32` texture coordinates could not resolve a
+/// quarter of a texel.
 const MAX_TILES: f64 = 16_384.0;
 
-/// The distribution of random offsets.
+/// The distribution of the random offsets; r is the range at a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Offset {
@@ -40,7 +41,7 @@ pub enum Offset {
 }
 
 impl Offset {
-    /// The value of the shaders' `DISTRIBUTION`.
+    /// The value of the shaders' `DISTRIBUTION` for this distribution.
     pub fn code(self) -> u32 {
         match self {
             Self::Signed => 0,
@@ -50,18 +51,18 @@ impl Offset {
     }
 }
 
-/// What happens at a patch's borders.
+/// How the borders of patches are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Border {
-    /// A patch is a window onto the diamond-square of the whole plane: neighbours agree bit for bit and in
-    /// slope, in whatever order they are made.
+    /// A patch is a window onto the diamond-square surface of the whole plane: neighbouring patches agree bit
+    /// for bit, in heights and slopes, in whatever order they are generated.
     #[default]
     Seamless,
-    /// A patch by itself, whose neighbours wrap around (B section 3.3.1).
+    /// Each patch is generated alone and its neighbours wrap around (B section 3.3.1).
     Wrap,
-    /// `wrap`, then a transition of this many samples towards neighbours that already exist (B section
-    /// 3.3.1). The only mode whose result depends on the order of generation.
+    /// As [`Border::Wrap`], followed by a transition, this many samples wide, towards neighbours that already
+    /// exist (B section 3.3.1). This is the only mode whose result depends on the order of generation.
     Blend(u32),
 }
 
@@ -70,13 +71,13 @@ pub enum Border {
 pub struct Config {
     /// Samples along a patch's edge: 2^n + 1, n in 1..=12.
     pub patch_size: u32,
-    /// Range of the random variation at the coarsest level, in height units; ≥ 0.
+    /// Range of the random offsets at the coarsest level, in height units; ≥ 0.
     pub scale_factor: f64,
-    /// Any text. The same seed is the same world at every resolution.
+    /// Any text. The same seed gives the same world at every resolution.
     pub seed: String,
-    /// H ≥ 0: the range shrinks by 2^−H a level. Default 1.
+    /// H ≥ 0: the range of the offsets shrinks by the factor 2^−H per level. Default 1.
     pub roughness: f64,
-    /// k in 0..=8: the coarsest lattice lies 2^k patches apart. Default 0. `seamless` only.
+    /// k in 0..=8: points of the coarsest lattice lie 2^k patch edges apart. Default 0. `seamless` only.
     pub coarse_levels: u32,
     /// Distribution of the offsets. Default `signed`.
     pub offset: Offset,
@@ -87,14 +88,15 @@ pub struct Config {
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
     /// World units that a zone's texture covers before it repeats, at least 1/16384 of a patch's edge. Default
-    /// `None`: (patchSize − 1) / 10, which is B's 10 · terrainScale tiles a patch.
+    /// `None`, which stands for (patchSize − 1) / 10 units; with B's terrainScale that is 10 · terrainScale
+    /// tiles per patch.
     pub texture_tile: Option<f64>,
     /// Height zones for colouring, 1 to 32. Default four: sand, grass, hill and snow.
     pub zones: Vec<Zone>,
 }
 
 impl Config {
-    /// B's three parameters; the rest at their defaults.
+    /// A configuration with B's three parameters and every other field at its default.
     ///
     /// # Errors
     /// [`InputError`] as [`Config::validate`].
@@ -116,10 +118,11 @@ impl Config {
         Ok(config)
     }
 
-    /// Reads a JSON file. Texture paths in its zones are relative to it.
+    /// Reads a JSON file. Texture paths in its zones are relative to the file.
     ///
     /// # Errors
-    /// [`Error::File`] when it cannot be read, [`Error::InputFile`] as [`Config::from_json`].
+    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] for the errors of
+    /// [`Config::from_json`].
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let text = read_text(path)?;
         let mut config =
@@ -131,10 +134,10 @@ impl Config {
         Ok(config)
     }
 
-    /// Checks every bound. Called by whatever takes a `Config`.
+    /// Checks every field. Every function that takes a `Config` calls it.
     ///
     /// # Errors
-    /// The first [`InputError`].
+    /// [`InputError`] for the first field that is out of bounds.
     pub fn validate(&self) -> Result<(), InputError> {
         let size = self.patch_size;
         if !(3..=4097).contains(&size) || !(size - 1).is_power_of_two() {
@@ -188,7 +191,7 @@ impl Config {
         }
     }
 
-    /// Refuses heights that could leave 2^30 − 1 (spec section 1.2, overflow), given the largest absolute
+    /// Refuses a configuration whose heights could exceed 2^30 − 1 (`HEIGHT_LIMIT`), given the largest absolute
     /// feature height in 1/65536 units.
     ///
     /// # Errors
@@ -215,42 +218,42 @@ impl Config {
         Ok(())
     }
 
-    /// n of `patch_size` = 2^n + 1.
+    /// n, where `patch_size` = 2^n + 1.
     pub fn exponent(&self) -> u32 {
         (self.patch_size - 1).ilog2()
     }
 
-    /// Subdivisions from the coarsest lattice to the samples: L = n + k.
+    /// Number of subdivisions from the coarsest lattice to the samples: L = n + k.
     pub fn levels(&self) -> u32 {
         self.exponent() + self.coarse_levels
     }
 
-    /// World units along a patch's edge.
+    /// Length of a patch's edge in world units.
     pub fn edge_length(&self) -> f64 {
         f64::from(self.patch_size - 1) * self.terrain_scale
     }
 
-    /// Texture tiles along a patch's edge.
+    /// Number of texture tiles along a patch's edge.
     pub fn tiles_per_patch(&self) -> f64 {
         self.texture_tile.map_or(10.0 * self.terrain_scale, |tile| self.edge_length() / tile)
     }
 
-    /// World coordinates between neighbouring samples.
+    /// Distance between neighbouring samples in world coordinates.
     pub fn sample_spacing(&self) -> i64 {
         PATCH_EDGE >> self.exponent()
     }
 
-    /// r_l: the range of offsets at a level, in 1/65536 units, rounded to nearest, ties to even.
+    /// r_l: the range of the offsets at `level`, in 1/65536 units, rounded to nearest with ties to even.
     pub fn level_range(&self, level: u32) -> u32 {
         self.range(level) as u32
     }
 
-    // `libm::exp2` is pure Rust, so that no C library decides a bit.
+    // `libm::exp2` is pure Rust, so that no platform's C library decides a bit.
     fn range(&self, level: u32) -> f64 {
         (self.scale_factor * libm::exp2(-self.roughness * f64::from(level)) * HEIGHT_ONE).round_ties_even()
     }
 
-    /// The key of the hash: the first eight bytes of the seed's SHA-256 as two little-endian words.
+    /// The key of the hash: the first eight bytes of the seed's SHA-256, as two little-endian words.
     pub fn key(&self) -> [u32; 2] {
         let digest = Sha256::digest(self.seed.as_bytes());
         let word =
@@ -264,12 +267,12 @@ impl Config {
     }
 }
 
-/// World units between neighbouring samples.
+/// Checks the distance between neighbouring samples in world units.
 pub(crate) fn check_terrain_scale(terrain_scale: f64) -> Result<(), InputError> {
     finite("terrainScale", terrain_scale, 1e-6, 1e6)
 }
 
-/// A number that must be finite and in `low..=high`.
+/// Checks that a number is finite and in `low..=high`.
 pub(crate) fn finite(field: &str, value: f64, low: f64, high: f64) -> Result<(), InputError> {
     if value.is_finite() && (low..=high).contains(&value) {
         return Ok(());

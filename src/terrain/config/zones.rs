@@ -22,21 +22,21 @@ pub enum ZoneTexture {
 /// Textures that relievo generates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BuiltIn {
-    /// Pale, fine-grained, rippled.
+    /// Pale, fine-grained, rippled sand.
     Sand,
-    /// Green blades.
+    /// Green blades of grass.
     Grass,
     /// Broken grey-brown rock.
     Hill,
-    /// Nearly white.
+    /// Nearly white snow.
     Snow,
 }
 
 impl BuiltIn {
-    /// All of them, lowest first.
+    /// All of them, from the lowest zone to the highest.
     pub const ALL: [Self; 4] = [Self::Sand, Self::Grass, Self::Hill, Self::Snow];
 
-    /// Its name in JSON.
+    /// The name of the texture in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sand => "sand",
@@ -52,11 +52,12 @@ impl BuiltIn {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
-    /// Height units.
+    /// Lower end of the range, in height units.
     pub min: f64,
-    /// Height units, above `min`.
+    /// Upper end of the range, in height units; above `min`.
     pub max: f64,
-    /// `"sand"`, `"grass"`, `"hill"`, `"snow"` or the path of an image. Default: by position in the list.
+    /// `"sand"`, `"grass"`, `"hill"`, `"snow"` or the path of an image. Default: by the zone's position in the
+    /// list.
     #[serde(default, deserialize_with = "texture")]
     pub texture: Option<ZoneTexture>,
 }
@@ -68,10 +69,10 @@ fn texture<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<Z
 }
 
 impl Zone {
-    /// The four default zones, at fractions of `scale_factor`. Positive offsets lift the terrain by three
-    /// halves of it on average, and the zones with it.
+    /// The four default zones, at fixed fractions of `scale_factor`. With `positive` offsets the terrain lies
+    /// three halves of `scale_factor` higher on average, so the zones do too.
     pub fn defaults(scale_factor: f64, offset: Offset) -> Vec<Self> {
-        // A range below the resolution of heights is flat ground.
+        // With a range below the resolution of heights the terrain is flat.
         let unit = if scale_factor >= 1.0 / HEIGHT_ONE { scale_factor } else { 1.0 };
         let lift = if offset == Offset::Positive { 1.5 } else { 0.0 };
         [(-1.7, -0.65), (-0.65, -0.1), (-0.1, 0.45), (0.4, 1.1)]
@@ -85,15 +86,15 @@ impl Zone {
             .collect()
     }
 
-    /// Checks that the zone is a range of finite heights.
+    /// Checks that `min` and `max` are finite and in order.
     ///
     /// # Errors
-    /// [`InputError`] that names the field below `path`.
+    /// [`InputError`] that names the field, with `path` in front of it.
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
         check_range(path, self.min, self.max)
     }
 
-    /// The texture of the zone at `index` of its list.
+    /// The texture of the zone, which stands at `index` in its list.
     pub fn texture_at(&self, index: usize) -> ZoneTexture {
         self.texture.clone().unwrap_or(ZoneTexture::BuiltIn(BuiltIn::ALL[index.min(3)]))
     }
@@ -108,7 +109,7 @@ impl Zone {
 pub(crate) fn check_range(path: &str, min: f64, max: f64) -> Result<(), InputError> {
     finite(&format!("{path}.min"), min, -32768.0, 32768.0)?;
     finite(&format!("{path}.max"), max, -32768.0, 32768.0)?;
-    // As the shaders see them: a range that vanishes in f32, or may be flushed to 0, would divide by zero.
+    // Shaders compute in f32: a range that vanishes there, or that may be flushed to 0, would divide by zero.
     if max as f32 - (min as f32) < f32::MIN_POSITIVE {
         return Err(InputError::new(format!("{path}.max"), max, format!("must be above min = {min}")));
     }

@@ -1,4 +1,4 @@
-//! Removal of spikes.
+//! Benchmark cases of `terrain/despike`: removal of spikes.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -8,7 +8,7 @@ use crate::terrain::despike::{Despike, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 
-/// A batch of 64.
+/// Measures a batch of 64 patches.
 ///
 /// # Errors
 /// What the device reports.

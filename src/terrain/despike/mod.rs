@@ -14,11 +14,11 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::DespikePass;
 
-/// A point further than `threshold` from the mean of its four neighbours is replaced by it; injected points
-/// are left alone. Reaches one sample.
+/// Replaces every point that is further than `threshold` from the mean of its four neighbours by that mean.
+/// Injected points are left alone. A result depends on samples at most one sample away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Despike {
-    /// τ, in height units; 0 to 16383.
+    /// The threshold τ, in height units; 0 to 16383.
     pub threshold: f64,
 }
 

@@ -1,4 +1,4 @@
-//! `kernels/terrain/despike.wgsl`.
+//! The GPU pass of `kernels/terrain/despike.wgsl`.
 
 use super::Despike;
 use crate::gpu::bindings::terrain::despike as bindings;
@@ -15,7 +15,8 @@ pub struct DespikePass {
 }
 
 impl DespikePass {
-    /// Compiles the pipeline. `with_features` says whether there are points to leave alone.
+    /// Compiles the pipeline. `with_features` says whether there are injected points, which the kernel leaves
+    /// alone.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -24,12 +25,12 @@ impl DespikePass {
         Ok(Self { kernel: bindings::kernel(gpu, &constants)? })
     }
 
-    /// Prepares despiking of `windows` into `cropped`, one sample smaller on every side. Grid 0 of
-    /// `features` covers the windows.
+    /// Prepares the despiking of `windows` into `cropped`, whose fields are one sample smaller on every side.
+    /// Grid 0 of `features` covers the windows.
     ///
     /// # Errors
-    /// [`InputError`] for a threshold out of bounds, windows without a rim, features of other windows, or an
-    /// output that is too short; [`GpuError`].
+    /// [`InputError`] for a threshold out of bounds, for windows with nothing inside the outermost ring, for
+    /// features of other windows, and for an output that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,9 +1,9 @@
-//! Removal of spikes: reference of `kernels/terrain/despike.wgsl`.
+//! Removal of spikes: the CPU reference of `kernels/terrain/despike.wgsl`.
 
 use crate::terrain::fixed::mean_of_four;
 
-/// Despikes a window of `width` samples a row and crops it by one on every side. `injected(x, y)` says
-/// whether a point of the window is a feature.
+/// Despikes a window with `width` samples per row and drops the outermost ring of samples. `injected(x, y)`
+/// says whether a point of the window is a feature.
 pub fn despike(
     window: &[i32],
     width: usize,

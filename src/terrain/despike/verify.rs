@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/despike.wgsl`.
+//! Parity cases of `kernels/terrain/despike.wgsl`.
 
 use crate::Error;
 use crate::harness::Cases;
@@ -10,7 +10,7 @@ use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::{LIMIT, random_heights, random_words};
 
-/// Thresholds from 0 up, widths around workgroup boundaries, with and without features.
+/// The cases cover thresholds from 0 up, widths around workgroup boundaries, with and without features.
 ///
 /// # Errors
 /// What the device reports.
@@ -49,7 +49,7 @@ fn check(
     windows.heights.write(gpu, &heights)?;
     let output = Poisoned::new(gpu, (edge - 2).pow(2) * count as usize)?;
     let cropped = Fields { heights: output.buffer.clone(), width: width - 2, count };
-    // A third of all points, rim included.
+    // A third of all points are features, those of the outermost ring included.
     let marks: Vec<Vec<bool>> = (0..count)
         .map(|window| {
             let words = features.map_or(vec![1; points], |case| random_words(case ^ window, points));

@@ -1,5 +1,5 @@
-//! Features on the device: a bit a point and the rank of its value, a grid a level
-//! (`wgsl/terrain/features.wgsl`).
+//! Features on the device: for each level a grid with one bit per point, and for each word of the grid the
+//! index of its first value (`wgsl/terrain/features.wgsl`).
 
 use crate::gpu::bind::Slice;
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 pub use crate::shared::terrain::features::FeatureGrid;
 use crate::shared::terrain::features::FeatureWord;
 
-/// The index of a batch of windows: several grids of different widths, and the values.
+/// The features of a batch of windows: several grids of different widths, and the injected values.
 #[derive(Debug, Clone)]
 pub struct FeatureIndex {
     grids: Vec<FeatureGrid>,
@@ -17,8 +17,8 @@ pub struct FeatureIndex {
 }
 
 impl FeatureIndex {
-    /// Room for `windows` windows with grids of these widths, and for `capacity` values in all. A capacity of
-    /// 0 takes no memory and serves kernels that are compiled without features.
+    /// Allocates for `windows` windows with grids of these widths, and for `capacity` values in all. A capacity
+    /// of 0 allocates no memory; it is for kernels that are compiled without features.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -36,7 +36,7 @@ impl FeatureIndex {
                     words_per_window: words_per_row * (width + 2),
                     start,
                 };
-                // Without features nothing reads the words.
+                // Kernels that are compiled without features read none of the words.
                 start = start.wrapping_add(grid.words_per_window.wrapping_mul(windows));
                 grid
             })
@@ -50,10 +50,10 @@ impl FeatureIndex {
     }
 
     /// Replaces the features. `points(grid, window)` gives (column, row, height) sorted by row, then column,
-    /// relative to one point before the window's first.
+    /// counted from one point before the window's first.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] when there are more than the index has room for.
+    /// [`GpuError::Limit`] when there are more features than the capacity.
     pub fn write(
         &self,
         gpu: &Gpu,
@@ -91,7 +91,7 @@ impl FeatureIndex {
         self.heights.write(gpu, &heights)
     }
 
-    /// Grid `index`, in the order of the widths; one without points where there is none.
+    /// The grid at `index`, in the order of the widths, or a grid without points if there is none.
     pub fn grid(&self, index: usize) -> FeatureGrid {
         let none = FeatureGrid { width: 0, words_per_row: 0, words_per_window: 0, start: 0 };
         self.grids.get(index).copied().unwrap_or(none)
@@ -105,13 +105,13 @@ impl FeatureIndex {
         self.heights.slice()
     }
 
-    /// Bytes on the device.
+    /// Bytes that the index takes on the device.
     pub fn bytes(&self) -> u64 {
         self.words.bytes() + self.heights.bytes()
     }
 }
 
-/// Checks that `u32` counts the words of all grids.
+/// Checks that a `u32` can count the words of all grids.
 fn check_words(widths: &[u32], windows: u32) -> Result<(), GpuError> {
     let words = |width: &u32| (u128::from(*width) + 2).div_ceil(32) * (u128::from(*width) + 2);
     let needed = widths.iter().map(words).sum::<u128>() * u128::from(windows);

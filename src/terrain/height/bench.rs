@@ -1,5 +1,5 @@
-//! Generation: B table 5.2's sizes, one patch and batches of 64. `limit` draws and stores the same number of
-//! random words; `copy` moves 4 bytes a point.
+//! Benchmark cases of `terrain/height`: the sizes of B table 5.2, one patch and batches of 64. `limit` draws
+//! and stores the same number of random words; `copy` moves 4 bytes per point.
 
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use crate::terrain::height::reference::height;
 use crate::terrain::height::{HeightBatch, HeightPass};
 use crate::terrain::window::Window;
 
-/// Sizes 129 to 1025; a batch with features.
+/// Measures sizes 129 to 1025, and a batch with features.
 ///
 /// # Errors
 /// What the device reports.
@@ -34,7 +34,7 @@ fn case(bench: &mut Bench<'_>, size: u32, count: u32, with_features: bool) -> Re
     let patches: Vec<_> = (0..count as i32).map(|i| [i % 8, i / 8]).collect();
     let features = if with_features { valleys(&config, &patches)? } else { Features::default() };
     let pass = HeightPass::new(gpu, Offset::Signed, features.injection())?;
-    // Patches share edges and halos, so a point may count in several windows.
+    // Patches share edges and halos, so that a point may count in several windows.
     let batch = HeightBatch::new(gpu, &pass, &config, [count, 0], 2 * features.len())?;
     batch.set(gpu, &patches, &features)?;
     let points = (count * size * size) as usize;
@@ -60,7 +60,7 @@ fn case(bench: &mut Bench<'_>, size: u32, count: u32, with_features: bool) -> Re
     bench.case(name, (points, "point"), 4 * points as u64, contenders)
 }
 
-/// A valley in the middle of every patch: every fourth sample of its middle half.
+/// A valley in the middle of every patch: every fourth sample of the patch's middle half is a feature.
 fn valleys(config: &Config, patches: &[[i32; 2]]) -> Result<Features, Error> {
     let quarter = config.patch_size / 4;
     let lines = || (quarter..3 * quarter).step_by(4);

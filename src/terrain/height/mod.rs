@@ -1,5 +1,5 @@
-//! Heights of a window onto the diamond-square of the whole plane (B section 3.3.1; spec section 1.2,
-//! `seamless`). Integers throughout: the same bits on every device.
+//! Heights of a window onto the diamond-square surface of the whole plane (B section 3.3.1), for `seamless`
+//! terrain. All arithmetic is on integers: every device computes the same bits.
 
 #[cfg(feature = "verify")]
 pub mod bench;

@@ -1,4 +1,4 @@
-//! `kernels/terrain/height.wgsl` over the levels of a batch of windows.
+//! The GPU pass of `kernels/terrain/height.wgsl`: one or two levels per dispatch, for a batch of windows.
 
 use crate::Error;
 use crate::InputError;
@@ -12,25 +12,27 @@ use crate::terrain::fixed::FeatureMode;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
 
-/// Rows of coarse cells a thread: a software adapter wants few, long threads, hardware many.
+/// Rows of coarse cells per thread. Software adapters run few long threads best, hardware many short ones.
 const CELL_ROWS_SOFTWARE: u32 = 43;
 const CELL_ROWS_HARDWARE: u32 = 2;
 
-/// The same where a dispatch makes two levels: the 65 rows of a patch of 257 in two threads, the 33 of 129 in one.
+/// Rows of coarse cells per thread where a dispatch makes two levels: the 65 rows of a patch of 257² then take
+/// two threads, the 33 rows of a patch of 129² one.
 const CELL_ROWS_TWO_LEVELS: u32 = 33;
 
 /// How a dispatch is cut into threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Blocks {
-    /// Rows of coarse cells a thread, at least one.
+    /// Rows of coarse cells per thread, at least one.
     pub cell_rows: u32,
-    /// Levels a dispatch: one, or two where no features are injected. Of an odd number the first is alone.
+    /// Levels per dispatch: one, or two where no features are injected. If the number of levels is odd, the
+    /// first dispatch makes one.
     pub levels: u32,
 }
 
 impl Blocks {
-    // Two levels for lavapipe alone, where memory operations cost most: SwiftShader's compiler takes too much memory for
-    // shaders of that length.
+    // Only lavapipe makes two levels per dispatch, because its memory operations cost most. SwiftShader's
+    // compiler takes too much memory for shaders of that length.
     fn of(adapter: &AdapterSummary, features: bool) -> Self {
         let cell_rows = if adapter.is_software() { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
         let two = adapter.name.contains("llvmpipe") && !features;
@@ -38,16 +40,17 @@ impl Blocks {
     }
 }
 
-/// Diamond-square heights of `seamless` windows. Compiled for one distribution and one way of injection.
+/// Diamond-square heights of `seamless` windows. A pass is compiled for one distribution and one mode of
+/// injection.
 #[derive(Debug, Clone)]
 pub struct HeightPass {
-    // For one level a dispatch and, where it is chosen, for two.
+    // The kernels for one level per dispatch and, where that is chosen, for two.
     stages: Vec<Stage>,
     cell_rows: u32,
     with_features: bool,
 }
 
-/// The kernel for the base lattice's levels and for those after.
+/// The kernel that starts from the base lattice, and the one for all later levels.
 #[derive(Debug, Clone)]
 struct Stage {
     first: Kernel,
@@ -55,7 +58,7 @@ struct Stage {
 }
 
 impl HeightPass {
-    /// Compiles the pipelines. `features` is how features are injected; without it there are none.
+    /// Compiles the pipelines. `features` is the mode of injection; `None` means that there are no features.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -63,7 +66,7 @@ impl HeightPass {
         Self::with_blocks(gpu, offset, features, Blocks::of(gpu.adapter(), features.is_some()))
     }
 
-    /// [`HeightPass::new`] with chosen blocks.
+    /// As [`HeightPass::new`], with the given blocks.
     ///
     /// # Errors
     /// [`InputError`] for blocks out of bounds; what the driver's compiler reports.
@@ -97,9 +100,9 @@ impl HeightPass {
         Ok(Self { stages, cell_rows: blocks.cell_rows, with_features: features.is_some() })
     }
 
-    /// Prepares generation of `count` windows with `apron` into `output`, which holds
-    /// [`HeightJob::output_points`] heights. There is room for `feature_capacity` injected points, counted once
-    /// in every window that sees them.
+    /// Prepares the generation of `count` windows with `apron` into `output`, which holds
+    /// [`HeightJob::output_points`] heights. `feature_capacity` is the largest number of injected points, where
+    /// a point counts once for every window that sees it.
     ///
     /// # Errors
     /// [`InputError`] for a configuration that is not `seamless` or out of bounds, a reach out of bounds, or
@@ -132,7 +135,7 @@ impl HeightPass {
         let plan = self.plan(config.levels());
         let mut steps = Vec::new();
         for (index, &[level, levels]) in plan.iter().enumerate() {
-            // The last dispatch writes to the output, those before it to the scratch buffers in turn.
+            // The last dispatch writes to the output; those before it alternate between the scratch buffers.
             let left = plan.len() - 1 - index;
             let coarse = &scratch.buffers[left % 2];
             let fine = if left == 0 { output } else { &scratch.buffers[(left + 1) % 2] };
@@ -173,7 +176,7 @@ impl HeightPass {
     ) -> Level {
         let fine = level + levels;
         let (coarse_width, fine_width) = (widths[level], widths[fine]);
-        // A window starts anywhere in its first cell.
+        // A window may start anywhere in its first cell.
         let cells = if levels == 1 { fine_width / 2 + 1 } else { (fine_width + 6) / 4 };
         let blocks_per_row = cells.div_ceil(4);
         Level {
@@ -195,7 +198,7 @@ impl HeightPass {
     }
 }
 
-/// Points along an edge at every level, enough for windows of any alignment; the base lattice first.
+/// Points along an edge at every level, the base lattice first: enough for windows of any alignment.
 fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
     let mut widths = vec![config.patch_size + 2 * apron];
     for _ in 0..config.levels() {
@@ -205,7 +208,7 @@ fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
     widths
 }
 
-/// A batch of any size: split where it exceeds a storage binding of 128 MiB, in one recording.
+/// A batch of any size. It is split where it exceeds a storage binding of 128 MiB, and recorded as one.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     jobs: Vec<HeightJob>,
@@ -214,8 +217,8 @@ pub struct HeightBatch {
 }
 
 impl HeightBatch {
-    /// Allocates everything for `count` windows with `apron`, with room for `feature_capacity` injected points
-    /// in each part.
+    /// Allocates everything for `count` windows with `apron`, and for `feature_capacity` injected points in
+    /// each part.
     ///
     /// # Errors
     /// [`InputError`] as [`HeightPass::prepare`]; [`GpuError`].
@@ -248,7 +251,7 @@ impl HeightBatch {
         Ok(Self { jobs, fields, scratch })
     }
 
-    /// Chooses the patches, in order over the parts, and features of the next recordings.
+    /// Sets the patches, in order through the parts, and the features of the next recordings.
     ///
     /// # Errors
     /// As [`HeightJob::set`].
@@ -276,22 +279,22 @@ impl HeightBatch {
         &self.fields
     }
 
-    /// Bytes of heights and scratch on the device, features aside.
+    /// Bytes of heights and scratch on the device, apart from features.
     pub fn bytes(&self) -> u64 {
         self.fields.iter().map(|fields| fields.heights.bytes()).sum::<u64>() + self.scratch.bytes()
     }
 }
 
-/// Room for the levels that one dispatch leaves to the next: with one level a dispatch about a third of the output, with
-/// two a fifteenth. Jobs of one pass and shape may share it.
+/// Scratch memory for the levels that one dispatch leaves to the next: about a third of the output with one
+/// level per dispatch, a fifteenth with two. Jobs of one pass and shape may share it.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // In turn, what the last dispatch reads in the first, what the one before reads in the second, …
+    // The two buffers alternate: the last dispatch reads the first, the one before it the second, and so on.
     buffers: [Buffer<i32>; 2],
 }
 
 impl HeightScratch {
-    /// Scratch for `count` windows with `apron`.
+    /// Allocates scratch for `count` windows with `apron`.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -310,7 +313,7 @@ impl HeightScratch {
     fn points(pass: &HeightPass, widths: &[u32], count: u32) -> [usize; 2] {
         let mut points = [0; 2];
         for (left, &[level, _]) in pass.plan(widths.len() as u32 - 1).iter().rev().enumerate() {
-            // The base lattice is drawn, not loaded.
+            // The base lattice is computed in the first dispatch and not loaded.
             if level > 0 {
                 let needed = count as usize * (widths[level] as usize).pow(2);
                 points[left % 2] = needed.max(points[left % 2]);
@@ -319,7 +322,7 @@ impl HeightScratch {
         points
     }
 
-    /// Bytes on the device.
+    /// Bytes that the scratch takes on the device.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(Buffer::bytes).sum()
     }
@@ -330,7 +333,7 @@ impl HeightScratch {
     }
 }
 
-/// Generation of a batch of windows, prepared: set the patches, then record as often as wanted.
+/// The prepared generation of a batch of windows: set the patches, then record as often as wanted.
 #[derive(Debug, Clone)]
 pub struct HeightJob {
     config: Config,
@@ -343,13 +346,13 @@ pub struct HeightJob {
 }
 
 impl HeightJob {
-    /// Heights that the output must hold.
+    /// The number of heights that the output must hold.
     pub fn output_points(config: &Config, count: u32, apron: u32) -> usize {
         let width = (config.patch_size + 2 * apron) as usize;
         count as usize * width * width
     }
 
-    /// Chooses the patches and features of the next recordings: at most `count` patches.
+    /// Sets the patches and features of the next recordings: at most `count` patches.
     ///
     /// # Errors
     /// [`InputError`] for patches out of bounds; [`GpuError::Limit`] for more features than there is room for.
@@ -413,7 +416,7 @@ mod tests {
         assert_eq!(refused(None, 0, 1), (rows, "0".to_owned()));
     }
 
-    /// Scratch buffers are as large as what they ever hold, and no larger.
+    /// The scratch buffers are exactly as large as the largest level that they ever hold.
     #[test]
     fn scratch_holds_what_dispatches_leave() {
         let gpu = Gpu::headless(&crate::gpu::Options::default()).expect("the suite needs an adapter");
@@ -424,7 +427,7 @@ mod tests {
             let pass = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
             HeightScratch::points(&pass, &widths, 3)
         };
-        // Levels 131, 68, 36, 20, … wide before the last.
+        // The levels before the last are 131, 68, 36, 20, … points wide.
         assert_eq!(points(257, 0, 0, 1), [3 * 131 * 131, 3 * 68 * 68]);
         assert_eq!(points(3, 0, 0, 1), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0, 1), [3 * 5 * 5, 0], "two");
@@ -435,7 +438,7 @@ mod tests {
         }
     }
 
-    /// Uniform widths cover every window, whatever its alignment.
+    /// The widths of levels, which are the same for all windows, cover every window, whatever its alignment.
     #[test]
     fn level_widths_cover_every_alignment() {
         for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {

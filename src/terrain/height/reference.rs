@@ -1,5 +1,5 @@
-//! Heights of a window onto the plane: reference of `kernels/terrain/height.wgsl`. Rows of coarse points are
-//! streamed as in the kernel; what a thread does there for four cells is done here for a whole row.
+//! Heights of a window onto the plane: the CPU reference of `kernels/terrain/height.wgsl`. It streams rows of
+//! coarse points as the kernel does; where a thread of the kernel handles four cells, it handles a whole row.
 
 use crate::terrain::config::Config;
 use crate::terrain::features::Features;
@@ -55,14 +55,15 @@ fn world(index: i64, spacing: i64) -> u32 {
     (index * spacing) as u32
 }
 
-/// Features of one level, found by row.
+/// The features of one level, indexed by row.
 struct Injected {
     points: Vec<(u32, u32, i32)>,
     origin: [i64; 2],
 }
 
 impl Injected {
-    // One point more than the window on every side: a diamond on the rim sees features too.
+    // The lattice has one point more than the window on every side, because diamonds in the outermost ring see
+    // features too.
     fn new(features: &Features, spans: [Span; 2], spacing: i64, new_only: bool) -> Self {
         let origin = [spans[0].first - 1, spans[1].first - 1];
         let width = spans[0].width().max(spans[1].width()) as u32 + 2;
@@ -70,7 +71,7 @@ impl Injected {
         Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
     }
 
-    /// Injects into `heights[i]`, the point (x + i·step, y) in units of the lattice.
+    /// Injects into each `heights[i]`, which is the point (x + i·step, y) in units of the lattice.
     fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
         let row = (y - self.origin[1]) as u32;
         let start = self.points.partition_point(|point| point.1 < row);
@@ -85,7 +86,7 @@ impl Injected {
     }
 }
 
-/// The finer lattice of one subdivision.
+/// The finer lattice that one subdivision makes.
 struct Fine<'a> {
     features: &'a Features,
     draw: &'a Draw,
@@ -128,7 +129,7 @@ impl Fine<'_> {
         fine
     }
 
-    /// The centres of the cells between two coarse rows; the first cell starts at coarse point (x, y).
+    /// The centres of the cells between two coarse rows. The first cell starts at the coarse point (x, y).
     fn diamonds(&self, above: &[i32], below: &[i32], x: i64, y: i64, centres: &mut [i32]) {
         for (i, centre) in centres.iter_mut().enumerate() {
             *centre = mean_of_four(above[i], above[i + 1], below[i], below[i + 1]);
@@ -136,14 +137,15 @@ impl Fine<'_> {
         self.draw_row(centres, 2 * x + 1, 2 * y + 1);
     }
 
-    /// Adds offsets to points (x, y), (x + 2, y), … and injects features.
+    /// Adds random offsets to the points (x, y), (x + 2, y), … and injects features.
     fn draw_row(&self, heights: &mut [i32], x: i64, y: i64) {
         let step = 2 * self.spacing as u32;
         self.draw.add_row(heights, self.range, world(x, self.spacing), step, world(y, self.spacing));
         self.injected.inject_row(self.features, y, x, 2, heights);
     }
 
-    /// Stores what lies in the window of `even` and `odd` points in turn, which start at (x, y).
+    /// Stores those points that lie in the window from two interleaved rows, `even` and `odd`, which start at
+    /// (x, y).
     fn store_row(&self, fine: &mut [i32], y: i64, x: i64, even: &[i32], odd: &[i32]) {
         if !(self.spans[1].first..=self.spans[1].last).contains(&y) {
             return;

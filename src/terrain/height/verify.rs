@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/height.wgsl`.
+//! Parity cases of `kernels/terrain/height.wgsl`.
 
 use serde_json::json;
 
@@ -14,7 +14,7 @@ use crate::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch};
 use crate::terrain::verify::{config, scattered};
 use crate::terrain::window::Window;
 
-/// Every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
+/// The cases cover every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
 /// sizes.
 ///
 /// # Errors
@@ -24,7 +24,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
         let pass = HeightPass::new(cases.gpu, code, None)?;
         for exponent in 1..=12 {
-            // The largest sizes once: time goes into variety.
+            // The largest sizes run with one distribution only, so that time goes into variety.
             let levels =
                 if exponent <= 8 { 0..=8 } else { 0..=u32::from(offset == "signed" && exponent <= 10) };
             for coarse_levels in levels.filter(|_| exponent <= 11 || offset == "signed") {
@@ -43,7 +43,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     block_sizes(cases)
 }
 
-/// Large patches with what small ones are tested with: coarse levels, reach, neighbours, features.
+/// Compares large patches under everything that small ones are tested with: coarse levels, reach, neighbours,
+/// features.
 fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (size, coarse_levels, apron, offset, mode) in [
         (513, 8, 3, Offset::Gaussian, None),
@@ -77,7 +78,7 @@ fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
         let patches: Vec<_> = (0..7).map(|i| [3 * i - 10, -i * i]).collect();
         check(cases, &pass, &config, &Features::default(), &patches, apron)?;
     }
-    // The last patches whose world coordinates fit.
+    // The last patches whose world coordinates fit `i32`.
     let config = config(&json!({"patchSize": 9, "scaleFactor": 40.0, "seed": "far"}))?;
     let far = [[524_285, -524_287], [-524_287, 524_285]];
     check(cases, &pass, &config, &Features::default(), &far, 0)
@@ -99,7 +100,7 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             check(cases, &pass, &config, &features, &patches, apron)?;
         }
     }
-    // Every point of a patch, whose windows end anywhere in a word.
+    // Every point of a patch is injected, so that rows of windows end anywhere in a word.
     let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(FeatureMode::Additive))?;
     for (size, apron) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
         let config = config(&json!({"patchSize": size, "scaleFactor": 4.0, "seed": "dense"}))?;

@@ -1,4 +1,4 @@
-//! A blend of two fields.
+//! Benchmark cases of `terrain/morph`: a blend of two fields.
 
 use crate::Error;
 use crate::gpu::Buffer;
@@ -7,7 +7,7 @@ use crate::terrain::bench::{copy_of, some_heights};
 use crate::terrain::morph::reference::morph;
 use crate::terrain::morph::{Morph, MorphPass};
 
-/// As many points as a batch of 64 × 257².
+/// Measures as many points as a batch of 64 patches of 257² has.
 ///
 /// # Errors
 /// What the device reports.
@@ -20,7 +20,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let job = MorphPass::new(gpu)?.prepare(gpu, &buffers[0], &buffers[1], &heights)?;
     let params = Morph { time: 0.3 };
     job.set(gpu, params)?;
-    // Two words in and one out: one and a half copies.
+    // The kernel reads two words and writes one per point, which is one and a half copies.
     let copied = copy_of(gpu, points * 3 / 2)?;
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),

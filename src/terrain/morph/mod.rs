@@ -14,15 +14,16 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{MorphJob, MorphPass};
 
-/// `from + ⌊(to − from)·time⌋`, in integers: exact at both ends, and the same bits everywhere between.
+/// A blend of two fields: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
+/// computes the same bits in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Morph {
-    /// 0 (the first field) to 1 (the second), in steps of 1/65536.
+    /// 0 (the first field) to 1 (the second), rounded to steps of 1/65536.
     pub time: f64,
 }
 
 impl Morph {
-    /// Checks the time.
+    /// Checks that the time is in 0..=1.
     ///
     /// # Errors
     /// [`InputError`] that names `time`.
@@ -30,7 +31,7 @@ impl Morph {
         finite("time", self.time, 0.0, 1.0)
     }
 
-    /// The time in 1/65536.
+    /// The time in steps of 1/65536.
     pub fn fixed_time(&self) -> u32 {
         (self.time * 65_536.0).round_ties_even() as u32
     }

@@ -1,4 +1,4 @@
-//! `kernels/terrain/morph.wgsl`.
+//! The GPU pass of `kernels/terrain/morph.wgsl`.
 
 use super::Morph;
 use crate::gpu::bindings::terrain::morph as bindings;
@@ -21,7 +21,7 @@ impl MorphPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the blend of `from` and `to` into `heights`, all of one length.
+    /// Prepares the blend of `from` and `to` into `heights`; all three have one length.
     ///
     /// # Errors
     /// [`InputError`] for buffers of different lengths; [`GpuError`].
@@ -60,7 +60,7 @@ pub struct MorphJob {
 }
 
 impl MorphJob {
-    /// Chooses the time of the next submission.
+    /// Sets the time of the next submission.
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].

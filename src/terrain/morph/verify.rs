@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/morph.wgsl`.
+//! Parity cases of `kernels/terrain/morph.wgsl`.
 
 use crate::Error;
 use crate::gpu::Buffer;
@@ -9,7 +9,7 @@ use crate::terrain::morph::reference::morph;
 use crate::terrain::morph::{Morph, MorphPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
-/// Both ends and times between, lengths around workgroup boundaries, heights at the limit.
+/// The cases cover both ends and times between, lengths around workgroup boundaries, heights at the limit.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Slopes and unit normals.
+//! Benchmark cases of `terrain/normals`: slopes and unit normals.
 
 use crate::Error;
 use crate::gpu::Buffer;
@@ -8,7 +8,7 @@ use crate::terrain::fields::Fields;
 use crate::terrain::normals::NormalsPass;
 use crate::terrain::normals::reference::normals;
 
-/// A batch of 64: 4 bytes in, 20 out a point.
+/// Measures a batch of 64 patches: the kernel reads 4 bytes and writes 20 per point.
 ///
 /// # Errors
 /// What the device reports.
@@ -21,7 +21,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let points = (width as usize - 2).pow(2) * count as usize;
     let (slopes, units) = (Buffer::new(gpu, "slopes", points)?, Buffer::new(gpu, "normals", 3 * points)?);
     let job = NormalsPass::new(gpu)?.prepare(gpu, 1.0, &windows, &slopes, &units)?;
-    // Half of the bytes read, half written.
+    // A copy reads half of the bytes that it moves, and writes the other half.
     let copied = copy_of(gpu, 3 * points)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),

@@ -1,4 +1,4 @@
-//! Slopes of a field: integer central differences, exact, and unit normals from them.
+//! Slopes of height fields: exact integer central differences, and the unit normals that follow from them.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -11,10 +11,11 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::NormalsPass;
 
-/// How far a component of a unit normal may lie from the exact one, on any device.
+/// The largest error of a component of a unit normal on any device, against the exact one.
 ///
-/// With ε = 2⁻²³ (WGSL lets `+ − ×` and conversions round to either neighbour): a component of (−dx, 2·scale,
-/// −dy) carries ε, its square 3ε, a sum of three squares 5ε whatever the order or fusion, the square root of
-/// that 2.5ε; `inverseSqrt` adds 2 ULP ≤ 2ε, the product ε. With the component's own ε: 6.5ε < 8e-7 of a value
-/// of at most 1; the reference computes in f64 and rounds once (½ε).
+/// Let ε = 2⁻²³ (WGSL lets `+ − ×` and conversions round to either neighbour). A component of (−dx, 2·scale,
+/// −dy) carries a relative error of ε, its square 3ε, and a sum of three squares 5ε, whatever the order or
+/// fusion; the square root of that sum carries 2.5ε. `inverseSqrt` adds 2 ULP ≤ 2ε, and the product ε. With the
+/// component's own ε the total is 6.5ε < 8e-7 of a value of at most 1. The reference computes in f64 and rounds
+/// once (½ε).
 pub const NORMAL_BOUND: f32 = 8.5e-7;

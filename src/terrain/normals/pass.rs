@@ -1,4 +1,4 @@
-//! `kernels/terrain/normals.wgsl`.
+//! The GPU pass of `kernels/terrain/normals.wgsl`.
 
 use crate::Error;
 use crate::gpu::bindings::terrain::normals as bindings;
@@ -7,7 +7,7 @@ use crate::shared::terrain::normals::NormalsParams;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
-/// Computes slopes and unit normals.
+/// Computes the slopes and unit normals of height fields.
 #[derive(Debug, Clone)]
 pub struct NormalsPass {
     kernel: Kernel,
@@ -22,12 +22,12 @@ impl NormalsPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the slopes of `windows`, whose samples are `terrain_scale` apart: for every sample but the
-    /// rim, a central difference in `gradients` and three components (x, up, z) in `normals`.
-    ///
+    /// Prepares the slopes of `windows`, whose samples are `terrain_scale` world units apart. For every sample
+    /// but those of the outermost ring, `gradients` receives the central differences in 1/65536 units, and
+    /// `normals` three components (x, up, z).
     /// # Errors
-    /// [`crate::InputError`] for a spacing out of bounds, windows without a rim, or outputs that are too
-    /// short; [`GpuError`].
+    /// [`crate::InputError`] for a spacing out of bounds, for windows with nothing inside the outermost ring,
+    /// and for outputs that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

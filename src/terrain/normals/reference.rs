@@ -1,9 +1,9 @@
-//! Slopes and unit normals: reference of `kernels/terrain/normals.wgsl`.
+//! Slopes and unit normals: the CPU reference of `kernels/terrain/normals.wgsl`.
 
 use crate::terrain::config::HEIGHT_ONE;
 
-/// Central differences (h(x+1) − h(x−1), h(y+1) − h(y−1)) in 1/65536 units, and unit normals (x, up, z), of
-/// a window of `width` samples a row, cropped by one on every side.
+/// Central differences (h(x+1) − h(x−1), h(y+1) − h(y−1)) in 1/65536 units, and unit normals (x, up, z), of a
+/// window with `width` samples per row, without its outermost ring of samples.
 pub fn normals(window: &[i32], width: usize, terrain_scale: f64) -> (Vec<[i32; 2]>, Vec<[f32; 3]>) {
     let at = |x: usize, y: usize| window[y * width + x];
     let mut gradients = Vec::with_capacity((width - 2) * (width - 2));
@@ -16,9 +16,9 @@ pub fn normals(window: &[i32], width: usize, terrain_scale: f64) -> (Vec<[i32; 2
     (gradients, normals)
 }
 
-/// The unit normal of a central difference, in f64, rounded once.
+/// The unit normal of a pair of central differences, computed in f64 and rounded once.
 pub fn unit_normal(gradient: [i32; 2], terrain_scale: f64) -> [f32; 3] {
-    // The kernel is given this as an f32.
+    // The kernel receives this value as an f32.
     let run = f64::from((2.0 * terrain_scale * HEIGHT_ONE) as f32);
     let [dx, dy] = gradient.map(f64::from);
     let length = (dx * dx + run * run + dy * dy).sqrt();

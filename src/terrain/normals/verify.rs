@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/normals.wgsl`.
+//! Parity cases of `kernels/terrain/normals.wgsl`.
 
 use crate::Error;
 use crate::harness::poison::Poisoned;
@@ -8,7 +8,7 @@ use crate::terrain::normals::reference::normals;
 use crate::terrain::normals::{NORMAL_BOUND, NormalsPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
-/// Slopes from flat to the limit, spacings from small to large.
+/// The cases cover slopes from flat to the limit, spacings from small to large.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,4 +1,4 @@
-//! Windows around patches.
+//! Benchmark cases of `terrain/pad`: windows around patches.
 
 use crate::Error;
 use crate::gpu::Buffer;
@@ -9,7 +9,7 @@ use crate::terrain::fields::Fields;
 use crate::terrain::pad::reference::pad;
 use crate::terrain::pad::{PadPass, surrounds};
 
-/// An 8×8 grid.
+/// Measures a grid of 8 × 8 patches.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,5 +1,6 @@
-//! Windows around patches of a batch: what `seamless` generates directly, `wrap` and `blend` gather from
-//! the patch itself or from its neighbours, so that the stencils after generation work on every border mode.
+//! Windows around the patches of a batch. `seamless` terrain generates its windows directly; `wrap` and `blend`
+//! gather them here, from the patch itself or from its neighbours, so that the stencils after generation work
+//! in every border mode.
 
 use crate::InputError;
 use crate::terrain::config::{Border, Config};
@@ -15,11 +16,12 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::PadPass;
 
-/// Indices of the nine patches around and at a patch, row by row. Where one is missing, the window goes on
-/// with the nearest sample that there is.
+/// Indices of the nine patches at and around a patch, row by row. Where one is missing, the window repeats the
+/// nearest sample that exists.
 pub type Surround = [Option<usize>; 9];
 
-/// The surroundings of every patch of a batch: itself for `wrap`, the batch's patches for `blend`.
+/// The surroundings of every patch of a batch: for `wrap` the patch itself on every side, for `blend` the
+/// batch's patches.
 pub fn surrounds(config: &Config, patches: &[[i32; 2]]) -> Vec<Surround> {
     let index: std::collections::HashMap<_, _> =
         patches.iter().enumerate().map(|(index, patch)| (*patch, index)).collect();
@@ -38,7 +40,7 @@ pub fn surrounds(config: &Config, patches: &[[i32; 2]]) -> Vec<Surround> {
         .collect()
 }
 
-/// Checks that windows do not reach past the neighbours.
+/// Checks that windows do not extend beyond the adjacent patches.
 ///
 /// # Errors
 /// [`InputError`] when `apron` is patchSize or more.

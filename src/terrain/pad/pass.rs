@@ -1,4 +1,4 @@
-//! `kernels/terrain/pad.wgsl`.
+//! The GPU pass of `kernels/terrain/pad.wgsl`.
 
 use super::{Surround, validate};
 use crate::gpu::bindings::terrain::pad as bindings;
@@ -22,13 +22,13 @@ impl PadPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares windows that reach `apron` samples beyond patches, one for each of `surrounds`, from `parts`, where
-    /// the patches lie one after the other, to `windows`. Surroundings are counted through all parts.
-    ///
+    /// Prepares windows that extend `apron` samples beyond their patches, one for each of `surrounds`. It reads
+    /// `parts`, which hold the patches one after the other, and writes `windows`. Surroundings are counted
+    /// through all parts.
     /// # Errors
-    /// [`InputError`] when the reach is the size of a patch or more, a surrounding lacks its own patch or names one
-    /// beyond `parts`, parts have different widths or heights that are too short, or `windows` is too short;
-    /// [`GpuError`].
+    /// [`InputError`] when the reach is the size of a patch or more, when a surrounding lacks its own patch or
+    /// names one beyond `parts`, when parts have different widths or heights that are too short, or when
+    /// `windows` is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -65,7 +65,7 @@ impl PadPass {
     }
 }
 
-/// The kernel's indices for the dispatch that reads `part`; nothing when no tile lies there.
+/// The kernel's indices for the dispatch that reads `part`, or `None` when no tile lies there.
 fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
     let here = |tile: &Option<Place>| tile.is_some_and(|place| place.part == part);
     tiles.iter().any(here).then(|| {
@@ -79,7 +79,7 @@ fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
     })
 }
 
-/// Checks that every patch is there itself, and that all of them are among `count`.
+/// Checks that every surrounding has its own patch, and that all indices are below `count`.
 fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputError> {
     for (index, around) in surrounds.iter().enumerate() {
         if around[4].is_none() {

@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/pad.wgsl`.
+//! Parity cases of `kernels/terrain/pad.wgsl`.
 
 use serde_json::json;
 
@@ -12,8 +12,8 @@ use crate::terrain::pad::reference::pad;
 use crate::terrain::pad::{PadPass, surrounds};
 use crate::terrain::verify::{LIMIT, config, random_heights};
 
-/// Wrapping patches, whole grids and grids with holes, every reach up to the patch's edge, patches in one buffer and in
-/// several.
+/// The cases cover wrapping patches, whole grids and grids with holes, every reach up to the patch's edge, and
+/// patches in one buffer and in several.
 ///
 /// # Errors
 /// What the device reports.
@@ -31,7 +31,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Patches with at most so many to a buffer.
+/// Compares patches that are stored with at most `most` to a buffer.
 fn case(
     cases: &mut Cases<'_>,
     pass: &PadPass,

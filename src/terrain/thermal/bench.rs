@@ -1,4 +1,4 @@
-//! Thermal erosion, by the iteration.
+//! Benchmark cases of `terrain/thermal`: thermal erosion, by the iteration.
 
 use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
@@ -7,7 +7,7 @@ use crate::terrain::fields::Fields;
 use crate::terrain::thermal::reference::thermal;
 use crate::terrain::thermal::{Thermal, ThermalPass};
 
-/// One iteration of a batch of 64, and fifty of one field of 513².
+/// Measures one iteration of a batch of 64 patches, and fifty of one field of 513².
 ///
 /// # Errors
 /// What the device reports.

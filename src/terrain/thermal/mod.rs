@@ -1,4 +1,4 @@
-//! Thermal erosion: slopes steeper than the talus angle slide (spec section 1.3).
+//! Thermal erosion: material slides down slopes that are steeper than the talus angle.
 
 use crate::InputError;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
@@ -14,14 +14,14 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::ThermalPass;
 
-/// Every iteration moves, between each pair of 4-neighbours whose heights differ by more than the talus
-/// allows, an eighth of the excess downhill. Conserves mass to the last bit; reaches one sample an
-/// iteration.
+/// In every iteration, each pair of 4-neighbours whose heights differ by more than the talus angle allows moves
+/// an eighth of the excess downhill. Mass is conserved to the last bit. An iteration reads samples at most one
+/// sample away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thermal {
-    /// Iterations, at most 1024.
+    /// Number of iterations, at most 1024.
     pub iterations: u32,
-    /// The steepest stable slope, in degrees: 0 to 89. Default 35.
+    /// The steepest stable slope, in degrees, 0 to 89. Default 35.
     pub talus: f64,
 }
 
@@ -43,7 +43,7 @@ impl Thermal {
         finite("talus", self.talus, 0.0, 89.0)
     }
 
-    /// T: the stable difference between neighbours `terrain_scale` apart, in 1/65536 units.
+    /// T: the largest stable difference between neighbours that are `terrain_scale` apart, in 1/65536 units.
     pub fn fixed_threshold(&self, terrain_scale: f64) -> i32 {
         let difference = libm::tan(self.talus.to_radians()) * terrain_scale * HEIGHT_ONE;
         // No two heights differ by more than twice the limit.

@@ -1,4 +1,4 @@
-//! `kernels/terrain/thermal.wgsl`, an iteration a dispatch.
+//! The GPU pass of `kernels/terrain/thermal.wgsl`, one iteration per dispatch.
 
 use super::Thermal;
 use crate::Error;
@@ -8,7 +8,7 @@ use crate::shared::terrain::thermal::ThermalParams;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
-/// Erodes slopes.
+/// Applies thermal erosion.
 #[derive(Debug, Clone)]
 pub struct ThermalPass {
     kernel: Kernel,
@@ -23,12 +23,13 @@ impl ThermalPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares all iterations, in turn between `windows` and `other`, which is as large. An iteration crops
-    /// one sample on every side; the result lies in `windows` if their number is even, else in `other`.
+    /// Prepares all iterations, which alternate between `windows` and the equally large `other`. Each iteration
+    /// drops the outermost ring of samples. The result lies in `windows` if the number of iterations is even,
+    /// else in `other`.
     ///
     /// # Errors
-    /// [`crate::InputError`] for parameters out of bounds, windows that the iterations use up, or a buffer that
-    /// is too short; [`GpuError`].
+    /// [`crate::InputError`] for parameters out of bounds, for windows that have too few rings for the
+    /// iterations, and for a buffer that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

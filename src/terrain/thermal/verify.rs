@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/thermal.wgsl`.
+//! Parity cases of `kernels/terrain/thermal.wgsl`.
 
 use crate::Error;
 use crate::harness::Cases;
@@ -10,7 +10,7 @@ use crate::terrain::thermal::reference::thermal;
 use crate::terrain::thermal::{Thermal, ThermalPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
-/// Odd and even numbers of iterations, angles from 0 up, heights at the limit. Both buffers are compared as a whole.
+/// The cases cover odd and even numbers of iterations, angles from 0 up, heights at the limit. Both buffers are compared as a whole.
 ///
 /// # Errors
 /// What the device reports.
@@ -28,7 +28,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 windows.heights.write(gpu, &fields)?;
                 let job = pass.prepare(gpu, params, 1.0, &windows, &other)?;
                 gpu.run("verify", |encoder| job.record(encoder))?;
-                // What an iteration leaves at the start of either buffer, over what was there.
+                // What the iterations leave in the first part of either buffer, over its previous contents.
                 let mut expected = [fields.clone(), vec![POISON as i32; fields.len()]];
                 let mut edge = width as usize;
                 for iteration in 1..=iterations as usize {

@@ -1,4 +1,4 @@
-//! Generation of patches by themselves.
+//! Benchmark cases of `terrain/wrap`: generation of patches by themselves.
 
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use crate::terrain::features::Features;
 use crate::terrain::wrap::reference::wrap;
 use crate::terrain::wrap::{WrapJob, WrapPass};
 
-/// A batch of 64.
+/// Measures a batch of 64 patches.
 ///
 /// # Errors
 /// What the device reports.

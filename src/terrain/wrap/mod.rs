@@ -1,5 +1,5 @@
-//! Heights of a patch by itself, whose neighbours wrap around (B section 3.3.1; spec section 1.2, `wrap`). A
-//! patch with equal corners tiles with itself bit for bit.
+//! Heights of a patch that is generated alone and whose neighbours wrap around (B section 3.3.1), for the
+//! border mode `wrap`. A patch with equal corners tiles with itself bit for bit.
 
 #[cfg(feature = "verify")]
 pub mod bench;

@@ -1,4 +1,4 @@
-//! `kernels/terrain/wrap.wgsl` over the levels of a batch of patches.
+//! The GPU pass of `kernels/terrain/wrap.wgsl`, one level per dispatch, for a batch of patches.
 
 use crate::Error;
 use crate::InputError;
@@ -11,7 +11,8 @@ use crate::terrain::fixed::FeatureMode;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
 
-/// Diamond-square heights of patches by themselves. Compiled for one distribution and one way of injection.
+/// Diamond-square heights of patches that are generated alone. A pass is compiled for one distribution and one
+/// mode of injection.
 #[derive(Debug, Clone)]
 pub struct WrapPass {
     first: Kernel,
@@ -20,7 +21,7 @@ pub struct WrapPass {
 }
 
 impl WrapPass {
-    /// Compiles the pipelines. `features` is how features are injected; without it there are none.
+    /// Compiles the pipelines. `features` is the mode of injection; `None` means that there are no features.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -33,8 +34,9 @@ impl WrapPass {
         Ok(Self { first: kernel(true)?, next: kernel(false)?, with_features: features.is_some() })
     }
 
-    /// Prepares generation of `count` patches into `output`, which holds patchSize² heights a patch, with
-    /// `scratch` of [`WrapJob::scratch_points`] and room for `feature_capacity` injected points.
+    /// Prepares the generation of `count` patches into `output`, which holds patchSize² heights per patch.
+    /// `scratch` holds [`WrapJob::scratch_points`] heights, and `feature_capacity` is the largest number of
+    /// injected points.
     ///
     /// # Errors
     /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short;
@@ -95,7 +97,7 @@ impl WrapPass {
     }
 }
 
-/// Generation of a batch of patches, prepared: set the patches, then record as often as wanted.
+/// The prepared generation of a batch of patches: set the patches, then record as often as wanted.
 #[derive(Debug, Clone)]
 pub struct WrapJob {
     config: Config,
@@ -107,13 +109,13 @@ pub struct WrapJob {
 }
 
 impl WrapJob {
-    /// Heights that the scratch must hold: about a quarter of the output.
+    /// The number of heights that the scratch must hold: about a quarter of the output.
     pub fn scratch_points(config: &Config, count: u32) -> usize {
         let width = (config.patch_size as usize - 1) / 2 + 1;
         count as usize * width * width
     }
 
-    /// Chooses the patches and features of the next recordings: at most `count` patches.
+    /// Sets the patches and features of the next recordings: at most `count` patches.
     ///
     /// # Errors
     /// [`InputError`] for patches out of bounds; [`GpuError::Limit`] for more features than there is room for.

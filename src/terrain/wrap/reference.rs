@@ -1,11 +1,11 @@
-//! Heights of a patch by itself, whose neighbours wrap around: reference of `kernels/terrain/wrap.wgsl`.
+//! Heights of a patch that wraps around onto itself: the CPU reference of `kernels/terrain/wrap.wgsl`.
 
 use crate::terrain::config::{Config, PATCH_EDGE};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject, mean_of_four};
 use crate::terrain::window::Lattice;
 
-/// The heights of one patch, rows of `patch_size` samples.
+/// The heights of one patch, in rows of `patch_size` samples.
 pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     let size = config.patch_size as usize;
     let torus = Torus {
@@ -65,7 +65,7 @@ impl Torus {
             let first = if (y / half).is_multiple_of(2) { half } else { 0 };
             for x in (first..size).step_by(step) {
                 let at = |x: usize, y: usize| grid[y * size + x];
-                // The neighbour left of column 0 is column S − 1 − half, and so on.
+                // The neighbour to the left of column 0 is column S − 1 − half, and so on.
                 let before = |i: usize| if i == 0 { self.last - half } else { i - half };
                 let after = |i: usize| if i == self.last { half } else { i + half };
                 let mean = mean_of_four(at(before(x), y), at(after(x), y), at(x, before(y)), at(x, after(y)));

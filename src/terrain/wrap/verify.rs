@@ -1,4 +1,4 @@
-//! Parity of `kernels/terrain/wrap.wgsl`.
+//! Parity cases of `kernels/terrain/wrap.wgsl`.
 
 use serde_json::json;
 
@@ -14,7 +14,7 @@ use crate::terrain::verify::{config, scattered};
 use crate::terrain::wrap::reference::wrap;
 use crate::terrain::wrap::{WrapJob, WrapPass};
 
-/// Every size and distribution, equal and unequal corners, features.
+/// The cases cover every size and distribution, equal and unequal corners, features.
 ///
 /// # Errors
 /// What the device reports.

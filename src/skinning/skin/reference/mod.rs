@@ -1,4 +1,4 @@
-//! Skinning: reference of `kernels/skinning/skin.wgsl`.
+//! Skinning: the CPU reference of `kernels/skinning/skin.wgsl`.
 
 pub mod weights;
 
@@ -11,10 +11,12 @@ use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::vertex::Vertex;
 
-/// Vertices where a palette takes them. `vertices` are a mesh's, morphed or not, and `influences` its own.
+/// Transforms vertices by a palette. `vertices` are those of a mesh, morphed or not, and `influences` are the
+/// mesh's own.
 ///
 /// # Panics
-/// With fewer influences than vertices, a reduction to none, or a palette of fewer bones than they name.
+/// With fewer influences than vertices, with an InstanceLod of 0 influences, and with a palette of fewer bones
+/// than the influences name.
 pub fn skin(
     vertices: &[Vertex],
     influences: &Influences,
@@ -25,8 +27,8 @@ pub fn skin(
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
 }
 
-/// The same for one instance of a crowd, whose vertices stay as they are where it is not seen, and in clusters beyond its
-/// level of detail. `clusters` are those of the mesh.
+/// As [`skin`], for one instance of a crowd: if it is not seen its vertices stay unchanged, and so do those in
+/// clusters beyond its level of detail. `clusters` are those of the mesh.
 ///
 /// # Panics
 /// As [`skin`].
@@ -46,7 +48,7 @@ pub fn skin_seen(
     }
 }
 
-/// The matrix of a vertex: `left` are its reduced influences.
+/// The blended matrix of a vertex; `left` are its reduced influences.
 pub fn blended(palette: &Palette, left: &[Influence]) -> Affine {
     match palette {
         Palette::Linear(bones) => mean(bones, left),
@@ -54,7 +56,7 @@ pub fn blended(palette: &Palette, left: &[Influence]) -> Affine {
     }
 }
 
-/// The weaker ones first, as the kernel knows the strongest weight last.
+/// The weaker influences first, because the kernel computes the strongest weight last.
 fn weaker_first(left: &[Influence]) -> impl Iterator<Item = &Influence> {
     left[1..].iter().chain(&left[..1])
 }
@@ -76,7 +78,7 @@ fn dual_mean(bones: &[DualBone], left: &[Influence]) -> Affine {
     let mut sum = DualBone { real: zero, dual: zero, diagonal: zero, above: zero };
     for influence in weaker_first(left) {
         let bone = &bones[influence.bone as usize];
-        // Of q and −q the one on the strongest one's side.
+        // Of q and −q, the one in the hemisphere of the strongest bone's quaternion.
         let side = if dot4(bone.real, strongest.real) < 0.0 { -influence.weight } else { influence.weight };
         sum.real = added(sum.real, side, bone.real);
         sum.dual = added(sum.dual, side, bone.dual);
@@ -90,12 +92,13 @@ fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// The matrix of a sum, whose rotation is not 0: the strongest weight is at least 1/8, and no other one is against it.
+/// The matrix of a sum. Its rotation is not 0: the strongest weight is at least 1/8, and no other bone opposes
+/// it.
 fn matrix_of(sum: &DualBone) -> Affine {
     let inverse = 1.0 / dot4(sum.real, sum.real);
     let [x, y, z, w] = sum.real;
     let [dx, dy, dz, dw] = sum.dual;
-    // Times 2 over the squared length, in place of normalizing.
+    // A factor of 2 over the squared length replaces normalization.
     let twice = 2.0 * inverse;
     let rotation = [
         [1.0 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)],
@@ -114,7 +117,7 @@ fn matrix_of(sum: &DualBone) -> Affine {
     })
 }
 
-/// A vertex that a matrix takes along.
+/// A vertex transformed by a matrix.
 pub fn transformed(vertex: &Vertex, [x, y, z]: &Affine) -> Vertex {
     let linear = |row: &[f32; 4], v: [f32; 3]| row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
     let position = [x, y, z].map(|row| linear(row, vertex.position) + row[3]);

@@ -1,14 +1,14 @@
-//! Which influences count, and how much: the part of the skinning kernel that reduces weights.
+//! The reduction of influences: the part of the skinning kernel that truncates and fades weights.
 
 use crate::asset::influences::Influence;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The influences that are left, the strongest first; their weights sum to 1. `influences` is what
-/// [`Influences::of`](crate::asset::Influences::of) gives: the strongest weight is never read, but what the others
-/// leave of 1.
+/// The remaining influences, the strongest first; their weights sum to 1. `influences` is what
+/// [`Influences::of`](crate::asset::Influences::of) gives. The weight of the strongest influence is not read:
+/// it is 1 minus the others.
 ///
 /// # Panics
-/// For a reduction to none: who is not seen has no vertices.
+/// For an InstanceLod of 0 influences, which belongs to an instance without vertices.
 pub fn reduced(influences: &[Influence], instance_lod: InstanceLod) -> Vec<Influence> {
     assert!(instance_lod.most > 0, "not seen");
     let most = influences.len().min(instance_lod.most as usize);
@@ -39,7 +39,7 @@ mod tests {
         Influences::new("w", 8, [given]).expect("valid").of(0).to_vec()
     }
 
-    /// Uneven ones, equal ones, one alone, nearly nothing.
+    /// Vertices with uneven weights, equal ones, a single one, and ones close to 0.
     fn vertices() -> Vec<Vec<Influence>> {
         let mut all = vec![vertex(&[1.0]), vertex(&[0.5, 0.5]), vertex(&[0.125; 8]), vertex(&[1.0, 1e-30])];
         for seed in 0..200_u32 {
@@ -60,7 +60,7 @@ mod tests {
             let mut before = vertex.len();
             for step in 0..=64 {
                 let left = reduced(&vertex, InstanceLod::fade(step as f32 / 64.0).expect("in range"));
-                // A sum of eight rounds seven times, by half an ulp of 1 at most.
+                // A sum of eight terms rounds seven times, by at most half an ulp of 1.
                 assert!((sum(&left) - 1.0).abs() <= 7.0 * f64::from(f32::EPSILON) / 2.0, "{left:?}");
                 assert!(left.iter().all(|influence| influence.weight > 0.0), "{left:?}");
                 assert!(left.is_sorted_by(|a, b| a.weight >= b.weight) && left.len() <= before);

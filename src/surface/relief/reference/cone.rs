@@ -1,12 +1,12 @@
-//! Reference of `wgsl/surface/cone.wgsl`.
+//! Cone stepping: the CPU reference of `wgsl/surface/cone.wgsl`.
 
 use super::grid::Grid;
 use super::linear::narrowed;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, March, Outcome, Ray};
 
-/// Cone stepping over the map's cones (highest corner and radius, row by row of cells), which were made for the
-/// march's address mode.
+/// Cone stepping over the map's cones (highest corner and radius, row by row of cells), which must have been
+/// computed for the march's address mode.
 pub fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hit {
     let grid = Grid::new(map, ray, march.address);
     let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();

@@ -1,20 +1,20 @@
-//! Reference of `wgsl/surface/flat.wgsl`.
+//! Methods that do not search: the CPU reference of `wgsl/surface/flat.wgsl`.
 
 use super::height::{BILINEAR, height};
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, March, Outcome, Ray};
 
-/// The polygon's own coordinates.
+/// The polygon's own texture coordinates.
 pub fn plain(ray: &Ray) -> Hit {
     Hit::of(ray, ray.polygon, 0, Outcome::Hit)
 }
 
-/// Kaneko's parallax.
+/// Kaneko's parallax mapping.
 pub fn parallax(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     shifted(map, ray, march, 1.0)
 }
 
-/// Welsh's offset limiting.
+/// Parallax mapping with Welsh's offset limiting.
 pub fn parallax_limited(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     shifted(map, ray, march, ray.cosine)
 }

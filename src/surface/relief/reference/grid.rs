@@ -1,4 +1,4 @@
-//! Reference of `wgsl/surface/grid.wgsl`.
+//! The grid of bilinear cells: the CPU reference of `wgsl/surface/grid.wgsl`.
 
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::Ray;
@@ -18,7 +18,8 @@ pub(crate) struct Grid {
     address: Address,
 }
 
-/// A square of cells: its index at its level, and its edges as cells from the base; the high ones are outside.
+/// A square of cells: its index at its level, and its edges in cells from the base; the upper edges are
+/// exclusive.
 pub(crate) struct Node {
     pub index: [i32; 2],
     low: [i32; 2],
@@ -80,7 +81,7 @@ impl Grid {
         [0, 1].map(|axis| at[axis].clamp(node.low[axis], node.high[axis] - 1))
     }
 
-    /// The cell of the ray's point at a parameter.
+    /// The cell in which the ray is at a parameter.
     pub fn at(&self, parameter: f32) -> [i32; 2] {
         [0, 1].map(|axis| (self.start[axis] + parameter * self.travel[axis]).floor() as i32)
     }
@@ -98,7 +99,7 @@ impl Grid {
         [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| map.texel(first[0] + dx, first[1] + dy, self.address))
     }
 
-    /// The first parameter in enter..=leave at which the ray is at or under a cell's bilinear patch, or -1.
+    /// The first parameter in enter..=leave at which the ray is on or below a cell's bilinear patch, or -1.
     pub fn patch(&self, corners: [f32; 4], low: [i32; 2], enter: f32, leave: f32) -> f32 {
         let [h00, h10, h01, h11] = corners;
         let at = [0, 1].map(|i| (self.start[i] - low[i] as f32) + enter * self.travel[i]);
@@ -128,7 +129,7 @@ impl Grid {
 }
 
 impl Node {
-    /// The corner of a leaf that its patch counts from.
+    /// The corner from which a leaf's patch is counted.
     pub fn corner(&self) -> [i32; 2] {
         [0, 1].map(|axis| if self.low[axis] == -FAR { self.high[axis] - 1 } else { self.low[axis] })
     }

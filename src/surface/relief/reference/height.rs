@@ -1,8 +1,8 @@
-//! Reference of `wgsl/surface/height.wgsl`.
+//! Bilinear heights: the CPU reference of `wgsl/surface/height.wgsl`.
 
 use crate::surface::map::{Address, HeightMap};
 
-/// Texel loads of one bilinear height.
+/// Number of texel loads of one bilinear height.
 pub const BILINEAR: u32 = 4;
 
 /// The bilinear height at `uv`.

@@ -1,10 +1,10 @@
-//! Reference of `wgsl/surface/linear.wgsl`.
+//! Linear search: the CPU reference of `wgsl/surface/linear.wgsl`.
 
 use super::height::{BILINEAR, height};
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, MAX_BINARY, MAX_STEPS, March, Outcome, Ray};
 
-/// Where a linear search stopped.
+/// The two points between which a linear search stopped.
 struct Bracket {
     above: f32,
     under: f32,
@@ -38,13 +38,13 @@ fn search(map: &HeightMap, ray: &Ray, march: &March) -> Bracket {
     bracket
 }
 
-/// Linear, then binary search.
+/// Linear search, then binary search.
 pub fn relief(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     let bracket = search(map, ray, march);
     narrowed(map, ray, march, [bracket.above, bracket.under], bracket.samples)
 }
 
-/// Binary steps between a point above the surface and one at or under it.
+/// Binary search between a point above the surface and one on or below it.
 pub(crate) fn narrowed(
     map: &HeightMap,
     ray: &Ray,
@@ -64,7 +64,7 @@ pub(crate) fn narrowed(
     Hit::of(ray, 0.5 * (above + under), samples, Outcome::Hit)
 }
 
-/// Linear search, then the segment between the last two samples.
+/// Linear search, then the intersection with the segment between the last two samples.
 pub fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     let mut bracket = search(map, ray, march);
     if bracket.above == 0.0 {

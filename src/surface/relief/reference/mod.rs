@@ -1,4 +1,4 @@
-//! Reference of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
+//! All methods: the CPU reference of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
 
 pub mod cone;
 pub mod flat;
@@ -19,21 +19,21 @@ use crate::surface::relief::reference::linear::{occlusion, relief};
 use crate::surface::relief::reference::quadtree::quadtree;
 use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
 
-/// A height map with what accelerates a method.
+/// A height map with the acceleration map of a method.
 #[derive(Debug, Clone)]
 pub struct Surface<'a> {
     /// The heights.
     pub map: &'a HeightMap,
-    /// The address mode that its maps were made for, and that it is traced with.
+    /// The address mode for which its maps were computed, and with which it is traced.
     pub address: Address,
-    /// Its pyramid, for [`Method::Quadtree`]; else empty.
+    /// Its pyramid, for [`Method::Quadtree`]; empty for other methods.
     pub pyramid: Vec<f32>,
-    /// Its cones, for [`Method::Cone`]; else empty.
+    /// Its cones, for [`Method::Cone`]; empty for other methods.
     pub cones: Vec<[f32; 2]>,
 }
 
 impl<'a> Surface<'a> {
-    /// Makes the maps that `method` needs.
+    /// Computes the maps that `method` needs.
     pub fn new(map: &'a HeightMap, method: Method, address: Address) -> Self {
         let pyramid = match method {
             Method::Quadtree | Method::Cone => height_pyramid(map, address),
@@ -43,7 +43,7 @@ impl<'a> Surface<'a> {
         Self { map, address, pyramid, cones }
     }
 
-    /// Where a ray meets the surface, as `method` finds it, in the surface's own address mode.
+    /// Traces a ray with `method`, in the surface's own address mode.
     pub fn trace(&self, method: Method, ray: &Ray, march: &March) -> Hit {
         if ray.cosine.is_nan() || ray.cosine <= 0.0 {
             return Hit::of(ray, ray.polygon, 0, Outcome::Miss);
@@ -60,7 +60,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// [`Surface::trace`] for a list of rays, on all threads.
+    /// As [`Surface::trace`], for a list of rays, on all threads.
     pub fn trace_all(&self, method: Method, rays: &[Ray], march: &March) -> Vec<Hit> {
         rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
     }

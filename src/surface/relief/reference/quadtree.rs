@@ -1,11 +1,11 @@
-//! Reference of `wgsl/surface/quadtree.wgsl`.
+//! Max-mip traversal: the CPU reference of `wgsl/surface/quadtree.wgsl`.
 
 use super::grid::{Grid, Node};
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, March, Outcome, Ray};
 
-/// Max-mip traversal over the map's pyramid, which was made for the march's address mode.
+/// Max-mip traversal over the map's pyramid, which must have been computed for the march's address mode.
 pub fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &March) -> Hit {
     let layout = PyramidLayout::new([map.width(), map.height()], march.address);
     let grid = Grid::new(map, ray, march.address);

@@ -1,10 +1,11 @@
-//! Reference of `wgsl/surface/shadow.wgsl`.
+//! Self-shadow: the CPU reference of `wgsl/surface/shadow.wgsl`.
 
 use super::height::height;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
-/// The light's ray that ends in a point of the surface. `light` is the unit vector towards it in tangent space.
+/// The ray from the light to a point of the surface. `light` is the unit vector towards the light, in tangent
+/// space.
 pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     let steepness = -scale / light[2].max(LEAST_COSINE);
     let slope = [light[0] * steepness, light[1] * steepness];
@@ -13,15 +14,15 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     Ray { origin, slope, cosine: light[2], polygon: 0.0 }
 }
 
-/// What heights may differ by before a point shades itself, of the relief's depth.
+/// The height difference below which a point does not shade itself, as a fraction of the relief's depth.
 const BIAS: f32 = 0.005;
 
-/// Whether the light's ray ended above the point that it was sent to.
+/// Whether the light's ray ended above the point at which it was aimed.
 pub fn shaded(first: &Hit, hit: &Hit) -> bool {
     first.parameter < 1.0 - hit.height - BIAS
 }
 
-/// 0 in full shadow to 1 in full light.
+/// The light that reaches a point, 0 in full shadow to 1 in full light.
 pub fn soft_shadow(
     map: &HeightMap,
     hit: &Hit,
