@@ -111,8 +111,8 @@ pub struct DrawnRow {
 /// The times are medians over some forty frames of the run. The camera does not move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a point at rest; what
-/// the device reports.
+/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a
+/// point at rest; what the device reports.
 pub fn animation(
     gpu: Option<&Gpu>,
     subject: Subject<'_>,
@@ -129,7 +129,8 @@ pub fn animation(
 /// mesh has none).
 ///
 /// # Errors
-/// As [`animation`]; [`InputError`](crate::InputError) for fewer than 5 frames, a clip of more than an hour, and a model without meshes.
+/// As [`animation`]; [`InputError`](crate::InputError) for fewer than 5 frames, a clip of more than an hour, and a model
+/// without meshes.
 pub fn drawn(
     gpu: &Gpu,
     subject: Subject<'_>,

@@ -14,6 +14,7 @@ use super::setting::Setting;
 use super::stage::{Stage, mean_omega};
 use super::vertices::FrameCost;
 use crate::Error;
+use crate::asset::Mesh;
 use crate::gpu::{Gpu, TimedBy};
 
 /// What level of detail saves of whole frames, by distance.
@@ -137,8 +138,8 @@ impl SceneRow {
 /// move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their bounds, fewer than 11 frames, a clip that the model lacks or of more than an hour,
-/// and a model without meshes; what the device reports.
+/// [`InputError`](crate::InputError) for options out of their bounds, fewer than 11 frames, a clip that the model lacks or
+/// of more than an hour, and a model without meshes; what the device reports.
 pub fn scene(
     gpu: &Gpu,
     subject: Subject<'_>,
@@ -190,8 +191,8 @@ fn report(
 ) -> Result<SceneReport, Error> {
     let units = |metres: f32| metres / stage.metres_a_unit;
     let fade = |mesh| stage.fade(drawn.skinning, mesh).map(|ends| ends.map(units));
-    let levels = |(at, mesh)| {
-        let own = stage.levelled.as_ref().map_or(&[] as &[u32], |levelled| &levelled.own[at]);
+    let levels = |(at, mesh): (usize, &Mesh)| {
+        let own = stage.levelled.as_ref().map_or(&[][..], |levelled| &levelled.own[at]);
         LevelReport::of_mesh(mesh, own, &stage.level_begins(drawn.mesh, at), stage.metres_a_unit)
     };
     Ok(SceneReport {

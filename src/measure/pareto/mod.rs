@@ -77,7 +77,8 @@ pub struct ParetoReport {
 /// Everything runs on the CPU, by the references; the camera does not move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a point at rest.
+/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a
+/// point at rest.
 pub fn pareto(
     subject: Subject<'_>,
     options: &ParetoOptions,
