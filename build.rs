@@ -1,7 +1,7 @@
-//! Composes every shader of `kernels/` and `wgsl/render/` with WESL, validates the flat result with naga and
-//! writes it, with a manifest of entry points, bindings, override constants and structs, to `OUT_DIR`, and beside
-//! it the modules for others' shaders. An unknown import, an unused binding or an invalid shader fails the build
-//! and names file and line.
+//! Composes every shader of `kernels/` and `wgsl/render/` with WESL and validates the flat result with naga.
+//! Writes it to `OUT_DIR`, with a manifest of entry points, bindings, override constants and structs, and the
+//! modules for shaders outside the crate. An unknown import, an unused binding or an invalid shader fails the
+//! build with file and line.
 
 #[path = "build/limits.rs"]
 mod limits;
@@ -57,7 +57,8 @@ mod shaders {
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
     }
 
-    /// Writes the modules that others' shaders import: `module.wgsl` of a folder, with all that it imports.
+    /// Writes the modules for shaders outside the crate: `module.wgsl` of a folder, with everything that it
+    /// imports.
     fn write_modules(root: &Path, out: &Path, manifest: &mut String) {
         let mut all = Vec::new();
         for file in shader_files(&root.join("wgsl")) {
@@ -66,7 +67,7 @@ mod shaders {
             }
             let folder = file.parent().and_then(|folder| folder.file_name()).expect("below wgsl/");
             let name = folder.to_string_lossy().into_owned();
-            // WESL knows whether everything that is imported exists.
+            // WESL checks that every import exists.
             Shader::compose(root, &file, name.clone(), Keep::All);
             let source = modules::joined(root, &file);
             let module = Shader::validated(root, &file, name.clone(), source);
@@ -110,14 +111,14 @@ mod shaders {
         }
     }
 
-    /// What stays in a composed shader.
+    /// The declarations that stay in a composed shader.
     #[derive(Clone, Copy, PartialEq)]
     enum Keep {
-        /// What entry points reach.
+        /// Those that entry points reach.
         Entries,
-        /// And all that the file itself declares.
+        /// Those, and all that the file itself declares.
         Root,
-        /// Everything, also of imported modules.
+        /// All, also those of imported modules.
         All,
     }
 
@@ -126,7 +127,7 @@ mod shaders {
         let relative = file.strip_prefix(root).expect("below the root");
         let path = format!("package::{}", relative.with_extension("").display()).replace('/', "::");
         let mut compiler = wesl::Wesl::new(root);
-        // Eager: an import that nothing uses must exist too.
+        // Eager: an unused import must exist too.
         compiler.set_options(wesl::CompileOptions {
             lazy: false,
             strip: keep != Keep::All,
@@ -143,7 +144,7 @@ mod shaders {
 
     /// Names of the bindings that a file itself declares.
     fn declared_bindings(root: &Path, file: &Path) -> Vec<String> {
-        // Mangling changes the names of imports alone, and so tells them from the file's own.
+        // Mangling changes the names of imports only, which distinguishes them from the file's own.
         let flat = flatten(root, file, Keep::Root, wesl::ManglerKind::Escape);
         let module = naga::front::wgsl::parse_str(&flat)
             .unwrap_or_else(|error| refuse(file, &error.emit_to_string(&flat)));
@@ -154,7 +155,7 @@ mod shaders {
             .collect()
     }
 
-    /// The line that declares `name`, counted from 1; 0 where none does.
+    /// The line that declares `name`, counted from 1; 0 if none does.
     fn line_of(file: &Path, name: &str) -> usize {
         let source = std::fs::read_to_string(file).unwrap_or_default();
         let declares = |line: &str| {
@@ -179,7 +180,8 @@ mod shaders {
     impl Shader {
         fn compose(root: &Path, file: &Path, name: String, keep: Keep) -> Self {
             let relative = file.strip_prefix(root).expect("below the root");
-            // Without mangling the flat shader reads like its sources; a clash of names is a naga error.
+            // Without mangling the flat shader reads like its sources; naga reports a clash of names as an
+            // error.
             let flat = flatten(root, file, keep, wesl::ManglerKind::None);
             let flat = format!("// relievo {name}: generated from {}\n\n{flat}", relative.display());
             let shader = Self::validated(root, file, name, flat);
@@ -187,7 +189,7 @@ mod shaders {
             shader
         }
 
-        /// What naga knows of a flat shader.
+        /// The information of naga about a flat shader.
         fn validated(root: &Path, file: &Path, name: String, flat: String) -> Self {
             let relative = file.strip_prefix(root).expect("below the root");
             let module = naga::front::wgsl::parse_str(&flat).unwrap_or_else(|error| {
@@ -206,7 +208,7 @@ mod shaders {
         }
 
         /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat
-        /// shader lacks is one that nothing uses.
+        /// shader lacks is unused.
         fn refuse_unused_bindings(&self, root: &Path, file: &Path) {
             for name in declared_bindings(root, file) {
                 if !self.uses(&name) {
@@ -224,7 +226,7 @@ mod shaders {
             })
         }
 
-        /// Its name as a Rust constant.
+        /// The shader's name as a Rust constant.
         pub fn constant(&self) -> String {
             self.name.replace('/', "_").to_uppercase()
         }
@@ -274,7 +276,7 @@ mod shaders {
             text
         }
 
-        /// What a vertex entry takes from vertex buffers.
+        /// The vertex attributes of a vertex entry point.
         fn inputs(&self, function: &naga::Function) -> String {
             let mut inputs = Vec::new();
             for argument in &function.arguments {
@@ -349,7 +351,7 @@ mod shaders {
             found
         }
 
-        /// Whether a sampler reads the texture, rather than loads of texels alone.
+        /// Whether a sampler reads the texture, and not only texel loads.
         fn is_sampled(&self, texture: naga::Handle<naga::GlobalVariable>) -> bool {
             (0..self.module.entry_points.len()).any(|entry| {
                 self.info.get_entry_point(entry).sampling_set.iter().any(|key| key.image == texture)
@@ -377,8 +379,8 @@ mod shaders {
         }
     }
 
-    /// Where a line of the flat shader comes from: the source line that it starts with, spaces aside. WESL
-    /// writes a statement of several lines as one, so the longest start wins.
+    /// The source line from which a line of the flat shader comes: the one whose text it starts with, spaces
+    /// aside. WESL writes a statement of several lines as one, so the longest match wins.
     fn origin(root: &Path, flat: &str, line: usize) -> String {
         let squeeze = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
         let flat_line =

@@ -1,8 +1,8 @@
-//! Rust for what kernels and host share, generated from the composed WGSL: structs and constants, and for every kernel
-//! its override constants and the resources of each bind group, by name and type.
+//! Generates the Rust that kernels and host share from the composed WGSL: structs and constants, and for every
+//! kernel its override constants and the resources of each bind group, by name and type.
 //!
-//! `shared.rs` needs no graphics library: a module a WGSL file, with the structs that lie in buffers and the constants
-//! of that file. `bindings.rs` needs the feature `gpu`: a module a kernel.
+//! `shared.rs` needs no graphics library. It has one module per WGSL file, with the constants of that file and
+//! its structs that lie in buffers. `bindings.rs` needs the feature `gpu` and has one module per kernel.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,7 +15,8 @@ use crate::shaders::{Shader, refuse};
 /// A WGSL file's structs and constants as Rust, by name.
 type Items = BTreeMap<String, String>;
 
-/// Generated modules: of `shared.rs`, by the path of their WGSL file without `kernels/` or `wgsl/`; of `bindings.rs`.
+/// The generated modules: those of `shared.rs`, by the path of their WGSL file without `kernels/` or `wgsl/`,
+/// and those of `bindings.rs`.
 #[derive(Default)]
 pub struct Bindings {
     shared: BTreeMap<String, Items>,
@@ -23,7 +24,7 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// Adds what a kernel shares with the host.
+    /// Adds the items that a kernel shares with the host.
     pub fn add(&mut self, root: &Path, file: &Path, shader: &Shader) {
         let sources = Sources::of(root, file);
         let kernel = KernelBindings { root, file, shader, sources: &sources };
@@ -44,7 +45,7 @@ fn joined(items: &Items) -> String {
     items.values().map(String::as_str).collect::<Vec<_>>().join("\n")
 }
 
-/// `domain/file` and text as modules of modules.
+/// Modules given as `domain/file` and text, as nested Rust modules.
 fn nested(modules: &BTreeMap<String, String>) -> String {
     let mut text = String::new();
     let mut domain = "";
@@ -64,7 +65,7 @@ fn nested(modules: &BTreeMap<String, String>) -> String {
     if domain.is_empty() { text } else { text + "}\n" }
 }
 
-/// The files that a shader is composed of, its own first.
+/// The files of which a shader is composed, its own first.
 struct Sources(Vec<(PathBuf, String)>);
 
 impl Sources {
@@ -85,7 +86,7 @@ impl Sources {
             .filter_map(|path| {
                 let names = path.trim_end_matches(';').split("::").map(str::trim);
                 let mut file = root.to_path_buf();
-                // The last one or two are items; the longest start that is a file counts.
+                // The last one or two names are items; the longest prefix that is a file counts.
                 names.filter(|name| !name.starts_with('{')).find_map(|name| {
                     file.push(name);
                     let module = file.with_extension("wgsl");
@@ -151,10 +152,10 @@ impl Declaration<'_> {
     }
 }
 
-/// A doc comment; `fallback` where there is none.
+/// A doc comment, or `fallback` if there is no comment.
 fn doc(indent: &str, comment: &[&str], fallback: &str) -> String {
     let lines = if comment.is_empty() { vec![fallback] } else { comment.to_vec() };
-    // Links would lead nowhere from the generated module.
+    // Links would not resolve from the generated module.
     let plain = |line: &&str| line.replace("[`", "`").replace("`]", "`");
     lines.iter().map(|line| format!("{indent}/// {}\n", plain(line))).collect()
 }
@@ -171,7 +172,7 @@ impl KernelBindings<'_> {
         refuse(self.file.strip_prefix(self.root).unwrap_or(self.file), what)
     }
 
-    /// The constants of all files that the shader is made of, as far as it uses them.
+    /// The constants that the shader uses, from all its files.
     fn constants(&self, shared: &mut BTreeMap<String, Items>) {
         let module = &self.shader.module;
         for (_, constant) in module.constants.iter() {
@@ -311,7 +312,7 @@ impl KernelBindings<'_> {
         Vec::new()
     }
 
-    /// What a storage buffer has many of.
+    /// The element type of a storage buffer.
     fn element(&self, ty: Handle<Type>, shared: &mut BTreeMap<String, Items>) -> String {
         match &self.shader.module.types[ty].inner {
             TypeInner::Array { base, .. } => self.host_type(*base, Use::Storage, shared),
@@ -341,7 +342,7 @@ impl KernelBindings<'_> {
         }
     }
 
-    /// Adds a struct to its file's module; its path, or where it has holes, as many words.
+    /// Adds a struct to its file's module. Returns its path or, for a struct with padding, an array of words.
     fn structure(
         &self,
         name: &str,
@@ -371,7 +372,7 @@ impl KernelBindings<'_> {
             let ty = self.host_type(member.ty, used, shared);
             let comment = comments.get(&field).cloned().unwrap_or_default();
             fields += &doc("    ", &comment, &format!("`{field}` of the shader."));
-            // An aligned member of a uniform: encase must know.
+            // An aligned member of a uniform, which encase must know.
             if used == Use::Uniform
                 && declaration
                     .text
@@ -406,7 +407,7 @@ impl KernelBindings<'_> {
     }
 }
 
-/// Whether a type holds whole numbers alone.
+/// Whether a type consists of integers only.
 fn is_whole(ty: &TypeInner) -> bool {
     match ty {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) | TypeInner::Vector { scalar, .. } => {
@@ -416,7 +417,7 @@ fn is_whole(ty: &TypeInner) -> bool {
     }
 }
 
-/// Where a type is used, which decides how the host lays it out.
+/// The use of a type, which decides its layout on the host.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
     /// Written by encase.
@@ -446,7 +447,7 @@ fn scalar_name(scalar: Scalar) -> &'static str {
     }
 }
 
-/// Type and value.
+/// The Rust type and the value of a literal.
 fn literal_text(literal: Literal) -> Option<(&'static str, String)> {
     Some(match literal {
         Literal::Bool(value) => ("bool", value.to_string()),

@@ -1,9 +1,9 @@
-//! What shaders need beyond the limits that every WebGPU device has.
+//! Finds what shaders need beyond the limits that every WebGPU device has.
 
 use naga::valid::ModuleInfo;
 use naga::{AddressSpace, ShaderStage, TypeInner};
 
-/// WebGPU's default limits (W3C, "WebGPU", section 3.6.2) that a shader alone can exceed.
+/// WebGPU's default limits (W3C, "WebGPU", section 3.6.2) that a single shader can exceed.
 const DEFAULTS: &[(&str, u32)] = &[
     ("maxBindGroups", 4),
     ("maxStorageBuffersPerShaderStage", 8),
@@ -17,7 +17,7 @@ const DEFAULTS: &[(&str, u32)] = &[
     ("maxComputeWorkgroupStorageSize", 16_384),
 ];
 
-/// The limits that a shader needs raised, and to what.
+/// The limits that a shader needs raised, with the values it needs.
 pub fn beyond_defaults(module: &naga::Module, info: &ModuleInfo) -> Vec<(&'static str, u32)> {
     let needs = |limit: &str| {
         let groups = module.global_variables.iter().filter_map(|(_, variable)| variable.binding.as_ref());
@@ -44,7 +44,8 @@ pub fn beyond_defaults(module: &naga::Module, info: &ModuleInfo) -> Vec<(&'stati
         .collect()
 }
 
-/// The most bindings of a kind that one stage uses. A pipeline's layout counts what any entry of the stage uses.
+/// The largest number of bindings of a kind that one stage uses. A pipeline's layout counts those of every
+/// entry point of the stage.
 fn most_bound(
     module: &naga::Module,
     info: &ModuleInfo,
@@ -70,7 +71,7 @@ fn most_bound(
         .unwrap_or(0)
 }
 
-/// The largest workgroup of any entry, by what `limit` counts.
+/// The largest workgroup of any entry point, measured as `limit` does.
 fn most_of_workgroups(module: &naga::Module, info: &ModuleInfo, limit: &str) -> u32 {
     let of_entry = |(index, entry): (usize, &naga::EntryPoint)| {
         let [x, y, z] = entry.workgroup_size;
@@ -86,7 +87,7 @@ fn most_of_workgroups(module: &naga::Module, info: &ModuleInfo, limit: &str) -> 
     module.entry_points.iter().enumerate().map(of_entry).max().unwrap_or(0)
 }
 
-/// Bytes of workgroup memory of an entry, each variable rounded up to 16 as the specification counts.
+/// Bytes of workgroup memory of an entry point, with each variable rounded up to 16 as WebGPU requires.
 fn workgroup_bytes(module: &naga::Module, info: &ModuleInfo, entry: usize) -> u32 {
     let variables = module.global_variables.iter();
     let used = variables.filter(|(handle, variable)| {

@@ -1,5 +1,5 @@
-//! Modules for others' shaders: the files of a folder of `wgsl/`, with all that they import, as one text that needs no
-//! WESL and keeps its comments.
+//! Joins modules for shaders outside the crate: the files of a folder of `wgsl/`, with everything that they
+//! import, as one text that needs no WESL and keeps its comments.
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +41,7 @@ fn imported_file(root: &Path, importing: &Path, import: &str) -> PathBuf {
     root.join(path).with_extension("wgsl")
 }
 
-/// What keeps a shader from being a module that can stand before any other.
+/// The reason why a shader cannot be put before other shaders, if there is one.
 pub fn unfit(module: &naga::Module) -> Option<String> {
     let bound = module.global_variables.iter().find(|(_, variable)| variable.binding.is_some());
     let entry = module.entry_points.first().map(|entry| entry.name.as_str());

@@ -1,11 +1,12 @@
-//! Several characters in one picture: the built-in creature, and every `.glb` or `.gltf` that is named. Each plays its
-//! first clip; instances are posed, seen, faded, skinned and drawn by the device, with as few influences and triangles as
-//! it takes for no vertex to be more than half a pixel off. Writes `characters.png`.
+//! Several characters in one picture: the built-in creature, and every `.glb` or `.gltf` given as an argument.
+//! Each plays its first clip. The device poses, culls, fades, skins and draws the instances, with as few
+//! influences and triangles as possible while no vertex is more than half a pixel off. Writes `characters.png`.
 //!
-//! The half pixel is the sum of two quarters. One is for influences that fade: every vertex that is drawn. The other is
-//! for triangles: from every vertex of a mesh to what is drawn of it. Both against the same pose with all influences and
-//! triangles, in the clip that is played, looked at 60 times a second. Normals and textures are no part of it; places
-//! between vertices may be further off ([`relievo::skinning::MeshLevels::new`] says how far).
+//! The half pixel is the sum of two quarters. One is for the fade of influences, and bounds the error of every
+//! drawn vertex. The other is for fewer triangles, and bounds the distance from every vertex of a mesh to the
+//! drawn surface. Both compare with the same pose under all influences and triangles, in the clip that is
+//! played, sampled 60 times a second. Normals and textures do not count; points between vertices may be further
+//! off ([`relievo::skinning::MeshLevels::new`] says how far).
 //!
 //! `cargo run --release --example characters -- [FILE …]`
 
@@ -24,34 +25,34 @@ use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::render::target::{COLOR_FORMAT, Target};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::samples::creature;
-use relievo::skinning::bounding_sphere::bounding_sphere_in_clips;
+use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::lod::placed;
 use relievo::skinning::picture::Light;
 use relievo::skinning::vertex::Blend;
 use relievo::skinning::{Extent, add_levels, level_errors, poses_of};
 use relievo::surface::mips::Mips;
 
-/// Instances of each character.
+/// Number of instances of each character.
 const COUNT: usize = 40;
 
-/// The picture.
+/// Size of the picture in pixels.
 const SIZE: [u32; 2] = [960, 540];
 
-/// Radians, vertical.
+/// Vertical field of view in radians.
 const FIELD_OF_VIEW: f32 = 0.8;
 
-/// How far vertices may be off because influences fade, and as far again because triangles are left out.
+/// The error in pixels permitted for the fade of influences, and again for fewer triangles.
 const PIXELS: f32 = 0.25;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Yours: `Gpu::from_wgpu(device, queue)`.
+    // In your program: `Gpu::from_wgpu(device, queue)`.
     let gpu = Gpu::headless(&Options::default())?;
     let mut models = vec![creature()?];
     for path in std::env::args().skip(1) {
         models.push(Model::from_file(path.as_ref())?);
     }
 
-    // At load time: pipelines and bind groups. What has no material is made of clay.
+    // At load time: pipelines and bind groups. Meshes without a material are drawn as clay.
     let clay = Mips::of_color(RgbaImage::from_pixel(1, 1, Rgba([200, 140, 98, 255])));
     let clay: Albedo = ColorTexture::new(&gpu, &clay, true)?.into();
     let mut crowd = CrowdScene::new(&gpu, COLOR_FORMAT, Light::default())?;
@@ -79,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 model,
                 matrices: posed.model_matrices(),
                 placements: &placements,
-                fade,
+                fade_range: fade,
                 levels: &levels,
                 blend: Blend::Linear,
                 albedos: &albedos,
@@ -102,7 +103,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         local_to_model.record(&mut encoder);
     }
     crowd.record(&mut encoder);
-    // Yours: any render pass with depth.
+    // In your program: any render pass with a depth buffer.
     target.record(&mut encoder, [0.02, 0.025, 0.03], |pass| crowd.draw(pass));
     gpu.queue().submit([encoder.finish()]);
 
@@ -110,23 +111,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Between which distances a model fades, and from where on it has each of its levels of detail.
+/// The distances between which a model fades, and those at which each of its levels of detail begins.
 fn ranges(model: &Model, poses: usize) -> Result<([f32; 2], Vec<f32>), relievo::InputError> {
-    let scale = scale(bounding_sphere_in_clips(model).1);
+    let scale = scale(BoundingSphere::in_clips(model).radius);
     let extent = Extent::of_model(model, &[0], poses)?.scaled(scale);
     let projection = Projection::new(SIZE[1], FIELD_OF_VIEW, 0.1);
     let errors = level_errors(&model.meshes).into_iter().map(|error| scale * error);
     Ok((extent.fade_range(&projection, PIXELS), extent.level_ranges(&projection, PIXELS, errors)))
 }
 
-/// Makes a ball three metres large.
+/// The scale at which a sphere has a diameter of three metres.
 fn scale(radius: f32) -> f32 {
     1.5 / radius.max(f32::MIN_POSITIVE)
 }
 
-/// In rows away from the eye, every character two metres large, turned every way.
+/// Placements in rows away from the eye, every character scaled to one size, each turned in its own direction.
 fn places(model: &Model, index: usize, characters: usize) -> Vec<Affine> {
-    let (center, radius) = bounding_sphere_in_clips(model);
+    let BoundingSphere { center, radius } = BoundingSphere::in_clips(model);
     let scale = scale(radius);
     let place = |at: usize| {
         let (row, column) = (at / 8, (at % 8 * characters + index) as f32);

@@ -1,5 +1,5 @@
-//! A crowd under animation level of detail, recorded into an encoder of your own: no allocation and no wait a frame.
-//! Prints how many bones each frame interpolates.
+//! A crowd under animation level of detail, recorded into an encoder of your own without allocation or wait in
+//! a frame. Prints how many bones each frame interpolates.
 //!
 //! `cargo run --release --example crowd`
 
@@ -14,19 +14,19 @@ use relievo::gpu::{Gpu, Options};
 use relievo::samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Yours: `Gpu::from_wgpu(device, queue)`.
+    // In your program: `Gpu::from_wgpu(device, queue)`.
     let gpu = Gpu::headless(&Options::default())?;
 
     println!("{}", gpu.adapter());
 
-    // At load time: a model (or `Model::from_file`), its clips, and what the gate has to know of them.
+    // At load time: a model (or `Model::from_file`), its clips, and the gate's table.
     let model = creature()?;
     let clips: Vec<_> = model.clips.iter().collect();
     let set = ClipSet::new(&clips)?;
     let bone_radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
     let table = GateTable::of_bounds(&model.skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
 
-    // A thousand of them, each at a moment of its own, from 10 to 110 m away.
+    // A thousand instances, each at a time of its own in the clip, 10 to 110 m away.
     let count = 1000;
     let play = |at: usize| Instance::new(at as u32 % 3, Wrap::Loop, 0.618 * at as f32, 1.0);
     let instances: Vec<_> = (0..count).map(play).collect();
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let choice = Choice::Gate(Gate::Bounded);
     let frame = GatedFrame::new(&gpu, &model.skeleton, &buffers, &crowd, &table, choice)?;
 
-    // A frame: how far away each is, and how many pixels may be missed.
+    // Every frame: the distance of each instance, and the pixels that may be missed.
     let projection = Projection::new(1080, 1.0, 0.1);
     let lods: Vec<Lod> = (0..count)
         .map(|at| {
@@ -56,9 +56,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )?;
         let mut encoder = gpu.encoder("frame");
         frame.record(&mut encoder);
-        // `crowd.model_matrices()` are those of this frame now: three rows a bone, to bind wherever you draw.
+        // `crowd.model_matrices()` now holds the matrices of this frame: three rows per bone, to bind wherever
+        // you draw.
         gpu.queue().submit([encoder.finish()]);
-        // Looking waits for the device; a renderer would not.
+        // The readback waits for the device; a renderer would not do it.
         if number % 20 < 2 {
             let sampled = frame.active.pairs.dispatched.read_blocking(&gpu)?[3];
             println!("frame {number}: {sampled} of {} bones", crowd.pairs());

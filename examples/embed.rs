@@ -13,12 +13,12 @@ use relievo::terrain::height::{HeightBatch, HeightPass};
 use relievo::terrain::texture::Texture;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // What the program has already.
+    // The device of the embedding program.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
 
-    // Set-up. The margin of one sample lets shading agree across patches.
+    // Set-up. With a margin of one sample, shading agrees across patches.
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
     let config = Config::new(129, 40.0, "embedded")?;
     let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
@@ -31,13 +31,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Nine patches fit one buffer; a batch beyond 128 MiB has several parts, each with its own patches.
     scene.add(&gpu, &config, &batch.fields()[0], &patches, patches[0])?;
 
-    // A frame: choose the patches, then record.
+    // Every frame: choose the patches, then record.
     batch.set(&gpu, &patches, &Features::default())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     batch.record(&mut encoder);
     queue.submit([encoder.finish()]);
 
-    // The same ground on the CPU, to stand somebody on: height and normal of the triangle that is drawn.
+    // The same ground on the CPU, to place objects on it: height and normal of the triangle that is drawn.
     let fields = &batch.fields()[0];
     let heights = fields.heights.read_blocking(&gpu)?;
     let mut ground = Ground::new(&config)?;

@@ -1,5 +1,5 @@
-//! Relief in a material shader of your own: the ray-height methods come as WGSL to put before it, the height map and
-//! its pyramid as textures to bind. Draws `relief.png`.
+//! Relief in a material shader of your own: the ray-height methods are WGSL text to put before it, and the
+//! height map and its pyramid are textures to bind. Draws `relief.png`.
 //!
 //! `cargo run --example relief`
 
@@ -9,7 +9,8 @@ use relievo::samples::BuiltInMap;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::{Address, Method};
 
-/// The material: a wall seen at an angle. `surface_ray`, `surface_quadtree` and `surface_normal` are relievo's.
+/// The material: a wall seen at an angle. `surface_ray`, `surface_quadtree` and `surface_normal` come from
+/// relievo.
 const MATERIAL: &str = r#"
 @group(0) @binding(0) var heights: texture_2d<f32>;
 @group(0) @binding(1) var pyramid: texture_2d<f32>;
@@ -37,10 +38,10 @@ fn fragment(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
 "#;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Yours: `Gpu::from_wgpu(device, queue)`.
+    // In your program: `Gpu::from_wgpu(device, queue)`.
     let gpu = Gpu::headless(&Options::default())?;
     let map = BuiltInMap::Bricks.height_map(512)?;
-    // At load time: uploads the heights, and makes the pyramid on the device.
+    // At load time: uploads the heights, and computes the pyramid on the device.
     let textures = SurfaceTextures::new(&gpu, &map, Method::Quadtree, Address::Wrap)?;
 
     let surface = MODULES.iter().find(|module| module.name == "surface").ok_or("no such module")?;

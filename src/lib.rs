@@ -1,35 +1,46 @@
-//! relievo gives a renderer complexity that it cannot afford to store or compute in full. Every hot path is a
-//! WGSL compute or fragment pass, proven against a CPU reference on the adapter at hand.
+//! relievo gives a renderer complexity that it cannot afford to store or compute in full. Every hot path is a WGSL
+//! compute or fragment pass, and every compute kernel is verified against a CPU reference on the current adapter.
 //!
 //! # The map
 //!
-//! - [`asset`]: plain data: models with their skeletons, skins, clips, meshes and materials, and their import from glTF.
-//! - [`terrain`]: seeded heights that are the same bits on every device, features, erosion, colours.
-//! - [`surface`]: height maps, the ray-height methods with measured error and cost, acceleration maps, tangent
-//!   frames.
-//! - [`animation`]: sampling and concatenation, layers, gates, bounds, root motion, priorities of bones and keys.
-//! - [`skinning`]: meshes that follow skeletons, and their levels of detail.
-//! - [`mesh`]: meshes in fewer triangles.
-//! - `gpu`: a device of its own or the caller's, typed buffers, prepared jobs, timing, errors. Feature `gpu`, as is
-//!   `render`: a camera, an off-screen target, and passes that draw into the caller's render pass.
-//! - `samples`: a creature with clips, and height maps with their colours. Feature `samples`.
-//! - `verify` and `bench`: every kernel against its reference, and beside a copy of the same bytes. What `relievo verify` and
-//!   `relievo bench` run. Feature `verify`, with `harness` (comparators, clocks) and `baseline` (kernels to measure
-//!   against).
-//! - `measure`: what level of detail costs and shows, for the caller's own models: errors, times, pareto curves. Feature
-//!   `verify`.
-//! - [`srgb`]: bytes and linear light. [`mod@hash`]: counter-based random words.
-//! - [`error`]: bad input by field, value and bound.
+//! [`asset`] is plain data, independent of any device: models with their skeletons, skins, clips, meshes and
+//! materials, and their import from glTF. [`mesh`] simplifies meshes.
 //!
-//! An operation is a folder: parameters in its `mod.rs`, the CPU reference in `reference.rs`, which is also the path of
-//! machines without a GPU, the pass in `pass.rs`. `wgpu`, [`glam`] and [`image`] are exported, so that versions fit.
+//! [`terrain`] generates heights from a seed, the same bits on every device, and has injected features, erosion,
+//! normals and colour maps.
+//!
+//! [`surface`] has height maps, the ray-height methods with their measured error and cost, the maps that accelerate
+//! them, and tangent frames.
+//!
+//! [`animation`] samples and concatenates the bones of crowds, with layers, gates (animation level of detail),
+//! bounds, root motion, and priorities of bones and keys.
+//!
+//! [`skinning`] computes meshes that follow skeletons, their levels of detail, and which of their vertices need
+//! work in a frame.
+//!
+//! `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs, timing and errors. `render` has
+//! a camera, an off-screen target, and passes that draw in the caller's render pass. Both need the feature `gpu`.
+//!
+//! `samples` generates a creature with clips, and height maps with their colours. It needs the feature `samples`.
+//!
+//! `verify` compares every kernel with its reference (`relievo verify`), and `bench` measures it against a copy of
+//! the same bytes (`relievo bench`). They use `harness` (comparators and clocks) and `baseline` (kernels to measure
+//! against). All four need the feature `verify`.
+//!
+//! `measure` plays crowds of the caller's own models under level of detail, and reports what it saves and which errors
+//! it shows. It needs the feature `verify`.
+//!
+//! [`srgb`] converts between bytes and linear light. [`mod@hash`] draws counter-based random words. [`error`] names
+//! invalid input by field, value and bound.
+//!
+//! `wgpu`, [`glam`] and [`image`] are exported, so that the versions of an embedding program match.
 //!
 //! # Axes and units
 //!
 //! | what | convention |
 //! |---|---|
 //! | world | right-handed, +Y up, x east, z south; metres, seconds, radians |
-//! | height | `i32`, 1/65536 of a unit ([`terrain::config::HEIGHT_ONE`]); `f32` for drawing alone |
+//! | height | `i32`, 1/65536 of a unit ([`terrain::config::HEIGHT_ONE`]); `f32` only for drawing |
 //! | world coordinate of terrain | `i32`, 1/4096 of a patch's edge |
 //! | fields | square, row by row: y (south) outer, x (east) inner |
 //! | matrices | column-major; clip-space depth 0 (near) to 1 (far) |
@@ -38,10 +49,30 @@
 //!
 //! # The shape of an operation
 //!
-//! A *pass* compiles its pipelines once. `prepare` binds buffers and gives a *job*. `record` writes a job into the
-//! caller's command encoder: no hidden submission, no wait, no allocation.
+//! An operation is a folder: `mod.rs` has its parameters, `reference.rs` the CPU reference, which also serves machines
+//! without a GPU, and `pass.rs` the GPU pass. A *pass* compiles its pipelines once. Its `prepare` binds buffers and
+//! gives a *job*. `record` writes the job into the caller's command encoder, without submission, wait or allocation.
 //!
-//! # An example
+//! ```
+//! # #[cfg(feature = "gpu")] {
+//! use relievo::gpu::{Buffer, Gpu, Options};
+//! use relievo::terrain::morph::{Morph, MorphPass};
+//!
+//! let gpu = Gpu::headless(&Options::default())?; // or Gpu::from_wgpu(device, queue)
+//! let from = Buffer::from_slice(&gpu, "from", &[0, 65_536])?; // heights in 1/65536 units
+//! let to = Buffer::from_slice(&gpu, "to", &[65_536, 0])?;
+//! let heights = Buffer::new(&gpu, "heights", 2)?;
+//!
+//! let pass = MorphPass::new(&gpu)?;
+//! let job = pass.prepare(&gpu, &from, &to, &heights)?;
+//! job.set(&gpu, Morph { time: 0.25 })?;
+//! gpu.run("morph", |encoder| job.record(encoder))?; // or record it into your own encoder
+//! assert_eq!(heights.read_blocking(&gpu)?, [16_384, 49_152]);
+//! # }
+//! # Ok::<(), relievo::Error>(())
+//! ```
+//!
+//! # Without a GPU
 //!
 //! ```
 //! use relievo::terrain::field::field;

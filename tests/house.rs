@@ -1,4 +1,5 @@
-//! The house: which folder may use which, an operation's files, and no circle. Reads the sources as text.
+//! The structure of the sources: which folder may use which, an operation's files, and no circle. Reads the
+//! sources as text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -106,7 +107,7 @@ fn floor(name: &str) -> Option<usize> {
     FLOORS.iter().position(|floor| floor.contains(&name))
 }
 
-/// Uses of what does not lie below.
+/// Uses of folders that do not lie below.
 fn arrows_upward(sources: &[Source]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for source in sources.iter().filter(|source| !source.is_case()) {

@@ -1,4 +1,4 @@
-//! Device memory: at most two `i32` for a sample of the enlarged windows, whatever a recipe asks for.
+//! Device memory: at most two `i32` per sample of the enlarged windows, whatever the recipe.
 #![cfg(feature = "gpu")]
 
 #[path = "harness/mod.rs"]

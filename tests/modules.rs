@@ -1,5 +1,6 @@
-//! The modules for others' shaders, used as others do: put before a shader that this crate does not know
-//! (`tests/modules/`), compiled by wgpu, and compared with the reference and with closed forms.
+//! The modules for shaders outside the crate, used as such shaders use them: put before a shader that this
+//! crate does not know (`tests/modules/`), compiled by wgpu, and compared with the reference and with closed
+//! forms.
 #![cfg(feature = "gpu")]
 
 #[path = "harness/mod.rs"]
@@ -186,7 +187,7 @@ fn every_method_meets_a_flat_surface() {
     }
 }
 
-/// Vertices and bones go in as the kernels keep them, and come out where the bones' matrices take them.
+/// Vertices and bones are passed in the kernels' layout, and come out where the bones' matrices take them.
 #[test]
 fn vertices_go_where_a_palette_of_dual_quaternions_takes_them() {
     // A turn by 90 degrees, a mirror, an uneven stretch with shear, and a move.

@@ -184,7 +184,8 @@ fn characters(
     let extent = Extent::of_model(&fox, &[run], poses)?;
     let fade = extent.fade_range(&projection, 0.25);
     let levels = &extent.level_ranges(&projection, 0.25, level_errors(&fox.meshes));
-    let foxes = Character { model: &fox, matrices, placements, fade, levels, blend, albedos: &albedos };
+    let foxes =
+        Character { model: &fox, matrices, placements, fade_range: fade, levels, blend, albedos: &albedos };
     crowd.add(&gpu, &foxes)?;
     crowd.set_camera(&gpu, clip_from_world, eye)?;
     crowd.record(&mut encoder);

@@ -1,4 +1,5 @@
-//! Every kernel has parity cases and a benchmark, and stays within what WebGPU allows. Its files: `tests/house.rs`.
+//! Every kernel has parity cases and a benchmark, and stays within WebGPU's limits. `tests/house.rs` checks its
+//! files.
 #![cfg(feature = "gpu")]
 
 #[path = "harness/mod.rs"]
@@ -17,7 +18,7 @@ fn kernels() -> Vec<&'static str> {
     ALL.iter().filter(compute).map(|shader| shader.name).collect()
 }
 
-/// What the lists lack of a kernel.
+/// What the lists lack for a kernel.
 fn lacking(stem: &str) -> Vec<&'static str> {
     let verified = verify::STEMS.iter().any(|entry| entry.name == stem);
     let measured = bench::STEMS.iter().any(|entry| entry.name == stem);
@@ -99,7 +100,7 @@ fn kernels_have_one_compute_entry_and_render_passes_none() {
 /// Shaders that need more than WebGPU's default limits: `Dispatches::of` takes this one only where a device allows it.
 const OPTIONAL: &[&str] = &["animation/decide"];
 
-/// `Gpu::headless` opens devices that let shaders bind more, so nothing else would tell.
+/// `Gpu::headless` opens devices that permit more bindings, so nothing else would notice.
 #[test]
 fn all_but_optional_shaders_are_within_the_default_limits() {
     let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage;

@@ -1,5 +1,6 @@
-// Axis-aligned bounds of instances in the model's space: of balls around their bones, each as large as the bone reaches
-// and as the palette makes it. With WHOLE, a thread takes all bones of one instance, otherwise a workgroup does.
+// Axis-aligned bounds of instances in the model's space, around spheres at their bones: each has the bone's
+// radius and is transformed by the bone's matrix. With WHOLE, a thread handles all bones of one instance,
+// otherwise a workgroup does.
 
 override WHOLE: bool = false;
 
@@ -9,20 +10,20 @@ struct BoundsParams {
 }
 
 @group(0) @binding(0) var<uniform> params: BoundsParams;
-// Three rows a bone.
+// Three rows per bone.
 @group(0) @binding(1) var<storage, read> model_matrices: array<vec4<f32>>;
-// Of each bone, in its own space.
+// The radius of each bone, in its own space.
 @group(0) @binding(2) var<storage, read> bone_radii: array<f32>;
-// Lower and upper corner an instance.
+// Lower and upper corner per instance.
 @group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
 
 const THREADS = 64u;
-// See BOUNDS_GROWTH of the host.
+// BOUNDS_GROWTH of the host.
 const GROWTH = 1.0 + 1.0 / 524288.0;
 const OF_CENTRE = 1.0 / 2097152.0;
 // 2^-62
 const LEAST = 2.16840434e-19;
-// The largest f32, no digit more: compilers refuse what lies beyond.
+// The largest f32, with exactly these digits: some compilers refuse larger literals.
 const LARGEST = 3.4028234663852886e38;
 
 struct Box {
@@ -33,7 +34,7 @@ struct Box {
 var<workgroup> lows: array<vec3<f32>, THREADS>;
 var<workgroup> highs: array<vec3<f32>, THREADS>;
 
-// Around every `stride`-th bone.
+// The box around every `stride`-th bone.
 fn around(instance: u32, first: u32, stride: u32) -> Box {
     var low = vec3<f32>(LARGEST);
     var high = vec3<f32>(-LARGEST);
@@ -66,7 +67,7 @@ fn main(
             bounds[2u * instance + 1u] = vec4<f32>(found.high, 0.0);
         }
     } else {
-        // Of workgroups beyond the last instance nothing is written.
+        // Workgroups beyond the last instance write nothing.
         let own = around(workgroup, lane, THREADS);
         lows[lane] = own.low;
         highs[lane] = own.high;

@@ -1,20 +1,21 @@
-// Which bones are sampled when only so many may be: those whose stale transforms are expected to show most. Five
-// stages, a dispatch each. Equal ranks are served in the order of instances and slots, so every device decides alike.
+// Selects the bones that are sampled when their number is limited: those whose stale transforms are expected to
+// be most visible. There are five stages, one dispatch each. Equal ranks are served in the order of instances
+// and slots, so that every device decides alike.
 import package::wgsl::animation::gate_state::{Lod, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
 // One of the constants below.
 override STAGE: u32 = 0;
 
-// A thread ranks up to 32 bones of one instance, and counts the ranks.
+// A thread ranks up to 32 bones of one instance and counts the ranks.
 const RANK = 0u;
 // One workgroup finds the lowest rank that is served.
 const CHOOSE = 1u;
-// A thread takes what is above it, and counts who has just this rank.
+// A thread selects the bones above that rank and counts those that have it.
 const DECIDE = 2u;
-// One workgroup sums these over the instances.
+// One workgroup computes prefix sums of these counts over the instances.
 const SUM = 3u;
-// A thread serves them while there is room.
+// A thread selects bones of that rank while the budget lasts.
 const SETTLE = 4u;
 
 const WIDTH = 64u;
@@ -23,28 +24,30 @@ const RANKS = 1024u;
 struct BudgetParams {
     instances: u32,
     bones: u32,
-    // Words of bits an instance.
+    // Words of bits per instance.
     words: u32,
-    // Entries of a row of the table.
+    // Entries per row of the table.
     stride: u32,
-    // Bones that may be sampled.
+    // The largest number of bones that may be sampled.
     budget: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: BudgetParams;
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// Of each clip: its row of periods, then a bit for each bone that moves in it.
+// For each clip, the row of its periods, then one bit for each bone that moves in it.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
-// For each bone the sum of motion and its rise.
+// For each bone, the sum of motion and its rise to the next row.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
-// For each bone, the sum of motion when it was sampled last.
+// For each bone, the sum of motion when it was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// A bit for each bone; then likewise, those that are sampled ahead: none.
+// One bit per bone; then, in the same layout, the bones that are sampled ahead, of which there are none.
 @group(0) @binding(6) var<storage, read_write> bits: array<u32>;
-// Ranks, two a word and 16 words for each word of bits; then, bit by bit, those at the lowest rank that is served.
+// Ranks, two per word and 16 words for each word of bits; then one bit for each bone of the lowest rank that is
+// served.
 @group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
-// How many have each rank; then as named below; then, for each instance, how many have the lowest rank.
+// The number of bones of each rank; then the values that are named below; then, for each instance, the number
+// of bones of the lowest rank.
 @group(0) @binding(8) var<storage, read_write> tally: array<atomic<u32>>;
 
 const FORCED = 1024u;
@@ -56,7 +59,7 @@ var<workgroup> sums: array<u32, WIDTH>;
 
 struct KeyframeCursor {
     instance: u32,
-    // The first of its bones.
+    // The first of the instance's bones.
     slot: u32,
     candidates: u32,
     forced: u32,
@@ -80,7 +83,7 @@ fn is_unlimited() -> bool {
     return params.budget >= params.instances * params.bones;
 }
 
-// 1 to 768, by the logarithm of missed * weight: sixteen an octave.
+// The rank, 1 to 768, by the logarithm of missed * weight: sixteen ranks per octave.
 fn rank_of(missed: u32, weight: u32) -> u32 {
     let low = (missed & 0xffffu) * weight;
     let high = (missed >> 16u) * weight + (low >> 16u);
@@ -149,14 +152,14 @@ fn choose(lane: u32) {
     sums[lane] = sum;
     workgroupBarrier();
     if lane == 0u {
-        // What is left after those that are sampled in any case.
+        // What is left of the budget after bones that are sampled in any case.
         var room = params.budget - min(atomicExchange(&tally[FORCED], 0u), params.budget);
         var block = WIDTH;
         while block > 0u && sums[block - 1u] <= room {
             block--;
             room -= sums[block];
         }
-        // Rank 0 stands for no motion, and is never served.
+        // Rank 0 stands for no motion and is never served.
         var lowest = 0u;
         if block > 0u {
             lowest = chunk * block - 1u;

@@ -1,5 +1,5 @@
-// Where instances stand on the common timeline of their clip, in whole numbers, and whether anything but
-// the time asks for a new pose: what gates decide by. A thread looks at one instance.
+// The integer position of each instance on the common timeline of its clip, and the reason, other than time, to
+// update its pose. Gates decide by these. A thread handles one instance.
 import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::clip_clocks::clip_clocks;
 import package::wgsl::animation::clip_clock::{clip_clock_of, clip_clock_params};

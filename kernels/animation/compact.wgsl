@@ -1,19 +1,20 @@
-// From bits to lists: the pairs of instance and bone that are active, the slots that are updated since a bone above them is
-// active, the instances with any, and the arguments of the dispatches that serve them. Lists keep the order of the
-// instances and, within one, of its slots, on every device. Three stages, a dispatch each, or all in one.
+// Turns bits into lists: the active pairs of instance and bone, the slots that must be updated because a bone
+// at or above them is active, the instances that have any, and the arguments of the indirect dispatches. Lists
+// keep the order of instances and, within an instance, of its slots, on every device. There are three stages,
+// one dispatch each, or all in one.
 
 import package::wgsl::animation::compact::{WIDTH, compact_params, instances_of, list_instance, scan, scatter, spread};
 
 // One of the constants below.
 override STAGE: u32 = 0;
 
-// A thread spreads the active bits of one instance to all slots below them, and counts them.
+// A thread spreads the active bits of one instance to all slots below them, and counts the active ones.
 const SPREAD = 0u;
 // One workgroup sums the counts, lists the instances and writes the arguments.
 const SCAN = 1u;
 // A thread lists the pairs of one word.
 const SCATTER = 2u;
-// One workgroup does all of it: for small crowds where a dispatch costs more than a second processor gains.
+// One workgroup does everything, for small crowds where a dispatch costs more than further processors gain.
 const ALL = 3u;
 
 @compute @workgroup_size(64)

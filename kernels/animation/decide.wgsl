@@ -1,15 +1,15 @@
-// Phases, gate and lists of a small crowd in one dispatch, where a dispatch costs more than other processors gain. A
-// thread decides on whole instances, one after another.
+// Clip clocks, gate and lists of a small crowd in one dispatch, for adapters on which a dispatch costs more
+// than further processors gain. A thread decides for whole instances, one after another.
 import package::wgsl::animation::compact::{Spread, counts, instances_of, list_instance, scan, spread_word};
 import package::wgsl::animation::gate::{gate_params, gate_word, store_word};
 import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::clip_clocks::clip_clocks;
 import package::wgsl::animation::clip_clock::clip_clock_of;
 
-// As many as lavapipe runs at once: where there are more, they wait for each other at the barrier.
+// As many lanes as lavapipe runs at once: more would wait for each other at the barrier.
 const LANES = 8u;
 
-// How many of its bones are active.
+// Decides for an instance; returns the number of its active bones.
 fn decide_instance(instance: u32) -> u32 {
     let lod = lods[instance];
     let clip_clock = clip_clock_of(instance, lod.flags);

@@ -1,5 +1,6 @@
-// Which bones of which instances are sampled this frame. A thread decides on up to 32 bones of one instance; with BOUNDED,
-// on all of them, as what may be missed is shared out from parents to children.
+// Decides which bones of which instances are sampled this frame. A thread decides for up to 32 bones of one
+// instance; with BOUNDED, for all of them, because parents pass what they leave of the error budget to their
+// children.
 import package::wgsl::animation::gate::{BOUNDED, MODE, gate_params, gate_word, store_word};
 import package::wgsl::animation::gated::lods::lods;
 import package::wgsl::animation::gated::clip_clocks::clip_clocks;

@@ -1,6 +1,7 @@
-// Where instances stand in their clips: for each instance and timeline of its clip the key before, and the way to the
-// next. A thread finds one of them. With COMPACTED, only for instances of a list, all their layers included, and where
-// the base will stand when bones are sampled ahead.
+// The keyframe cursors of instances: for each instance and timeline of its clip, the key before the current
+// time and the fraction of the way to the next. A thread finds one cursor. With COMPACTED, only listed
+// instances are handled, with all their layers, and also the time of the base layer at which bones are sampled
+// ahead.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -9,12 +10,12 @@ import package::wgsl::animation::timeline::keyframe_cursor;
 override COMPACTED: bool = false;
 
 struct KeyframeCursorParams {
-    // Of all layers; and of one.
+    // Number of entries of all layers, and of one.
     entries: u32,
     instances: u32,
-    // Room of an instance for its places.
+    // Cursors allocated per instance.
     timelines: u32,
-    // Seconds since the instances' starts.
+    // Seconds since the starts of the instances.
     elapsed: f32,
 }
 
@@ -23,13 +24,14 @@ struct KeyframeCursorParams {
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // First time and number of keys.
 @group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
-// Binding 4: the times.
-// Key and, as bits, fraction; behind all layers those of the base ahead.
+// Binding 4 holds the key times. A cursor is a key and, as bits, a fraction; after those of all layers come
+// those of the base layer ahead.
 @group(0) @binding(5) var<storage, read_write> cursors: array<vec2<u32>>;
 @group(0) @binding(6) var<storage, read> updated_instances: array<u32>;
-// Of the first, w: how many instances are listed.
+// In the first vector, w is the number of listed instances.
 @group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
-// Of each instance of the base what gates saw; z: its time inside the clip, as bits; w: that ahead.
+// For each instance, what the gate saw of the base layer: z is the time inside the clip, as bits; w the time
+// ahead.
 @group(0) @binding(8) var<storage, read> history: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
@@ -42,7 +44,7 @@ fn main(
     let at = index / params.timelines;
     var entry = at;
     if COMPACTED {
-        // Layer by layer of one instance after another; last, the base ahead.
+        // Layer by layer of one instance after another; the base layer ahead comes last.
         let layers = params.entries / params.instances + 1u;
         let listed = at / layers;
         if listed >= dispatches[0].w {
@@ -64,7 +66,7 @@ fn main(
     let timeline = timelines[clip.first_timeline + timeline_index];
     var time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * params.elapsed);
     if COMPACTED && (is_ahead || entry < params.instances) {
-        // To the bit what the gate decided by: a key is passed for both or for neither.
+        // The exact time by which the gate decided, so that both count a key as passed or neither does.
         let seen = history[playing];
         if is_ahead && seen.w == seen.z {
             return;

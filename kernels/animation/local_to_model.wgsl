@@ -1,7 +1,7 @@
-// Concatenation into the model's space. A thread walks one chain of one instance, the parent's matrix in registers; a
-// dispatch serves the chains of one level, whose parents are done. With WHOLE, a thread walks all chains of its
-// instance. With COMPACTED, only instances of a list are walked, and of them only what is updated: with a bone always all
-// bones below it.
+// Concatenates local transforms into the model's space. A thread walks one chain of one instance and keeps the
+// parent's matrix in registers; a dispatch handles the chains of one level, whose parents are done. With WHOLE,
+// a thread walks all chains of its instance. With COMPACTED, only listed instances are walked, and of them only
+// updated slots, which always include all bones below an updated one.
 
 override WHOLE: bool = false;
 override COMPACTED: bool = false;
@@ -9,25 +9,25 @@ override COMPACTED: bool = false;
 struct LocalToModelParams {
     instances: u32,
     bones: u32,
-    // Words of updated bits an instance.
+    // Words of updated bits per instance.
     words: u32,
     first_chain: u32,
     chains: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: LocalToModelParams;
-// Bone, parent, slots of the subtree.
+// Bone, parent, number of slots of the subtree.
 @group(0) @binding(1) var<storage, read> slots: array<vec4<u32>>;
-// First slot, number of slots.
+// First slot and number of slots.
 @group(0) @binding(2) var<storage, read> chains: array<vec2<u32>>;
-// A bit for each slot of each instance.
+// One bit per slot of each instance.
 @group(0) @binding(3) var<storage, read> updated_bones: array<u32>;
 @group(0) @binding(4) var<storage, read> updated_instances: array<u32>;
-// Of the first, w: how many instances are updated.
+// In the first vector, w is the number of updated instances.
 @group(0) @binding(5) var<storage, read> dispatches: array<vec4<u32>>;
 // Translation and scale x; rotation; scale y and z.
 @group(0) @binding(6) var<storage, read> locals: array<vec4<f32>>;
-// Three rows a bone.
+// Three rows per bone.
 @group(0) @binding(7) var<storage, read_write> model_matrices: array<vec4<f32>>;
 
 const NO_PARENT = 0xffffffffu;
@@ -44,7 +44,7 @@ fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4
     return vec4<f32>(linear.xyz, linear.w + row.w);
 }
 
-// The bone's model-space rows, from those of its parent; they are stored too.
+// Computes and stores the rows of a bone in the model's space, given those of its parent.
 fn joined(parent: Rows, bone: u32) -> Rows {
     let first = locals[bone];
     let q = locals[bone + 1u];
@@ -64,7 +64,7 @@ fn joined(parent: Rows, bone: u32) -> Rows {
     return rows;
 }
 
-// Of a bone, or of what is above the roots.
+// The stored rows of a bone, or the identity above the roots.
 fn stored_rows(base: u32, bone: u32) -> Rows {
     if bone == NO_PARENT {
         return Rows(vec4<f32>(1.0, 0.0, 0.0, 0.0), vec4<f32>(0.0, 1.0, 0.0, 0.0), vec4<f32>(0.0, 0.0, 1.0, 0.0));
@@ -73,7 +73,7 @@ fn stored_rows(base: u32, bone: u32) -> Rows {
     return Rows(model_matrices[at], model_matrices[at + 1u], model_matrices[at + 2u]);
 }
 
-// The bone above a slot.
+// The parent of the bone of a slot.
 fn bone_above(slot: u32) -> u32 {
     let parent = slots[slot].y;
     if parent == CONTINUES {
@@ -82,7 +82,7 @@ fn bone_above(slot: u32) -> u32 {
     return parent;
 }
 
-// The first updated slot of an instance from `start` on, or at least `end`.
+// The first updated slot of an instance at or after `start`; at least `end` if there is none.
 fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
     if start >= end {
         return end;
@@ -103,7 +103,7 @@ fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
 fn walk_whole(instance: u32) {
     let base = instance * params.bones;
     var slot = 0u;
-    // Slots below it need nothing but the slot before, or stored rows.
+    // Slots before `end` need only the previous slot's rows, or stored ones.
     var end = 0u;
     var rows: Rows;
     loop {

@@ -1,6 +1,6 @@
-// Transforms of bones in their parents' spaces at the places where instances stand in their clips (glTF 2.0, appendix
-// C). A thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it lays
-// what other layers play over it, as far as weight and mask let them.
+// Samples the local transforms of bones at the keyframe cursors of their instances (glTF 2.0, appendix C). A
+// thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it
+// blends the clips of further layers over the base, by weight and mask.
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
@@ -8,35 +8,36 @@ import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 override COMPACTED: bool = false;
 override LAYERED: bool = false;
 override NLERP: bool = false;
-// Whether any track is a spline: lanes that need none would wait for the loads of its branches.
+// Whether any track is a spline; without splines, lanes need not wait for the loads of that branch.
 override SPLINES: bool = true;
 
 struct SampleParams {
     bones: u32,
-    // Room of an instance for its places.
+    // Cursors allocated per instance.
     timelines: u32,
-    // Bones of all instances.
+    // Number of bones of all instances.
     pairs: u32,
     instances: u32,
-    // The base included.
+    // Number of layers, the base included.
     layers: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: SampleParams;
-// Layer by layer, and so are places.
+// Instances layer by layer; cursors have the same order.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three a bone and clip: timeline (30 bits) and interpolation, first value.
+// Three tracks per bone and clip: timeline (30 bits) and interpolation, and the index of the first value.
 @group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;
-// Key and, as bits, fraction; behind all layers those of the base ahead.
+// Key and, as bits, fraction; after those of all layers come those of the base layer ahead.
 @group(0) @binding(4) var<storage, read> cursors: array<vec2<u32>>;
-// instance * bones + bone, of each pair that is to be sampled; with PAIR_AHEAD, at the place ahead.
+// instance * bones + bone of each pair to be sampled; with PAIR_AHEAD, it is sampled at the cursor ahead.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
-// Workgroups of the dispatch, and how many pairs.
+// Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
 // Translation and scale x; rotation; scale y and z.
 @group(0) @binding(7) var<storage, read_write> locals: array<vec4<f32>>;
-// For each layer above the base a weight an instance, then for each of them a mask of bones.
+// For each layer above the base one weight per instance, then for each of these layers a mask with one value
+// per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
 const CONSTANT = 0x3fffffffu;
@@ -45,7 +46,7 @@ const LINEAR = 1u;
 const VANISHING = 1e-12;
 
 struct Between {
-    // The value's index, and the interpolation to the next: STEP where there is nothing to interpolate.
+    // Index of the value, and the interpolation to the next: STEP where nothing is interpolated.
     value: u32,
     code: u32,
     fraction: f32,
@@ -59,7 +60,8 @@ fn cursor_of(track: vec2<u32>, first_cursor: u32) -> vec2<u32> {
     return cursors[first_cursor + timeline];
 }
 
-// Tracks of a bone mostly share a timeline: its place is loaded once.
+// Whether a track has another timeline than the one before. Most tracks of a bone share one, whose cursor is
+// loaded once.
 fn is_elsewhere(track: vec2<u32>, before: vec2<u32>) -> bool {
     return ((track.x ^ before.x) & CONSTANT) != 0u;
 }
@@ -72,7 +74,7 @@ fn between(track: vec2<u32>, cursor: vec2<u32>) -> Between {
     let fraction = bitcast<f32>(cursor.y);
     let code = track.x >> 30u;
     if SPLINES && code > LINEAR {
-        // Three values a key.
+        // Splines have three values per key.
         return Between(track.y + 3u * cursor.x + 1u, select(STEP, code, fraction > 0.0), fraction);
     }
     return Between(track.y + cursor.x, select(STEP, code, fraction > 0.0), fraction);
@@ -125,7 +127,8 @@ struct Local {
     scaled: vec3<f32>,
 }
 
-// `slot` is layer * instances + instance; `place_slot` likewise, layers * instances + instance for the base ahead.
+// `slot` is layer * instances + instance; `cursor_slot` likewise, and layers * instances + instance for the
+// base ahead.
 fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
     let first_cursor = cursor_slot * params.timelines;
@@ -145,7 +148,7 @@ fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     return Local(moved, turned, scaled);
 }
 
-// Rotations on the chord to the nearer of q and -q.
+// Blends two transforms; rotations along the chord to the nearer of q and -q.
 fn blend(below: Local, over: Local, weight: f32) -> Local {
     let rest = 1.0 - weight;
     let nearer = select(weight, -weight, dot(below.turned, over.turned) < 0.0);

@@ -1,5 +1,5 @@
 // Moves the bytes that sampling moves, without its arithmetic. For each bone a thread reads the two keys around
-// the current place on three tracks, which instances share as they share a clip's, and writes the words of a
+// the current cursor on three tracks, which instances share as they share a clip's, and writes the words of a
 // local transform: each is the exclusive or of its two keys.
 import package::wgsl::animation::instance::AnimationInstance;
 

@@ -12,12 +12,12 @@ struct LodParams {
     // A bounding sphere of the model in all of its clips: centre and radius.
     bounding_sphere: vec4<f32>,
     // The distance from which on vertices are rigid.
-    far: f32,
+    fade_end: f32,
     // Number of steps of the fade.
     steps: f32,
     instances: u32,
     // The largest number of influences.
-    most: u32,
+    max_influences: u32,
     // The distances from which on levels 1, 2 … are used, not descending, and the number of these levels.
     distances: array<vec4<f32>, 4>,
     coarser: u32,
@@ -104,12 +104,12 @@ fn main(
     var instance_lod = InstanceLod(0.0, 0u, 0u);
     if is_seen {
         let projected_distance = projected_distance_of(center - params.eye.xyz);
-        let fade_fraction = clamp((projected_distance - params.eye.w) / (params.far - params.eye.w), 0.0, 1.0);
+        let fade_fraction = clamp((projected_distance - params.eye.w) / (params.fade_end - params.eye.w), 0.0, 1.0);
         var level = 0u;
         while level < params.coarser && projected_distance >= params.distances[level >> 2u][level & 3u] {
             level++;
         }
-        instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.most, level);
+        instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.max_influences, level);
         let place = atomicAdd(&arguments[level].listed.instances, 1u);
         drawn[level * params.stride + place] = instance;
         if may_mirror(x.xyz, y.xyz, z.xyz, params.side) {

@@ -51,8 +51,8 @@ fn main(
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let level = min(instance_lods[instance].level, 15u);
-    if instance_lods[instance].most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
+    let level = min(instance_lods[instance].mesh_lod, 15u);
+    if instance_lods[instance].max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
     let first = 5u * vertex;

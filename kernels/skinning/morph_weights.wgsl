@@ -62,7 +62,7 @@ fn main(
         return;
     }
     let index = pair / params.targets;
-    if instance_lods[index].most == 0u {
+    if instance_lods[index].max_influences == 0u {
         return;
     }
     let instance = instances[index];

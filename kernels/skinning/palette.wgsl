@@ -96,7 +96,7 @@ fn main(
         return;
     }
     let instance = pair / params.bones;
-    if instance_lods[instance].most == 0u {
+    if instance_lods[instance].max_influences == 0u {
         return;
     }
     let bone = pair - instance * params.bones;

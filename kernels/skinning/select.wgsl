@@ -61,10 +61,10 @@ fn finish(index: u32) {
     if index < params.instances {
         let to = index * (SKINNED_WORDS + params.targets);
         let now = instance_lods[index];
-        skinned[to] = bitcast<u32>(now.fade);
-        skinned[to + 1u] = now.most;
-        skinned[to + 2u] = now.level;
-        skinned[to + 3u] = select(min(skinned[to + 3u] + 1u, 2u), 0u, now.most == 0u);
+        skinned[to] = bitcast<u32>(now.influence_fade);
+        skinned[to + 1u] = now.max_influences;
+        skinned[to + 2u] = now.mesh_lod;
+        skinned[to + 3u] = select(min(skinned[to + 3u] + 1u, 2u), 0u, now.max_influences == 0u);
         for (var target_index = 0u; target_index < params.targets; target_index++) {
             skinned[to + SKINNED_WORDS + target_index] = weights[index * params.targets + target_index];
         }
@@ -109,11 +109,11 @@ fn main(
     }
     let instance = index - cluster * params.instances;
     let now = instance_lods[instance];
-    if now.most == 0u || cluster >= clusters_of(now.level) {
+    if now.max_influences == 0u || cluster >= clusters_of(now.mesh_lod) {
         return;
     }
     let last = instance * (SKINNED_WORDS + params.targets);
-    var found = bitcast<u32>(now.fade) != skinned[last] || now.most != skinned[last + 1u]
+    var found = bitcast<u32>(now.influence_fade) != skinned[last] || now.max_influences != skinned[last + 1u]
         || cluster >= clusters_of(skinned[last + 2u]);
     for (var word = 0u; word < params.words && !found; word++) {
         found = (masks[cluster * params.words + word] & updated_bones[instance * params.words + word]) != 0u;

@@ -76,7 +76,7 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
     let strongest = stride * (first_bone + (bones & 0xffffu));
     var sum = Sum(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     var others = 0.0;
-    let most = clamp(instance_lod.most, 1u, slots);
+    let most = clamp(instance_lod.max_influences, 1u, slots);
     if most > 1u {
         let weights = column + 64u * ((slots + 1u) / 2u) - 64u;
         var lost = 0.0;
@@ -89,7 +89,7 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
             real = palette[strongest];
         }
         var weight = bitcast<f32>(influences[weights + 64u]);
-        let taken = instance_lod.fade * weight;
+        let taken = instance_lod.influence_fade * weight;
         var slot = 1u;
         while weight > taken {
             if (slot & 1u) == 0u {
@@ -142,8 +142,8 @@ fn main(
     }
     let instance = params.first_instance + place;
     let instance_lod = instance_lods[instance];
-    let level = min(instance_lod.level, 15u);
-    if instance_lod.most == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
+    let level = min(instance_lod.mesh_lod, 15u);
+    if instance_lod.max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
     let rows = blended(

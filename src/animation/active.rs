@@ -1,4 +1,4 @@
-//! What is to be done for a crowd in a frame: lists of what a gate chose.
+//! The work of a frame for a crowd: lists of what a gate chose.
 
 #[cfg(feature = "gpu")]
 mod buffers;

@@ -1,29 +1,30 @@
-//! Matrices of chosen bones on the host: gameplay needs a hand or a head, not the crowd.
+//! Readback of the model matrices of chosen bones, for host code that needs a hand or a head and not the whole
+//! crowd.
 
 use super::crowd::Crowd;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 
-/// Bones of instances whose matrices come back.
+/// Bones of instances whose model matrices are copied to the host.
 ///
-/// Copies, not a kernel: a hundred bones are a hundred copies of 48 bytes, of bones beside each other one, and nothing
-/// is bound or compiled. Who wants most of a crowd reads its buffer.
+/// This uses copies and not a kernel: a hundred bones are a hundred copies of 48 bytes, or one copy for
+/// adjacent bones, and nothing is bound or compiled. To read most of a crowd, read its buffer instead.
 #[derive(Debug, Clone)]
 pub struct ChosenBones {
     model_matrices: Buffer<Affine>,
     gathered: Buffer<Affine>,
-    // First matrix there, first here, how many.
+    // The first matrix in the crowd, the first one here, and their number.
     runs: Vec<[usize; 3]>,
     chosen: usize,
     bones: usize,
 }
 
 impl ChosenBones {
-    /// Chooses pairs of instance and bone; more than once, and in any order.
+    /// Chooses pairs of instance and bone, in any order; pairs may repeat.
     ///
     /// # Errors
-    /// [`InputError`] for instances and bones that the crowd lacks; [`GpuError`].
+    /// [`InputError`] for instances and bones that the crowd does not have; [`GpuError`].
     pub fn new(gpu: &Gpu, crowd: &Crowd, chosen: &[[u32; 2]]) -> Result<Self, Error> {
         let gathered = Buffer::new(gpu, "chosen bones", chosen.len())?;
         let (runs, model_matrices) =
@@ -33,10 +34,11 @@ impl ChosenBones {
         Ok(bones)
     }
 
-    /// Chooses others, at most as many as at first; no allocation. A refused choice changes nothing.
+    /// Chooses other pairs, at most as many as at first, without allocation. If they are refused, the choice
+    /// stays.
     ///
     /// # Errors
-    /// [`InputError`] for more of them, and for instances and bones that the crowd lacks.
+    /// [`InputError`] for more pairs, and for instances and bones that the crowd does not have.
     pub fn choose(&mut self, chosen: &[[u32; 2]]) -> Result<(), InputError> {
         if chosen.len() > self.gathered.len() {
             let bound = format!("must be at most {}, as many as at first", self.gathered.len());
@@ -63,7 +65,7 @@ impl ChosenBones {
         Ok(())
     }
 
-    /// Records the copies: after concatenation.
+    /// Records the copies. Call it after concatenation.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         let bytes = |matrices: usize| (matrices * size_of::<Affine>()) as u64;
         for [there, here, count] in self.runs.iter().map(|run| run.map(bytes)) {
@@ -71,18 +73,18 @@ impl ChosenBones {
         }
     }
 
-    /// The matrices of the last submitted copies, in the order of the choice: see [`Buffer::read`].
+    /// The matrices of the last submitted copies, in the order of the choice; see [`Buffer::read`].
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.gathered.read(gpu).await.map(|all| self.used(all))
     }
 
-    /// [`ChosenBones::read`], blocking: see [`Buffer::read_blocking`].
+    /// As [`ChosenBones::read`], but blocks; see [`Buffer::read_blocking`].
     ///
     /// # Errors
-    /// Whatever the device reports, or [`GpuError::Hung`].
+    /// Errors of the device, or [`GpuError::Hung`].
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.gathered.read_blocking(gpu).map(|all| self.used(all))
     }

@@ -1,5 +1,5 @@
-//! Clips of one skeleton in one piece, as crowds play them: the clips' arrays end to end, and the timelines that
-//! tracks share. The first timeline of a clip has the times of all its tracks.
+//! A set of clips of one skeleton, as crowds play them: the clips' arrays one after another, and the timelines
+//! that tracks share. The first timeline of a clip has the times of all its tracks.
 
 use std::collections::HashMap;
 
@@ -8,17 +8,17 @@ use crate::asset::Track;
 use crate::asset::clip::Clip;
 pub use crate::shared::animation::clip::ClipEntry;
 
-/// A track's timeline when its value never changes.
+/// The timeline of a track whose value never changes.
 pub const CONSTANT: u32 = (1 << 30) - 1;
 
-/// Key times that tracks share.
+/// A list of key times that tracks share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Timeline {
-    /// The first time.
+    /// Index of the first time.
     pub first_time: u32,
-    /// How many, at least 1.
+    /// Number of times, at least 1.
     pub keys: u32,
 }
 
@@ -27,10 +27,10 @@ pub struct Timeline {
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct SetTrack {
-    /// In the lower 30 bits the timeline, counted from the clip's first, or [`CONSTANT`]; above them 0 step, 1 linear,
-    /// 2 cubic spline.
+    /// In the lower 30 bits the timeline, counted from the clip's first, or [`CONSTANT`]; above them 0 for
+    /// step, 1 for linear, 2 for cubic spline.
     pub timeline_and_code: u32,
-    /// Its first value; of a constant spline, the middle of its three.
+    /// Index of its first value; for a constant spline, of the middle one of its three.
     pub first_value: u32,
 }
 
@@ -46,11 +46,11 @@ pub struct ClipSet {
 }
 
 impl ClipSet {
-    /// A set of clips.
+    /// A set of clips of one skeleton.
     ///
     /// # Errors
-    /// [`InputError`] for no clips, clips of different numbers of bones, and more values or times than `u32` counts
-    /// bytes of.
+    /// [`InputError`] for an empty list, for clips of different numbers of bones, and for more values or times
+    /// than `u32` byte offsets can address.
     pub fn new(clips: &[&Clip]) -> Result<Self, InputError> {
         let Some(first) = clips.first() else {
             return Err(InputError::new("clips.len", 0, "must be at least 1"));
@@ -113,8 +113,8 @@ impl ClipSet {
         });
     }
 
-    /// A clip's first timeline has the times of all its tracks, each once: tables of gates know of no other. In most
-    /// clips a track has the same.
+    /// The first timeline of a clip, which has each time of any of its tracks once; gate tables use only this
+    /// one. In most clips some track has the same times.
     fn add_common_timeline(&mut self, clip: &Clip, first_time: usize) -> Timeline {
         let common = all_times(clip);
         let same = moving(clip).find(|track| clip.times_of(track) == common);
@@ -132,19 +132,20 @@ impl ClipSet {
         timeline
     }
 
-    /// The times at which a clip's tables of gates have rows.
+    /// The times for which gate tables have rows of a clip.
     pub fn common_times(&self, clip: &ClipEntry) -> &[f32] {
         let timeline = self.timelines[clip.first_timeline as usize];
         &self.times[timeline.first_time as usize..][..timeline.keys as usize]
     }
 
-    /// Rows of a clip in tables of gates: one for each of its [`ClipSet::common_times`], and one for the whole clip.
+    /// The number of a clip's rows in gate tables: one for each of its [`ClipSet::common_times`], and one for
+    /// the whole clip.
     pub fn rows(&self, clip: &ClipEntry) -> u32 {
         self.timelines[clip.first_timeline as usize].keys + 1
     }
 
-    /// Refuses other clips than those that the set was made of, in its order: what is found out about them would be told of
-    /// others.
+    /// Refuses clips other than those of which the set was made, in its order, because data computed from them
+    /// would be attributed to others.
     pub(crate) fn check_clips(&self, clips: &[&Clip]) -> Result<(), InputError> {
         if clips.len() != self.clips.len() {
             let bound = format!("must be {}, those of the set", self.clips.len());
@@ -163,12 +164,12 @@ impl ClipSet {
         Ok(())
     }
 
-    /// Whether any track is a cubic spline. Sampling without them is faster.
+    /// Whether any track is a cubic spline. Sampling is faster without splines.
     pub fn has_splines(&self) -> bool {
         self.tracks.iter().any(|track| track.timeline_and_code >> 30 == 2)
     }
 
-    /// Bones of every clip.
+    /// Number of bones of every clip.
     pub fn bones(&self) -> usize {
         self.bones
     }
@@ -178,17 +179,17 @@ impl ClipSet {
         &self.clips
     }
 
-    /// Three a bone and clip: translation, rotation, scale.
+    /// Three tracks per bone and clip: translation, rotation, scale.
     pub fn tracks(&self) -> &[SetTrack] {
         &self.tracks
     }
 
-    /// Clip by clip.
+    /// The timelines, clip by clip.
     pub fn timelines(&self) -> &[Timeline] {
         &self.timelines
     }
 
-    /// Room that an instance needs for its places: the most timelines of a clip, at least 1.
+    /// The number of cursors that an instance needs: the largest number of timelines of a clip, at least 1.
     pub fn timelines_a_clip(&self) -> usize {
         self.clips.iter().map(|clip| clip.timelines as usize).max().unwrap_or(0).max(1)
     }
@@ -208,12 +209,12 @@ fn moving(clip: &Clip) -> impl Iterator<Item = &Track> {
     clip.tracks().iter().filter(|track| track.keys > 1)
 }
 
-/// The times of all of a clip's tracks, each once, and its start.
+/// The times of all tracks of a clip, each once, and the clip's start.
 fn all_times(clip: &Clip) -> Vec<f32> {
     let mut common: Vec<f32> = moving(clip).flat_map(|track| clip.times_of(track)).copied().collect();
     common.sort_by(f32::total_cmp);
     common.dedup();
-    // Before the first key is a row of its own: a jump may be at that key.
+    // The time before the first key has a row of its own, since there may be a jump at that key.
     if common.first().is_none_or(|first| *first > 0.0) {
         common.insert(0, 0.0);
     }
@@ -260,10 +261,10 @@ mod tests {
 
     #[test]
     fn clips_of_other_skeletons_are_refused() {
-        assert_eq!(ClipSet::new(&[]).expect_err("refused").field, "clips.len");
+        assert_eq!(ClipSet::new(&[]).expect_err("refused").path, "clips.len");
         let model = creature().expect("valid");
         let one = crate::asset::Skeleton::of_joints(model.skeleton.bones()[..1].to_vec()).expect("valid");
         let other = Clip::new("other", &one, &[Default::default()], 1.0).expect("valid");
-        assert_eq!(ClipSet::new(&[&model.clips[0], &other]).expect_err("refused").field, "clips[1].bones");
+        assert_eq!(ClipSet::new(&[&model.clips[0], &other]).expect_err("refused").path, "clips[1].bones");
     }
 }

@@ -1,5 +1,5 @@
-//! What a crowd has on the device: the clips that it plays, and for each instance its places, local transforms and
-//! palette.
+//! The data of a crowd on the device: the clips that it plays, and for each instance its cursors, local
+//! transforms and model matrices.
 
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::instance::Instance;
@@ -12,17 +12,17 @@ use crate::asset::transform::Transform;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::{Error, InputError};
 
-/// A local transform as kernels keep it: translation and scale x; rotation; scale y and z, and two words that mean
-/// nothing.
+/// A local transform in the kernels' layout: translation and scale x; rotation; scale y and z, and two unused
+/// words.
 pub type Local = [[f32; 4]; 3];
 
-/// A transform as kernels keep it.
+/// Converts a transform to the kernels' layout.
 pub fn packed(transform: &Transform) -> Local {
     let ([x, y, z], [sx, sy, sz]) = (transform.translation, transform.scale);
     [[x, y, z, sx], transform.rotation, [sy, sz, 0.0, 0.0]]
 }
 
-/// The transform that kernels keep so.
+/// Converts a transform from the kernels' layout.
 pub fn unpacked(local: &Local) -> Transform {
     let [[x, y, z, sx], rotation, [sy, sz, ..]] = *local;
     Transform { translation: [x, y, z], rotation, scale: [sx, sy, sz] }
@@ -31,17 +31,17 @@ pub fn unpacked(local: &Local) -> Transform {
 /// A set of clips on the device.
 #[derive(Debug, Clone)]
 pub struct ClipBuffers {
-    /// One a clip.
+    /// One per clip.
     pub clips: Buffer<ClipEntry>,
-    /// Three a bone and clip.
+    /// Three per bone and clip.
     pub tracks: Buffer<SetTrack>,
-    /// Clip by clip.
+    /// Timelines, clip by clip.
     pub timelines: Buffer<Timeline>,
-    /// Seconds.
+    /// Key times in seconds.
     pub times: Buffer<f32>,
-    /// Of all tracks.
+    /// Values of all tracks.
     pub values: Buffer<[f32; 4]>,
-    /// Room that an instance needs for its places.
+    /// Number of cursors that an instance needs.
     pub timelines_a_clip: usize,
     /// Whether any track is a cubic spline.
     pub has_splines: bool,
@@ -65,36 +65,39 @@ impl ClipBuffers {
     }
 }
 
-/// Instances of one skeleton on the device. All buffers may be read and bound by the caller.
+/// Instances of one skeleton on the device. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Crowd {
-    /// What each plays, layer by layer: `layer · len + instance`. May be rewritten, a layer by `write_at` from
-    /// `layer · len` on; clips must stay below the set's number.
+    /// What each instance plays, layer by layer: `layer · len + instance`. The caller may rewrite it, a layer
+    /// by `write_at` from `layer · len` on; clips must exist in the set.
     pub instances: Buffer<Instance>,
-    /// Written by [`crate::animation::keyframe_cursor::KeyframeCursorPass`]: the set's [`ClipSet::timelines_a_clip`] for each of `instances`.
+    /// The cursors that [`crate::animation::keyframe_cursor::KeyframeCursorPass`] writes:
+    /// [`ClipSet::timelines_a_clip`] for each of `instances`.
     pub cursors: Buffer<KeyframeCursor>,
-    /// How much the layers above the base count, 0..=1: for each of them a weight an instance, `(layer − 1) · len +
-    /// instance`, then for each of them a mask of bones. Weights may be rewritten ([`Crowd::set_weights`]).
+    /// Weights of the layers above the base, 0..=1: for each layer one weight per instance, at `(layer − 1) ·
+    /// len + instance`, then for each layer a mask with one value per bone. Weights may be rewritten
+    /// ([`Crowd::set_weights`]).
     pub layer_weights: Buffer<f32>,
-    /// Written by [`crate::animation::sample::SamplePass`]: `instance · bones + bone`.
+    /// The local transforms that [`crate::animation::sample::SamplePass`] writes, at `instance · bones + bone`.
     pub locals: Buffer<Local>,
-    /// Written by [`crate::animation::local_to_model::LocalToModelPass`].
+    /// The matrices that [`crate::animation::local_to_model::LocalToModelPass`] writes.
     pub(crate) model_matrices: ModelMatrices,
-    /// What the model matrices were before, for motion vectors, where it is kept: see [`Crowd::with_previous`].
+    /// The model matrices of the frame before, for motion vectors, if they are kept; see
+    /// [`Crowd::with_previous`].
     pub previous: Option<ModelMatrices>,
-    /// Bones of the skeleton.
+    /// Number of bones of the skeleton.
     pub bones: usize,
-    /// Layers, the base included: 1 where each instance plays one clip.
+    /// Number of layers, the base included: 1 if each instance plays one clip.
     pub layers: usize,
     path: RotationPath,
 }
 
 impl Crowd {
-    /// Room for instances of a set's clips with layers above them.
+    /// Allocates a crowd of instances of a set's clips, with layers above them.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, ones that play no clip of the set, more than [`MAX_LAYERS`] layers, and
-    /// layers that do not fit ([`Layer::validate`]); [`GpuError`].
+    /// [`InputError`] for no instances, for instances of a clip that the set does not have, for more than
+    /// [`MAX_LAYERS`] layers, and for layers that do not match ([`Layer::validate`]); [`GpuError`].
     pub fn layered(gpu: &Gpu, set: &ClipSet, base: &[Instance], layers: &[Layer]) -> Result<Self, Error> {
         let (count, bones) = (base.len(), set.bones());
         let pairs = count.saturating_mul(bones);
@@ -126,24 +129,26 @@ impl Crowd {
         })
     }
 
-    /// The same crowd, whose rotations take this path between keys. Gates' tables and sampling must be of this path too.
+    /// The same crowd with another path of rotations between keys. The gate tables and the sampling pass must
+    /// use this path too.
     #[must_use]
     pub fn with_path(self, path: RotationPath) -> Self {
         Self { path, ..self }
     }
 
-    /// The path that rotations take between keys: slerp, unless [`Crowd::with_path`] chose another.
+    /// The path of rotations between keys: slerp unless [`Crowd::with_path`] chose another.
     pub fn path(&self) -> RotationPath {
         self.path
     }
 
-    /// The model matrices of all bones, which [`crate::animation::local_to_model::LocalToModelPass`] writes: `instance · bones + bone`.
+    /// The model matrices of all bones, at `instance · bones + bone`, which
+    /// [`crate::animation::local_to_model::LocalToModelPass`] writes.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
 
-    /// The same crowd, which keeps its model matrices of the frame before in `previous`, 48 bytes a bone. They are zero
-    /// until [`Crowd::record_previous`] has run.
+    /// The same crowd, which also keeps the model matrices of the frame before in `previous`, 48 bytes per
+    /// bone. They are zero until [`Crowd::record_previous`] has run.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -152,9 +157,9 @@ impl Crowd {
         Ok(Self { previous: Some(self.model_matrices.beside(previous)), ..self })
     }
 
-    /// Records the copy of the model matrices into `previous`: before concatenation, so that it may change them in place
-    /// and in part. In the first frame, and where instances are teleported, after it too, so that nothing seems to move.
-    /// Nothing where `previous` is not kept.
+    /// Records the copy of the model matrices into `previous`. Record it before concatenation, which changes
+    /// them in place and in part. In the first frame, and for teleported instances, record it after
+    /// concatenation too, so that nothing appears to move. Does nothing if `previous` is not kept.
     pub fn record_previous(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(previous) = &self.previous {
             let bytes = previous.buffer().bytes();
@@ -162,11 +167,11 @@ impl Crowd {
         }
     }
 
-    /// Replaces how much a layer counts for each instance; layers above the base are numbered from 1.
+    /// Replaces the weights of a layer, one per instance; layers above the base are numbered from 1.
     ///
     /// # Errors
-    /// [`InputError`] for the base or a layer that the crowd lacks, other than one weight an instance, and weights
-    /// outside 0..=1; [`GpuError`].
+    /// [`InputError`] for the base or a layer that the crowd does not have, for a number of weights that is not
+    /// one per instance, and for weights outside 0..=1; [`GpuError`].
     pub fn set_weights(&self, gpu: &Gpu, layer: usize, weights: &[f32]) -> Result<(), Error> {
         if !(1..self.layers).contains(&layer) {
             let bound = format!("must be in 1..{}, a layer above the base", self.layers);
@@ -180,23 +185,23 @@ impl Crowd {
         Ok(self.layer_weights.write_at(gpu, (layer - 1) * self.len(), weights)?)
     }
 
-    /// How many instances.
+    /// Number of instances.
     pub fn len(&self) -> usize {
         self.instances.len() / self.layers
     }
 
-    /// False: a crowd has instances.
+    /// Always false, since a crowd has at least one instance.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Bones of all instances.
+    /// Number of bones of all instances.
     pub fn pairs(&self) -> usize {
         self.len() * self.bones
     }
 }
 
-/// Weights, then masks.
+/// All weights, then all masks.
 fn all_layer_weights(layers: &[Layer], bones: usize) -> Vec<f32> {
     let mut layer_weights: Vec<f32> = layers.iter().flat_map(|layer| &layer.weights).copied().collect();
     for layer in layers {

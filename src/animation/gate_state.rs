@@ -1,4 +1,4 @@
-//! What gates know of a crowd on the device.
+//! The state of gates on the device.
 
 use super::crowd::Crowd;
 use super::gate_table::{GateTable, Kind, check_path};
@@ -8,23 +8,24 @@ use crate::gpu::{Buffer, Gpu};
 use crate::shared::animation::gate_state::ClipClock;
 use crate::{Error, InputError};
 
-/// What gates know of a crowd. All buffers may be read and bound by the caller.
+/// The state of a crowd by which gates decide. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct GateState {
-    /// One an instance; written by the host, full detail at first.
+    /// One level of detail per instance, written by the host; full detail at first.
     pub lods: Buffer<Lod>,
-    /// Written by [`crate::animation::clip_clock::ClipClockPass`].
+    /// The clip clocks that [`crate::animation::clip_clock::ClipClockPass`] writes.
     pub clip_clocks: Buffer<ClipClock>,
-    /// Each instance's last clip + 1, with the highest bit where layers lay above it; a number of what these played; as
-    /// bits, its last time inside the clip, and that ahead. Zeros: no pose is stored.
+    /// For each instance: the last clip + 1, with the highest bit set if layers were above it; a hash of what
+    /// these layers played; and, as bits, the last time inside the clip and the time ahead. Zeros mean that no
+    /// pose is stored.
     pub history: Buffer<[u32; 4]>,
-    /// For each slot of each instance, the sum of motion when it was sampled last.
+    /// For each slot of each instance, the sum of motion when it was last sampled.
     pub sampled: Buffer<u32>,
-    /// For each slot of each instance, what it leaves of the allowed way, where that is needed later.
+    /// For each slot of each instance, what it leaves of the error budget, where that is needed later.
     pub(crate) remaining: Buffer<u32>,
-    /// The table of movers.
+    /// For each clip the bones that it moves.
     pub(crate) animated_bones: Buffer<u32>,
-    /// The table's rows.
+    /// The rows of the table.
     pub(crate) table: Buffer<[u32; 2]>,
     pub(crate) words: u32,
     pub(crate) stride: u32,
@@ -34,10 +35,10 @@ pub struct GateState {
 }
 
 impl GateState {
-    /// Uploads a table and makes room for a crowd.
+    /// Uploads a table and allocates the state of a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of another number of bones; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`] for a table with another number of bones; [`GpuError`](crate::gpu::GpuError).
     pub fn new(gpu: &Gpu, table: &GateTable, crowd: &Crowd) -> Result<Self, Error> {
         if table.bones() != crowd.bones {
             let bound = format!("must be {}, as the crowd's", crowd.bones);
@@ -64,7 +65,7 @@ impl GateState {
         })
     }
 
-    /// Refuses a table of another kind than the gate needs, where it needs one, and another path than the crowd's.
+    /// Refuses a table of a kind that the gate cannot use, and one of another rotation path than the crowd's.
     pub(crate) fn check(&self, needed: Option<Kind>, crowd: &Crowd) -> Result<(), InputError> {
         needed.map_or(Ok(()), |needed| self.kind.check(needed))?;
         check_path(self.path, crowd.path())

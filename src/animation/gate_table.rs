@@ -1,5 +1,5 @@
-//! Tables of gates: what clips tell about their bones, once, at load. Columns are slots of an
-//! [`Order`], rows the common times of each clip, one clip after another, and one more row a clip.
+//! Tables of gates: data about the bones of clips, computed once at load time. Columns are slots of an
+//! [`Order`]. Rows are the common times of each clip, one clip after another, with one more row per clip.
 
 use super::clip_set::ClipSet;
 use super::motion::{
@@ -12,25 +12,26 @@ use crate::asset::clip::{Clip, Interpolation, Part};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// The largest sum of motion of a whole clip, in units.
+/// The largest sum of motion over a whole clip, in units of the table.
 const MAX_MOTION: f64 = (1 << 30) as f64;
 
-/// More than is ever allowed.
+/// More than is ever permitted.
 pub(crate) const EVERYTHING: u32 = 1 << 30;
 
-/// Power of the rates of motion that shares are made of: 1 needs the fewest samples where shares are all that counts, 0
-/// takes all moving bones alike.
+/// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
+/// needed if fractions alone decide; with 0, all moving bones get equal fractions.
 const EVENNESS: f64 = 0.5;
 
-/// How many times its share a bone may take. The promise holds for any, as bones below take what is left. Bones
-/// seldom miss all of their shares at once: of 1, 1.6, 2.5 and 4, 1.6 needs the fewest samples on a walk and a run
-/// wherever `uniform` does every 2nd to 4th frame; 1 where it does every 8th.
+/// The factor by which a bone may exceed its fraction. The bound holds for any factor, because bones below use
+/// what is left. Bones seldom miss all of their fractions at once: of 1, 1.6, 2.5 and 4, the factor 1.6 needs
+/// the fewest samples on a walk and a run if `uniform` samples every 2nd to 4th frame, and 1 if it samples
+/// every 8th.
 const FAVOUR: f64 = 1.6;
 
-/// The most entries.
+/// The largest number of entries.
 const MAX_ENTRIES: usize = 1 << 27;
 
-/// What a table tells.
+/// The kind of data in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// [`GateTable::of_animated_bones`].
@@ -45,7 +46,7 @@ pub enum Kind {
 
 #[cfg(feature = "gpu")]
 impl Kind {
-    /// Refuses a table of another kind than is needed.
+    /// Refuses a table of another kind than `needed`.
     pub(crate) fn check(self, needed: Self) -> Result<(), InputError> {
         if self == needed {
             return Ok(());
@@ -54,7 +55,8 @@ impl Kind {
     }
 }
 
-/// Refuses sampling along another path than the one that a table's motion holds for; tables without motion hold for any.
+/// Refuses sampling with another rotation path than the one for which a table's motion was computed. Tables
+/// without motion permit any.
 pub(crate) fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
     match of_table {
         Some(path) if path != sampled => {
@@ -69,25 +71,26 @@ pub(crate) fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) 
 #[derive(Debug, Clone, PartialEq)]
 pub struct GateTable {
     kind: Kind,
-    /// Of the motion; none without.
+    /// The rotation path of the motion; `None` without motion.
     path: Option<RotationPath>,
     bones: usize,
     words: usize,
     stride: usize,
     animated_bones: Vec<u32>,
     rows: Vec<[u32; 2]>,
-    /// Metres (or what the table's motion counts) a unit; 0 without motion.
+    /// Metres (or what the table's motion measures) per unit; 0 without motion.
     unit: f64,
     radius: f32,
-    /// The first clip's row of bones above. Of bounds alone.
+    /// The first clip's row of parents; only in tables of bounds.
     first_above: usize,
 }
 
 impl GateTable {
-    /// Which bones their clips move at all: what [`Gate::Off`](super::gate::Gate::Off), `Uniform` and `Random` need.
+    /// A table of the bones that each clip moves, for [`Gate::Off`](super::gate::Gate::Off), `Uniform` and
+    /// `Random`.
     ///
     /// # Errors
-    /// [`InputError`] for other clips than the set's, or a skeleton of other bones.
+    /// [`InputError`] for clips other than the set's, and for a skeleton with another number of bones.
     pub fn of_animated_bones(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
         set.check_clips(clips)?;
         if order.slots.len() != set.bones() {
@@ -120,11 +123,12 @@ impl GateTable {
         })
     }
 
-    /// Each clip's priorities: what [`Gate::SkipPeriod`](super::gate::Gate::SkipPeriod) needs. Before a bone's first key
-    /// its first counts.
+    /// A table of each clip's priorities, for [`Gate::SkipPeriod`](super::gate::Gate::SkipPeriod). Before a
+    /// bone's first key, the priority of that key counts.
     ///
     /// # Errors
-    /// As [`GateTable::of_animated_bones`]; other than one set of priorities a clip; a table of more than 2²⁷ entries.
+    /// As [`GateTable::of_animated_bones`]; also for a number of priorities that is not one set per clip, and
+    /// for a table of more than 2²⁷ entries.
     pub fn of_priorities(
         order: &Order,
         set: &ClipSet,
@@ -153,14 +157,15 @@ impl GateTable {
         Ok(table)
     }
 
-    /// Bounds of the motion that each bone contributes to any point, and the shares that bones take of what is allowed:
-    /// what [`Gate::Bounded`](super::gate::Gate::Bounded) needs. `bone_radii`: for each bone, how far points that follow it
-    /// alone lie from its origin, metres. `path`: as instances are sampled; crowds that are sampled otherwise are refused,
-    /// since nlerp turns faster than slerp in the middle between two keys.
+    /// A table of bounds on the motion that each bone contributes to any point, and of the fractions of the
+    /// error budget that bones take, for [`Gate::Bounded`](super::gate::Gate::Bounded). `bone_radii` gives, for
+    /// each bone, the distance from its origin, in metres, of points that follow it alone. `path` is the
+    /// rotation path with which instances are sampled; crowds with another path are refused, because nlerp
+    /// turns faster than slerp in the middle between two keys.
     ///
     /// # Errors
-    /// As [`GateTable::of_animated_bones`]; other than one reach a bone, or one that is negative or not finite; a table of more
-    /// than 2²⁷ entries.
+    /// As [`GateTable::of_animated_bones`]; also for a number of radii that is not one per bone, for radii that
+    /// are negative or not finite, and for a table of more than 2²⁷ entries.
     pub fn of_bounds(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -185,8 +190,9 @@ impl GateTable {
         Ok(table.fill(&order, set, &all)?.with_trees(skeleton, &order, set))
     }
 
-    /// The motion that each bone contributes to points at and below it, as a root of the sum of squares: what
-    /// [`super::budget`] ranks bones by. Arguments as for [`GateTable::of_bounds`].
+    /// A table of the expected motion that each bone contributes to points at and below it, as a root of the
+    /// sum of squares, by which [`super::budget`] ranks bones. The arguments are those of
+    /// [`GateTable::of_bounds`].
     ///
     /// # Errors
     /// As [`GateTable::of_bounds`].
@@ -204,7 +210,7 @@ impl GateTable {
         table.fill(&order, set, &all)
     }
 
-    /// A table with room for motion, and the order of its columns.
+    /// An empty table with room for motion, and the order of its columns.
     fn with_room(
         (kind, path): (Kind, RotationPath),
         skeleton: &Skeleton,
@@ -219,7 +225,7 @@ impl GateTable {
         Ok((table, order))
     }
 
-    /// Writes the columns of every clip, in the smallest unit that they fit.
+    /// Writes the columns of every clip, in the smallest unit for which they fit.
     fn fill(mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<Self, InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
@@ -238,7 +244,7 @@ impl GateTable {
         Ok(self)
     }
 
-    /// Writes which bones hang below which, leaving out those that a clip does not move.
+    /// Writes the parent of each bone, skipping bones that the clip does not move.
     fn with_trees(mut self, skeleton: &Skeleton, order: &Order, set: &ClipSet) -> Self {
         let slot_of = order.slots_of_bones();
         let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -285,78 +291,80 @@ impl GateTable {
         }
     }
 
-    /// What it tells.
+    /// The kind of data in the table.
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// The path between rotation keys whose motion it holds; of [`GateTable::of_bounds`] and
+    /// The rotation path for which the motion was computed, in tables made by [`GateTable::of_bounds`] and
     /// [`GateTable::of_expectations`].
     pub fn path(&self) -> Option<RotationPath> {
         self.path
     }
 
-    /// Columns: slots of the skeleton's order.
+    /// Number of columns: slots of the skeleton's order.
     pub fn bones(&self) -> usize {
         self.bones
     }
 
-    /// Words of bits an instance.
+    /// Words of bits per instance.
     pub fn words(&self) -> usize {
         self.words
     }
 
-    /// Entries a row.
+    /// Entries per row.
     pub fn stride(&self) -> usize {
         self.stride
     }
 
-    /// For each clip the number of its last row, then a bit for each slot that it moves.
+    /// For each clip the index of its last row, then one bit for each slot that it moves.
     pub fn animated_bones(&self) -> &[u32] {
         &self.animated_bones
     }
 
-    /// The entries, row by row: four priorities of 16 bits; or a sum of motion at the row's time and its rise to the
-    /// next. In a clip's last row stand its sum over the whole clip, and of a table of bounds an [`ErrorBudget`]; such a
-    /// table has one more row a clip behind all others, see [`GateTable::above`].
+    /// The entries, row by row: either four priorities of 16 bits, or the sum of motion at the row's time and
+    /// its rise to the next row. A clip's last row holds the sum over the whole clip and, in a table of bounds,
+    /// an [`ErrorBudget`]. Such a table has one more row per clip after all others; see [`GateTable::above`].
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.rows
     }
 
-    /// A clip's last row, and its movers.
+    /// The index of a clip's last row, and the slots that the clip moves.
     pub fn record(&self, clip: u32) -> (u32, &[u32]) {
         let record = &self.animated_bones[clip as usize * (self.words + 1)..][..self.words + 1];
         (record[0], &record[1..])
     }
 
-    /// A slot's priority in a row, in 65536ths.
+    /// The priority of a slot in a row, in 65536ths.
     pub fn priority(&self, row: u32, slot: usize) -> u32 {
         self.rows[row as usize * self.stride + slot / 4][slot / 2 % 2] >> (16 * (slot % 2)) & 0xffff
     }
 
-    /// A slot's motion in a row.
+    /// The motion of a slot in a row.
     pub fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.rows[row as usize * self.stride + slot]
     }
 
-    /// The number of a row that tells, for each slot that a clip moves, the next slot above it that the clip moves, or
-    /// [`NO_PARENT`]; of [`GateTable::of_bounds`].
+    /// The index of a row that gives, for each slot that a clip moves, the nearest slot above it that the clip
+    /// moves, or [`NO_PARENT`]; in tables made by [`GateTable::of_bounds`].
     pub fn above(&self, clip: u32) -> u32 {
         self.first_above as u32 + clip
     }
 
-    /// A bound of how far any point lies from the model's origin in any clip, metres; of [`GateTable::of_bounds`].
+    /// A bound on the distance of any point from the model's origin in any clip, in metres; in tables made by
+    /// [`GateTable::of_bounds`].
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// [`Lod::allowed`](super::lod::Lod::allowed) for a way in metres in the model's space: divide metres in the world by
-    /// the instance's scale. 0 of a table that is not [`GateTable::of_bounds`].
+    /// Converts a distance in metres in the model's space to [`Lod::allowed`](super::lod::Lod::allowed); divide
+    /// metres in the world by the instance's scale. The result is 0 for a table that was not made by
+    /// [`GateTable::of_bounds`].
     pub fn units(&self, metres: f32) -> u32 {
         if self.kind != Kind::Bounds {
             return 0;
         }
-        // A clip's whole motion is less than everything.
+        // The motion of a whole clip is less than `EVERYTHING`.
         (f64::from(metres) / self.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 }
@@ -375,39 +383,39 @@ fn check_bone_radii(skeleton: &Skeleton, bone_radii: &[f32]) -> Result<(), Input
     }
 }
 
-/// What a clip grants a bone, as the kernel reads it.
+/// The error budget that a clip grants a bone, as the kernel reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ErrorBudget(pub u32);
 
 impl ErrorBudget {
-    /// The bone above is not the one before it in the order.
+    /// Set if the bone above is not the previous one in the order.
     const STARTS: u32 = 1 << 5;
-    /// What it leaves is needed later.
+    /// Set if what the bone leaves is needed later.
     const REMAINING: u32 = 1 << 6;
 
-    /// `quantization_slack`: a power of two, or 0.
+    /// `quantization_slack` is a power of two, or 0.
     fn new(fraction: f64, quantization_slack: u32) -> Self {
         let bits = u32::BITS - quantization_slack.leading_zeros();
         Self(((fraction * 65536.0).floor() as u32) << 8 | bits)
     }
 
-    /// Of what the bones above leave, in 65536ths.
+    /// The fraction of what the bones above leave, in 65536ths.
     pub fn fraction(self) -> u32 {
         self.0 >> 8
     }
 
-    /// Units that rounding may hide.
+    /// The number of units that rounding may hide.
     pub fn quantization_slack(self) -> u32 {
         ((1_u64 << (self.0 & 31)) >> 1) as u32
     }
 
-    /// Whether the bone above is another than the one before it in the order.
+    /// Whether the bone above is not the previous one in the order.
     pub fn starts(self) -> bool {
         self.0 & Self::STARTS != 0
     }
 }
 
-/// Whether any of a bone's parts changes in a clip.
+/// Whether a clip changes any of a bone's parts.
 fn moves(clip: &Clip, bone: usize) -> bool {
     Part::ALL.iter().any(|part| {
         let track = clip.track(bone, *part);
@@ -423,20 +431,20 @@ fn moves(clip: &Clip, bone: usize) -> bool {
                 if !is_spline {
                     return !same(key[0], clip.key(track, 0));
                 }
-                // The first key's in-tangent and the last one's out-tangent bend nothing.
+                // The in-tangent of the first key and the out-tangent of the last have no effect.
                 let bends = |tangent: [f32; 4], is_used: bool| is_used && tangent != [0.0; 4];
                 key[1] != clip.key(track, 0) || bends(key[0], at > 0) || bends(key[2], at + 1 < keys)
             })
     })
 }
 
-/// One bone's motion along a clip.
+/// The motion of one bone along a clip.
 struct Column {
     rises: Vec<f64>,
     jumps: Vec<f64>,
     wrap: f64,
     is_boundless: bool,
-    /// Of what bones above leave, 0 to 1.
+    /// The fraction of what the bones above leave, 0 to 1.
     fraction: f64,
 }
 
@@ -459,10 +467,12 @@ impl Column {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }
 
-    /// Writes it down a table.
+    /// Writes the column into a table.
     ///
-    /// Starts are rounded to the nearest unit, rises up, and sums down: what two sums differ by is at most 4 units too
-    /// small. Fractions are cut to 16 bits, 2⁻¹⁶ of a stretch, and may be off by rounding of their division: 2⁻¹² of
+    /// Sums at row starts are rounded to the nearest unit, rises up, and interpolated sums down, so that the
+    /// difference of two sums is at most 4 units too small. Fractions are cut to 16 bits, 2⁻¹⁶ of a segment,
+    /// and may be off by the rounding of their division; 2⁻¹² of the steepest segment exceeds both errors for
+    /// two sums. The slack for these errors is a power of two.
     /// the steepest stretch is more than either costs for two sums. What rounding may hide so is a power of two.
     fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
@@ -487,7 +497,7 @@ fn columns(motions: &[BoneMotion], levers: &[[f64; 3]]) -> Vec<Column> {
     motions.iter().zip(levers).map(|(bone, levers)| Column::new(bone, levers)).collect()
 }
 
-/// Gives each bone its share of what the bones above it leave.
+/// Gives each bone its fraction of what the bones above it leave.
 fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
     for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {

@@ -1,25 +1,26 @@
-//! What a character plays: a clip, from a start, at a rate.
+//! What a character plays: a clip, with a start time and a rate.
 
 use crate::InputError;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
-/// The most seconds that a start, or what has elapsed since, may be from 0, and the most clip seconds a second: their
-/// products and sums stay finite. Some 30 years.
+/// The largest absolute value of a start, of elapsed seconds, and of a rate: products and sums stay finite. It
+/// is about 30 years.
 pub const MAX_SECONDS: f32 = 1e9;
 
-/// What becomes of times outside a clip.
+/// How times outside a clip are treated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Wrap {
-    /// The clip begins again; its end is its start.
+    /// The clip repeats; its end coincides with its start.
     #[default]
     Loop = 0,
-    /// The first or last pose stays.
+    /// The first or the last pose is kept.
     Clamp = 1,
 }
 
 impl Wrap {
-    /// The time inside a clip of `duration` seconds, `seconds` after its start. Negative where it plays backwards.
+    /// The time inside a clip of `duration` seconds that corresponds to `seconds` after its start, negative if
+    /// it plays backwards.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite.
@@ -36,15 +37,15 @@ impl Wrap {
     }
 }
 
-/// Checks what has elapsed.
+/// Checks elapsed seconds.
 #[cfg(any(feature = "gpu", test))]
 pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
     check_seconds("elapsed", elapsed)
 }
 
-/// Checks any seconds.
+/// Checks a number of seconds.
 pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
-    // NaN is not within.
+    // The comparison is false for NaN.
     if value.abs() <= MAX_SECONDS {
         return Ok(());
     }
@@ -52,17 +53,17 @@ pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
 }
 
 impl Instance {
-    /// A clip from a start, at a rate.
+    /// A clip with a start in seconds and a rate in clip seconds per second.
     pub fn new(clip: u32, wrap: Wrap, start: f32, rate: f32) -> Self {
         Self { clip, wrap_code: wrap as u32, start, rate }
     }
 
-    /// What becomes of times outside the clip.
+    /// How times outside the clip are treated.
     pub fn wrap(&self) -> Wrap {
         if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
     }
 
-    /// Checks that it plays one of `clips` clips, from a start and at a rate within ±[`MAX_SECONDS`].
+    /// Checks that it plays one of `clips` clips, with a start and a rate within ±[`MAX_SECONDS`].
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -96,7 +97,7 @@ mod tests {
         }
         assert_eq!(Wrap::Loop.inside(0.0, 3.0), Ok(0.0));
         for seconds in [f64::NAN, f64::INFINITY] {
-            assert_eq!(Wrap::Clamp.inside(2.0, seconds).expect_err("refused").field, "time");
+            assert_eq!(Wrap::Clamp.inside(2.0, seconds).expect_err("refused").path, "time");
         }
     }
 
@@ -104,8 +105,8 @@ mod tests {
     fn instances_are_checked_field_by_field() {
         let good = Instance::new(1, Wrap::Clamp, 0.5, -2.0);
         assert_eq!((good.validate(2), good.wrap()), (Ok(()), Wrap::Clamp));
-        assert_eq!(good.validate(1).expect_err("refused").field, "instance.clip");
-        let refused = |instance: Instance| instance.validate(2).expect_err("refused").field;
+        assert_eq!(good.validate(1).expect_err("refused").path, "instance.clip");
+        let refused = |instance: Instance| instance.validate(2).expect_err("refused").path;
         assert_eq!(refused(Instance { start: f32::NAN, ..good }), "instance.start");
         assert_eq!(refused(Instance { rate: f32::INFINITY, ..good }), "instance.rate");
         assert_eq!(refused(Instance { rate: -1.1e9, ..good }), "instance.rate");

@@ -1,17 +1,18 @@
-//! Layers: several clips an instance at once, one over the other.
+//! Layers: several clips per instance, blended one over the other.
 //!
-//! Layer 0 is the base, what every instance plays on all its bones. Each layer above it plays a clip of its own with
-//! its own start, rate and wrap, counts by a *weight* an instance, and by a *mask* on each bone. From the base
-//! upwards, a bone's pose becomes
+//! Layer 0 is the base, which every instance plays on all its bones. Each layer above it plays a clip with a
+//! start, rate and wrap of its own, and has a *weight* for each instance and a *mask* value for each bone. From
+//! the base upwards, a bone's pose becomes
 //!
 //! `below + (layer − below) · weight · mask`
 //!
-//! part by part. Rotations go to the nearer of q and −q on the chord and are normalized (nlerp): at weights of 0 and 1
-//! they are exact, between them always on the shortest arc, but not at constant speed: up to 0.002 rad off for rotations
-//! 45° apart, 0.016 for 90°, 0.14 for 180°. A layer whose weight times mask is 0 on a bone is not fetched there.
+//! for each part. Rotations are blended along the chord to the nearer of q and −q and normalized (nlerp): they
+//! are exact at weights of 0 and 1, and on the shortest arc in between, but not at constant speed: up to 0.002
+//! rad off for rotations 45° apart, 0.016 for 90°, 0.14 for 180°. A layer whose weight times mask is 0 on a
+//! bone is not loaded there.
 //!
-//! Two clips that fade into each other are one layer with a mask of ones; a wave of the arm over a walk is one with
-//! the mask of the arm ([`mask_below`]).
+//! A cross-fade of two clips is one layer without a mask; an arm that waves during a walk is one layer with the
+//! mask of the arm ([`mask_below`]).
 //!
 //! ```
 //! # #[cfg(feature = "samples")] {
@@ -34,17 +35,17 @@ use crate::InputError;
 use crate::animation::instance::Instance;
 use crate::asset::skeleton::Skeleton;
 
-/// The most layers of a crowd, the base included.
+/// The largest number of layers of a crowd, the base included.
 pub const MAX_LAYERS: usize = 8;
 
 /// A layer above the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
-    /// What each instance plays.
+    /// What each instance plays on this layer.
     pub instances: Vec<Instance>,
-    /// How much that counts for each instance: 0 not at all, 1 fully.
+    /// The weight for each instance, 0 to 1.
     pub weights: Vec<f32>,
-    /// How much it counts on each bone: 0 not at all, 1 fully. `None`: fully on all.
+    /// The mask value for each bone, 0 to 1; `None` stands for 1 on all bones.
     pub mask: Option<Vec<f32>>,
 }
 
@@ -54,23 +55,24 @@ impl Layer {
         Self { instances, weights, mask: None }
     }
 
-    /// The same on some bones.
+    /// The same layer with a mask.
     #[must_use]
     pub fn masked(self, mask: Vec<f32>) -> Self {
         Self { mask: Some(mask), ..self }
     }
 
-    /// How much it counts for an instance on a bone.
+    /// The weight for an instance times the mask value for a bone.
     pub fn weight(&self, instance: usize, bone: usize) -> f32 {
         self.weights[instance] * self.mask.as_ref().map_or(1.0, |mask| mask[bone])
     }
 
-    /// Checks that it fits a crowd of `count` instances that play `clips` clips on `bones` bones; `path` comes before
-    /// the field's name.
+    /// Checks that the layer matches a crowd of `count` instances that play `clips` clips on `bones` bones;
+    /// `path` precedes the field's name.
     ///
     /// # Errors
-    /// [`InputError`] for other than one instance and weight an instance, other than one mask value a bone, weights
-    /// and mask values outside 0..=1, and instances that play no clip.
+    /// [`InputError`] for numbers of instances or weights that are not one per instance, for a mask that is not
+    /// one value per bone, for weights and mask values outside 0..=1, and for instances of a clip that does not
+    /// exist.
     pub fn validate(&self, path: &str, count: usize, clips: usize, bones: usize) -> Result<(), InputError> {
         let each = |field: &str, len: usize, wanted: usize, item: &str| {
             let bound = format!("must be {wanted}, one {item}");
@@ -91,7 +93,7 @@ impl Layer {
     }
 }
 
-/// Refuses values outside 0..=1; names the first with its index.
+/// Refuses values outside 0..=1, and names the first with its index.
 pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError> {
     match values.iter().position(|value| !(0.0..=1.0).contains(value)) {
         None => Ok(()),
@@ -99,10 +101,10 @@ pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError
     }
 }
 
-/// The mask of a bone and all below it: 1 there, 0 elsewhere.
+/// The mask of a bone and all bones below it: 1 for these, 0 for others.
 ///
 /// # Errors
-/// [`InputError`] for a bone that the skeleton lacks.
+/// [`InputError`] for a bone that the skeleton does not have.
 pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputError> {
     if bone >= skeleton.len() {
         return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
@@ -117,7 +119,7 @@ pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputErr
     Ok(mask)
 }
 
-/// What all layers play, the base first: the order of a crowd's buffers.
+/// The instances of all layers, the base first: the order of a crowd's buffers.
 pub fn all_instances(base: &[Instance], layers: &[Layer]) -> Vec<Instance> {
     base.iter().chain(layers.iter().flat_map(|layer| &layer.instances)).copied().collect()
 }
@@ -133,7 +135,7 @@ mod tests {
         let good = Layer::new(vec![instance; 2], vec![0.0, 1.0]).masked(vec![0.5; 3]);
         assert_eq!(good.validate("layers[0]", 2, 2, 3), Ok(()));
         assert_eq!(good.weight(1, 2), 0.5);
-        let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").field;
+        let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").path;
         assert_eq!(refused(Layer { instances: vec![instance], ..good.clone() }), "layers[0].instances.len");
         assert_eq!(refused(Layer { weights: vec![1.0; 3], ..good.clone() }), "layers[0].weights.len");
         for wrong in [f32::NAN, f32::INFINITY, -0.1, 1.1] {
@@ -154,6 +156,6 @@ mod tests {
             assert_eq!(ones, 1 + model.skeleton.descendants()[bone] as usize);
             assert!(mask.iter().all(|value| [0.0, 1.0].contains(value)));
         }
-        assert_eq!(mask_below(&model.skeleton, 153).expect_err("refused").field, "bone");
+        assert_eq!(mask_below(&model.skeleton, 153).expect_err("refused").path, "bone");
     }
 }

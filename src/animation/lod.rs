@@ -1,16 +1,17 @@
-//! What gates know of an instance from its view: how far away it is (A section 12.10) and how much motion may be
-//! missed before it shows. Quantized on the host, so that every device decides alike.
+//! The level of detail of instances by their view: how far away an instance is (A section 12.10), and how much
+//! motion may be missed before it is visible. The host quantizes these values, so that every device decides
+//! alike.
 
 use crate::InputError;
 pub use crate::shared::animation::gate_state::Lod;
 
-/// [`Lod::omega`] at full detail.
+/// The value of [`Lod::omega`] at full detail.
 pub const OMEGA_ONE: u32 = 1 << 16;
 
 impl Lod {
-    /// Not in view: costs nothing, and is sampled in full when it comes back.
+    /// The instance is not in view: it costs nothing, and is sampled in full when it comes back.
     pub const HIDDEN: u32 = 1;
-    /// Sampled in full this frame, whatever the gate says.
+    /// The instance is sampled in full this frame, whatever the gate says.
     pub const REFRESH: u32 = 2;
     /// Full detail.
     pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };
@@ -22,12 +23,12 @@ impl Default for Lod {
     }
 }
 
-/// Distances in metres between which detail falls from full to none.
+/// The distances, in metres, between which detail falls from full to none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Up to here Ω is 1.
+    /// Up to this distance Ω is 1.
     pub min: f32,
-    /// From here on Ω is 0.
+    /// From this distance on Ω is 0.
     pub max: f32,
 }
 
@@ -50,8 +51,8 @@ impl Range {
         Ok(())
     }
 
-    /// Ω at a distance, in 65536ths. **Decided**: `(max − d)/(max − min)`; A prints `(d − min)/(max − min)`, against
-    /// its own end points.
+    /// Ω at a distance, in 65536ths. **Decided**: `(max − d)/(max − min)`. A prints `(d − min)/(max − min)`,
+    /// which contradicts its own end points.
     pub fn omega(&self, distance: f32) -> u32 {
         let fraction =
             (f64::from(self.max) - f64::from(distance)) / (f64::from(self.max) - f64::from(self.min));
@@ -59,28 +60,26 @@ impl Range {
     }
 }
 
-/// How a camera makes pixels of metres.
+/// How a camera converts metres to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
-    /// Pixels that a metre at a distance of one metre takes on the axis: half the picture's height, in pixels, divided
-    /// by the tangent of half the field of view; the larger one of both directions.
+    /// The number of pixels that a metre takes at a distance of one metre on the axis: half the picture's
+    /// height in pixels, divided by the tangent of half the field of view; the larger value of both directions.
     pub focal_pixels: f32,
-    /// The near plane's distance in metres.
+    /// The distance of the near plane in metres.
     pub near: f32,
 }
 
 impl Projection {
-    /// The lens of a picture `height` pixels high with a vertical field of view in radians.
+    /// The projection of a picture of `height` pixels with a vertical field of view in radians.
     pub fn new(height: u32, field_of_view: f32, near: f32) -> Self {
         Self { focal_pixels: height as f32 / 2.0 / (field_of_view / 2.0).tan(), near }
     }
 
-    /// The longest way in metres of which every point inside a sphere may be off without being more than `pixels` off
-    /// on screen. `centre`: in the camera's space, x and y across, z along the view. 0 where a part of the sphere may
-    /// reach the near plane.
-    ///
-    /// A point at depth z, φ off the axis, that moves by e moves on screen by at most `focal·e/((z − e)·cos φ)` pixels
-    /// (spec 3.4). Over the sphere z is least, and tan φ at most what lies farthest across at that depth.
+    /// The largest distance, in metres, by which every point inside a sphere may be off while none is drawn
+    /// more than `pixels` from its place. `centre` is in the camera's space: x and y across, z along the view.
+    /// The result is 0 if a part of the sphere may reach the near plane. `docs/pixel-bounds.md` has the
+    /// derivation.
     pub fn allowed(&self, centre: [f32; 3], radius: f32, pixels: f32) -> f32 {
         let [x, y, z] = centre.map(f64::from);
         let (radius, pixels, focal) = (f64::from(radius), f64::from(pixels), f64::from(self.focal_pixels));
@@ -104,12 +103,12 @@ mod tests {
         let range = Range { min: 200.0, max: 1700.0 };
         assert_eq!([0.0, 200.0, 950.0, 1700.0, 5000.0].map(|d| range.omega(d)), [65536, 65536, 32768, 0, 0]);
         assert!(range.validate().is_ok());
-        let refused = |min, max| Range { min, max }.validate().expect_err("refused").field;
+        let refused = |min, max| Range { min, max }.validate().expect_err("refused").path;
         assert_eq!([refused(-1.0, 2.0), refused(f32::NAN, 2.0)], ["range.min", "range.min"]);
         assert_eq!([refused(2.0, 2.0), refused(2.0, f32::INFINITY)], ["range.max", "range.max"]);
     }
 
-    /// Moves points inside spheres by the allowed way, in every direction, and projects them.
+    /// Moves points inside spheres by the permitted distance in every direction, and projects them.
     #[test]
     fn what_is_allowed_stays_within_the_pixels() {
         let projection = Projection::new(1080, 1.0, 0.1);

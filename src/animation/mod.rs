@@ -1,5 +1,5 @@
-//! Keyframed, articulated models: skeletons and clips, their import from glTF, a built-in creature (A sections 9
-//! to 14); crowds of them on the device, with layers, bounds, and root motion for the host.
+//! Keyframe animation of skeletons (A sections 9 to 14): crowds on the device, with layers, gates and bounds;
+//! root motion for the host.
 
 pub mod active;
 #[cfg(feature = "verify")]

@@ -1,4 +1,5 @@
-//! Model matrices of a crowd's bones on the device: which of them a frame updates, and what was prepared over them.
+//! Model matrices of a crowd's bones on the device, with the record of which of them a frame updates and what
+//! uses them.
 
 use std::sync::{Arc, OnceLock};
 
@@ -6,10 +7,10 @@ use crate::InputError;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// Model matrices of the bones of instances, `instance · bones + bone`: a handle. Clones share the buffer, and what was
-/// prepared over it: a crowd under [`Gate::Bounded`](super::Gate::Bounded) cannot be skinned by dual quaternions, since
-/// its bound holds for linear blending alone. Whichever of both is prepared first excludes the other, as long as there
-/// is a handle.
+/// A handle to the model matrices of the bones of instances, at `instance · bones + bone`. Clones share the
+/// buffer and the record of what was prepared over it: a crowd under [`Gate::Bounded`](super::Gate::Bounded)
+/// cannot be skinned by dual quaternions, because its bound holds for linear blending only. Whichever of the
+/// two is prepared first excludes the other, as long as a handle exists.
 #[derive(Debug, Clone)]
 pub struct ModelMatrices {
     matrices: Buffer<Affine>,
@@ -18,76 +19,76 @@ pub struct ModelMatrices {
 }
 
 impl ModelMatrices {
-    /// Matrices that the caller writes, all of them up to date in every frame. Those of a crowd are
+    /// Matrices that the caller writes, all of which may change in every frame. Those of a crowd are
     /// [`Crowd::model_matrices`](super::crowd::Crowd::model_matrices).
     pub fn new(matrices: &Buffer<Affine>) -> Self {
         Self { matrices: matrices.clone(), updated_bones: None, consumer: ExclusiveConsumer::default() }
     }
 
-    /// The same, of which those alone change in a frame that have their bit in this buffer, laid out as
-    /// [`Active::updated_bones`](super::active::Active::updated_bones).
+    /// The same matrices, of which a frame changes only those whose bit is set in this buffer, which has the
+    /// layout of [`Active::updated_bones`](super::active::Active::updated_bones).
     #[must_use]
     pub fn with_updated_bones(&self, bits: &Buffer<u32>) -> Self {
         Self { updated_bones: Some(bits.clone()), ..self.clone() }
     }
 
-    /// Another buffer of the same crowd: what is prepared over one of both is prepared over the other.
+    /// Another buffer of the same crowd, which shares the record of what was prepared.
     pub(crate) fn beside(&self, matrices: Buffer<Affine>) -> Self {
         Self { matrices, updated_bones: None, consumer: self.consumer.clone() }
     }
 
-    /// A bit for each slot of each instance whose matrix a frame updated, as
-    /// [`Active::updated_bones`](super::active::Active::updated_bones). Without, any may have changed.
+    /// One bit per slot of each instance for the matrices that a frame updated, in the layout of
+    /// [`Active::updated_bones`](super::active::Active::updated_bones). If `None`, any matrix may have changed.
     pub fn updated_bones(&self) -> Option<&Buffer<u32>> {
         self.updated_bones.as_ref()
     }
 
-    /// How many matrices.
+    /// Number of matrices.
     pub fn len(&self) -> usize {
         self.matrices.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no matrices.
     pub fn is_empty(&self) -> bool {
         self.matrices.is_empty()
     }
 
-    /// The wgpu buffer, to bind or to copy: three rows of four `f32` a matrix.
+    /// The wgpu buffer, to bind or to copy: three rows of four `f32` per matrix.
     pub fn raw(&self) -> &wgpu::Buffer {
         self.matrices.raw()
     }
 
-    /// The matrices: see [`Buffer::read`].
+    /// Reads the matrices; see [`Buffer::read`].
     ///
     /// # Errors
-    /// Whatever the device reports.
+    /// Errors of the device.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.matrices.read(gpu).await
     }
 
-    /// [`ModelMatrices::read`], blocking: see [`Buffer::read_blocking`].
+    /// As [`ModelMatrices::read`], but blocks; see [`Buffer::read_blocking`].
     ///
     /// # Errors
-    /// Whatever the device reports, or [`GpuError::Hung`].
+    /// Errors of the device, or [`GpuError::Hung`].
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.matrices.read_blocking(gpu)
     }
 
-    /// The buffer itself, which no caller gets: a second handle made of it would not know of the first.
+    /// The buffer. It is not public: a second handle made from it would not share the record.
     pub(crate) fn buffer(&self) -> &Buffer<Affine> {
         &self.matrices
     }
 
-    /// Who was prepared over these matrices, shared by all handles to them.
+    /// The record of what was prepared over these matrices, shared by all handles to them.
     pub(crate) fn consumer(&self) -> &ExclusiveConsumer {
         &self.consumer
     }
 }
 
-/// What excludes other uses of the same model matrices.
+/// Uses of model matrices that exclude each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Consumer {
-    /// A gate that bounds the error of what is blended linearly.
+    /// A gate that bounds the error of linearly blended vertices.
     BoundedGate,
     /// Skinning by dual quaternions.
     DualQuaternions,
@@ -98,26 +99,27 @@ pub(crate) enum Consumer {
 pub(crate) struct ExclusiveConsumer(Arc<OnceLock<Consumer>>);
 
 impl ExclusiveConsumer {
-    /// Prepares for a consumer, for good.
+    /// Records a consumer permanently.
     ///
     /// # Errors
-    /// [`InputError`] where the other one came first.
+    /// [`InputError`] if the other one came first.
     pub(crate) fn claim(&self, consumer: Consumer) -> Result<(), InputError> {
         refuse_other(*self.0.get_or_init(|| consumer), consumer)
     }
 
-    /// Refuses what [`ExclusiveConsumer::claim`] would, and prepares nothing.
+    /// Refuses what [`ExclusiveConsumer::claim`] would refuse, and records nothing.
     ///
     /// # Errors
-    /// [`InputError`] where the other one came first.
+    /// [`InputError`] if the other one came first.
     pub(crate) fn check(&self, consumer: Consumer) -> Result<(), InputError> {
         self.0.get().map_or(Ok(()), |first| refuse_other(*first, consumer))
     }
 
-    /// Refuses a list of active bones that was made for another crowd: what a gate promises would not be known there.
+    /// Refuses a list of active bones that was made for another crowd, because that crowd would not know of the
+    /// gate's bound.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] for another crowd.
     pub(crate) fn check_same(&self, of_list: &Self) -> Result<(), InputError> {
         if Arc::ptr_eq(&self.0, &of_list.0) {
             return Ok(());

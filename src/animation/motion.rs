@@ -1,18 +1,9 @@
-//! How far a clip moves each bone: the path of its local transform along the clip's common timeline, weighed by how far
-//! that moves points of the model. Bounds of the error that a stale pose causes are read from it (spec 3.4).
+//! Bounds on the motion of each bone along a clip: the path of its local transform along the clip's common
+//! timeline, weighted by how far it moves points of the model. They bound the error of a stale pose.
 //!
-//! With stale prefixes P′ and fresh suffixes y, a point moves by `v′ − v = Σ P′ (L′ − L) y` over the bones above it,
-//! so one bone contributes at most `σ·(|ΔT| + θ·ρ⁺ + |ΔS|·ρ)`: ΔT, θ and ΔS are what its local translation, rotation
-//! and scale (largest component) moved since it was sampled, σ the product of the largest scales of the bones above,
-//! ρ its reach, the farthest that a point which follows it lies from its origin before its own scale, ρ⁺ = S·ρ with
-//! its own largest scale S. A path is never shorter than its chord, so sums along the clip bound the differences:
-//!
-//! - linear: the way between the keys, evenly; rotations at constant speed;
-//! - nlerp: the arc's largest speed, `tan(θ/4)/(θ/4)` of the mean;
-//! - cubic: at most the longest edge of the control polygon times 3, for each unit of the fraction between the keys; for
-//!   rotations twice that divided by the spline's least length, and nothing bounds them where that is about 0;
-//! - step, and repeated times: a jump at the later key;
-//! - a loop: a jump from the last pose to the first.
+//! The path of a part is the sum of its changes from key to key, which is never shorter than the direct change
+//! between two times. `docs/pixel-bounds.md` has the bound on a point's error, and the path lengths of each
+//! interpolation.
 
 use super::clip_set::{ClipEntry, ClipSet};
 use crate::asset::Bone;
@@ -20,22 +11,22 @@ use crate::asset::clip::{Clip, Interpolation, Part, Track};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Moments at which a spline of rotations is measured between two keys.
+/// Number of samples of a spline of rotations between two keys.
 const MOMENTS: usize = 64;
 
-/// A spline of rotations that comes nearer to zero than this may turn by anything in no time.
+/// A spline of rotations that comes closer to zero than this may rotate by any angle at once.
 const SHORTEST: f64 = 0.01;
 
-/// Path lengths of one part of one bone: at the times of the common timeline.
+/// The path length of one part of one bone, at the times of the common timeline.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
-    /// From each time to the next, evenly; 0 after the last.
+    /// The length from each time to the next, at constant speed; 0 after the last.
     pub rises: Vec<f64>,
-    /// At each time, all at once.
+    /// The length of the jump at each time.
     pub jumps: Vec<f64>,
-    /// From the end of the clip to its start.
+    /// The length from the end of the clip to its start.
     pub wrap: f64,
-    /// Somewhere it moves as fast as it likes: nothing bounds it.
+    /// Whether its speed has no bound somewhere.
     pub is_boundless: bool,
 }
 
@@ -44,7 +35,7 @@ impl Path {
         Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0, is_boundless: false }
     }
 
-    /// Of the whole clip, the way back to its start included.
+    /// The length of the whole clip, with the way back to its start.
     pub fn total(&self) -> f64 {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }
@@ -53,9 +44,9 @@ impl Path {
 /// The motion of one bone along a clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoneMotion {
-    /// Metres, radians, factors.
+    /// Paths in metres, radians, and scale factors.
     pub parts: [Path; 3],
-    /// The farthest that its origin lies from its parent's, metres.
+    /// The largest distance of its origin from its parent's, in metres.
     pub translation: f64,
     /// Its largest scale along an axis.
     pub scale: f64,
@@ -64,7 +55,7 @@ pub struct BoneMotion {
 /// The motion of every bone along a clip.
 ///
 /// # Panics
-/// With a clip that is not the set's.
+/// If the clip is not the one of `entry` in the set.
 pub fn motions(set: &ClipSet, entry: &ClipEntry, clip: &Clip, path: RotationPath) -> Vec<BoneMotion> {
     let times = set.common_times(entry);
     (0..clip.bones()).map(|bone| bone_motion(clip, bone, times, path)).collect()
@@ -90,7 +81,7 @@ struct Keys<'a> {
     path: RotationPath,
     interpolation: Interpolation,
     times: &'a [f32],
-    /// One a key, or three.
+    /// One value per key, or three.
     values: Vec<Value>,
 }
 
@@ -112,14 +103,14 @@ impl<'a> Keys<'a> {
         if self.is_spline() { &self.values[3 * key + 1] } else { &self.values[key] }
     }
 
-    /// How far two values are apart.
+    /// The distance between two values.
     fn distance(&self, a: &Value, b: &Value) -> f64 {
         let minus = |a: &Value, b: &Value| std::array::from_fn(|i| a[i] - b[i]);
         match self.part {
             Part::Translation => length(&minus(a, b)),
             Part::Rotation => {
                 let [a, b] = [a, b].map(normalized);
-                // From the chord of q and the nearer one of ±q.
+                // From the chord to the nearer of q and −q.
                 let plus: Value = std::array::from_fn(|i| a[i] + b[i]);
                 let (near, far) = (length(&minus(&a, &b)), length(&plus));
                 4.0 * near.min(far).atan2(near.max(far))
@@ -154,8 +145,8 @@ impl<'a> Keys<'a> {
         path
     }
 
-    /// The largest way a unit of the stretch between a key and the next, whose values are `way` apart; `None` if nothing
-    /// bounds it.
+    /// The largest speed, per unit of the fraction between a key and the next, whose values are `way` apart;
+    /// `None` if there is no bound.
     fn speed(&self, key: usize, way: f64) -> Option<f64> {
         if self.is_spline() {
             let bezier = self.bezier(key);
@@ -174,7 +165,7 @@ impl<'a> Keys<'a> {
         Some(if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way })
     }
 
-    /// The control points of a spline between two keys; its tangents are already in units of the stretch.
+    /// The control points of a spline between two keys; its tangents are already in units of the segment.
     fn bezier(&self, key: usize) -> [Value; 4] {
         let [start, leaving, arriving, end] = [1, 2, 3, 4].map(|at| self.values[3 * key + at]);
         let off = |point: Value, tangent: Value, side: f64| -> Value {
@@ -183,7 +174,7 @@ impl<'a> Keys<'a> {
         [start, off(start, leaving, 1.0), off(end, arriving, -1.0), end]
     }
 
-    /// Points whose hull holds all values.
+    /// Points whose convex hull contains all values.
     fn hull(&self) -> Vec<Value> {
         if !self.is_spline() {
             return self.values.clone();
@@ -195,7 +186,8 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// The largest angle a unit of a spline of quaternions, whose largest speed is `speed`, turns after normalization.
+/// The largest angular speed, per unit of the fraction, of a normalized spline of quaternions whose largest
+/// speed is `speed`.
 fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> Option<f64> {
     let at = |t: f64| -> Value {
         let u = 1.0 - t;
@@ -203,7 +195,7 @@ fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> Option<f64> {
         std::array::from_fn(|i| (0..4).map(|point| weights[point] * bezier[point][i]).sum())
     };
     let moments = (0..=MOMENTS).map(|moment| length(&at(moment as f64 / MOMENTS as f64)));
-    // Between two moments it is at most half a step from one of them.
+    // Between two samples, the spline is at most half a step from one of them.
     let least = moments.fold(f64::INFINITY, f64::min) - speed / (2 * MOMENTS) as f64;
     (least > SHORTEST).then(|| 2.0 * speed / least)
 }
@@ -221,11 +213,12 @@ fn normalized(value: &Value) -> Value {
     value.map(|x| x / length)
 }
 
-/// How far each bone's parts move points: factors of [`Path`]s of translation, rotation and scale, metres a unit.
+/// How far each bone's parts move points: factors for the [`Path`]s of translation, rotation and scale, in
+/// metres per unit.
 pub type Levers = Vec<[f64; 3]>;
 
-/// The largest: a bound of what any point that follows the bone moves. `bone_radii`: for each bone, how far points that
-/// follow it alone lie from its origin, metres.
+/// The largest factors: they bound the motion of any point that follows the bone. `bone_radii` gives, for each
+/// bone, the distance from its origin, in metres, of points that follow it alone.
 pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Levers {
     let bone_radius = subtree_radii(skeleton, motions, bone_radii);
     let mut above = vec![1.0; motions.len()];
@@ -240,7 +233,8 @@ pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: 
     levers
 }
 
-/// The farthest that points which follow each bone or one below it lie from its origin, before its own scale.
+/// For each bone, the largest distance from its origin of points that follow it or a bone below it, before its
+/// own scale.
 pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Vec<f64> {
     let mut whole: Vec<f64> = bone_radii.iter().copied().map(f64::from).collect();
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
@@ -252,14 +246,14 @@ pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[
     whole
 }
 
-/// The root of the sum of squares over points, `bone_radii` from each bone at or below, of how far they move: at rest, in the
-/// model's units, on average over directions.
+/// The root of the sum of squares of how far points move, for points at `bone_radii` from each bone at or
+/// below: at rest, in the model's units, averaged over directions.
 pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     let model_matrices =
         crate::animation::local_to_model::reference::local_to_model(skeleton, &skeleton.rest());
     let origin = |bone: usize| glam::DVec3::from_array(model_matrices[bone].map(|row| f64::from(row[3])));
     let scales_above = skeleton.scales_above();
-    // Of each bone: points, and squares of their distances.
+    // For each bone, the number of points and the sums of squares of their distances.
     let mut sums = vec![[0.0; 3]; model_matrices.len()];
     for (bone, bone_radius) in bone_radii.iter().enumerate() {
         let own = (f64::from(*bone_radius) * scales_above[bone] * skeleton.bones()[bone].scale()).powi(2);
@@ -280,10 +274,11 @@ pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     sums.into_iter().zip(scales_above).zip(skeleton.bones()).map(lever).collect()
 }
 
-/// How much each bone should take of what the bones above it leave of the allowed way.
+/// The fraction that each bone should take of what the bones above it leave of the error budget.
 ///
-/// A bone that moves at rate r is sampled r/s times for its share s of the whole. The fewest samples of a subtree with the
-/// budget b are K/b: for a leaf K = r, and for a bone above subtrees K = (√r + √ΣK)², of which it takes √r/(√r + √ΣK).
+/// A bone that moves at rate r is sampled r/s times for its part s of the whole. The smallest number of samples
+/// of a subtree with budget b is K/b. For a leaf K = r; for a bone above subtrees K = (√r + √ΣK)², and the bone
+/// takes the fraction √r/(√r + √ΣK).
 pub fn budget_fractions(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
     let bones = skeleton.bones();
     let mut below = vec![0.0; rates.len()];

@@ -1,47 +1,48 @@
-//! The order in which bones are walked: parents first, cut into chains.
+//! The order in which bones are walked: parents first, split into chains.
 
 use crate::asset::skeleton::Skeleton;
 
 /// The parent of a root.
 pub const NO_PARENT: u32 = u32::MAX;
 
-/// The parent's bone is the slot before.
+/// The parent is the bone of the previous slot.
 pub const CONTINUES: u32 = u32::MAX - 1;
 
-/// A bone's place in an [`Order`].
+/// The entry of a bone in an [`Order`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Slot {
     /// The bone.
     pub bone: u32,
-    /// The bone above it, [`CONTINUES`] or [`NO_PARENT`].
+    /// The parent bone, [`CONTINUES`] or [`NO_PARENT`].
     pub parent: u32,
-    /// Slots of the bone and all below it: they begin here.
+    /// Number of slots of the bone and all bones below it, starting with this one.
     pub subtree: u32,
     /// Unused.
     pub padding: u32,
 }
 
-/// Slots from parent to child.
+/// A run of slots from parent to child.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Chain {
-    /// The first slot.
+    /// Index of the first slot.
     pub first: u32,
-    /// How many.
+    /// Number of slots.
     pub count: u32,
 }
 
-/// The order in which a skeleton's bones are walked, cut into chains so that as few as possible wait for each other.
+/// The order in which a skeleton's bones are walked, split into chains so that as few as possible wait for each
+/// other.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Order {
     /// Every bone once.
     pub slots: Vec<Slot>,
-    /// Chains that wait for none, then those that wait for these, and so on.
+    /// The chains: first those that depend on no other, then those that depend on these, and so on.
     pub chains: Vec<Chain>,
-    /// Where each such level begins in `chains`; one more than there are levels.
+    /// Where each such level begins in `chains`; one entry more than there are levels.
     pub levels: Vec<u32>,
 }
 
@@ -52,10 +53,10 @@ impl Order {
         let others = other_children(skeleton, &target);
         let bones = skeleton.bones();
         let mut slots: Vec<Slot> = Vec::with_capacity(bones.len());
-        // Of each level.
+        // The chains of each level.
         let mut chains: Vec<Vec<Chain>> = Vec::new();
         let roots = (0..bones.len() as u32).filter(|bone| bones[*bone as usize].parent.is_none());
-        // First bones of chains that are still to be walked, with their levels; the last is next.
+        // The first bones of chains that are still to be walked, with their levels; the last entry is next.
         let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
         while let Some((first_bone, level)) = waiting.pop() {
             let first = slots.len() as u32;
@@ -71,7 +72,7 @@ impl Order {
         }
         let mut order = Self { slots, chains: Vec::new(), levels: vec![0] };
         for mut level in chains {
-            // Threads beside each other walk chains of one instance, as long as each other where possible.
+            // Threads of one instance lie side by side, with chains of similar length where possible.
             level.sort_by_key(|chain| std::cmp::Reverse(chain.count));
             order.chains.extend(level);
             order.levels.push(order.chains.len() as u32);
@@ -79,14 +80,14 @@ impl Order {
         order
     }
 
-    /// Each bone's slot.
+    /// The slot of each bone.
     pub(crate) fn slots_of_bones(&self) -> Vec<usize> {
         let mut slot_of = vec![0; self.slots.len()];
         self.slots.iter().enumerate().for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
         slot_of
     }
 
-    /// Words of 32 bits that hold one for each bone.
+    /// The number of 32-bit words that hold one bit per bone.
     pub fn words(&self) -> usize {
         self.slots.len().div_ceil(32)
     }
@@ -105,17 +106,17 @@ fn other_children(skeleton: &Skeleton, target: &[Option<u32>]) -> Vec<Vec<u32>> 
     others
 }
 
-/// For each bone, the child that continues its chain: the one below which most levels of chains lie, or else most
-/// bones.
+/// For each bone, the child that continues its chain: the one with the most levels of chains below it or, if
+/// these are equal, the most bones.
 fn remap(skeleton: &Skeleton) -> Vec<Option<u32>> {
     let mut target: Vec<Option<u32>> = vec![None; skeleton.len()];
-    // Levels that a bone's chain and all below need, if it continues into its heir; and into no child.
+    // The levels that a bone's chain and everything below it need, with the chain continued.
     let mut levels = vec![1_u32; skeleton.len()];
     let mut best: Vec<(u32, u32)> = vec![(0, 0); skeleton.len()];
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
         let Some(parent) = node.parent.map(|parent| parent as usize) else { continue };
         let rank = (levels[bone], skeleton.descendants()[bone] + 1);
-        // The heir's levels count as they are, those of others one more.
+        // The levels of the child that continues the chain count as they are, those of others one more.
         if rank >= best[parent] {
             levels[parent] = levels[parent].max(rank.0).max(best[parent].0 + u32::from(best[parent].0 > 0));
             best[parent] = rank;
@@ -139,7 +140,8 @@ mod tests {
         Skeleton::of_joints(parents.iter().map(bone).collect()).expect("valid")
     }
 
-    /// Every bone once, parents first, subtrees without a gap, in levels of chains that wait for each other.
+    /// Checks that every bone occurs once, parents first, with contiguous subtrees and levels of chains that
+    /// wait for each other.
     fn check(skeleton: &Skeleton) -> Order {
         let order = Order::new(skeleton);
         let mut slot_of = vec![usize::MAX; skeleton.len()];
@@ -190,7 +192,7 @@ mod tests {
 
     #[test]
     fn few_chains_wait_for_each_other() {
-        // A full binary tree needs as many levels as it has; one of 10 levels.
+        // A full binary tree of 10 levels needs as many levels of chains.
         let tree: Vec<_> = (0..1023_u32).map(|bone| bone.checked_sub(1).map(|bone| bone / 2)).collect();
         assert_eq!(check(&skeleton(&tree)).levels.len() - 1, 10);
         let model = crate::samples::creature().expect("valid");

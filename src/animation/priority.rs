@@ -1,25 +1,26 @@
-//! Priorities of bones, key by key: how much a key contributes to the shape of the character (A section 12). Computed
-//! once a clip, at load.
+//! Priorities of bones, key by key: how much a key contributes to the shape of the character (A section 12).
+//! They are computed once per clip, at load time.
 //!
 //! The keys of a bone are the distinct times of its translation, rotation and scale keys together. Each has six
 //! terms from 0 to 1:
 //!
 //! | term | value | divided by |
 //! |---|---|---|
-//! | translation | way from this key to the next, times the largest scales above at rest | the clip's largest |
-//! | rotation | radians from this key to the next | the clip's largest |
+//! | translation | distance from this key to the next, times the largest scales above it at rest | the clip's largest |
+//! | rotation | angle from this key to the next, in radians | the clip's largest |
 //! | scale | length of the difference of both scales, divided by the bone's largest at rest | the clip's largest |
-//! | children | direct and indirect children | the skeleton's largest |
-//! | depth | D − d + 1 for a bone d steps from the root, D the deepest's | D + 1 |
-//! | user | given for each bone, ½ unless told | 1 |
+//! | children | number of descendants | the skeleton's largest |
+//! | depth | D − d + 1 for a bone d steps from the root, where D is the depth of the deepest | D + 1 |
+//! | user | given for each bone; ½ by default | 1 |
 //!
 //! A priority is the weighted mean of the terms.
 //!
-//! **Decided**, where A contradicts itself: its rotation term is a dot product of quaternions, which is *largest* when
-//! nothing turns and blind to q ≡ −q; the angle is what its prose means. Its depth term grows away from the root
-//! (12.7), its prose wants the root to matter most (10.5, 11.5): the prose wins. A largest value below [`NOISE`], of
-//! the model's size for translations, makes its term 0, so that noise never becomes importance. The last key's
-//! successor is the bone's first where the clip loops; otherwise nothing follows it, and the first three terms are 0.
+//! **Decided**, where A contradicts itself: its rotation term is a dot product of quaternions, which is
+//! *largest* when nothing rotates and which distinguishes q from −q; its prose means the angle. Its depth term
+//! grows away from the root (12.7), but its prose gives the root the highest priority (10.5, 11.5), which is
+//! taken. If a largest value is below [`NOISE`], for translations relative to the model's size, its term is 0,
+//! so that noise never becomes important. The last key is followed by the bone's first if the clip loops;
+//! otherwise nothing follows it, and its first three terms are 0.
 
 mod analyze;
 
@@ -31,28 +32,29 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 
-/// Largest values below this count as none: radians, factors of the scale at rest, and shares of the model's size.
+/// Largest values below this count as 0: in radians, factors of the scale at rest, and fractions of the model's
+/// size.
 pub const NOISE: f64 = 1e-6;
 
-/// The user's term of a bone about which nothing is said.
+/// The user's term of a bone by default.
 pub const USER_DEFAULT: f32 = 0.5;
 
 /// The terms' names, in order.
 pub const TERMS: [&str; 6] = ["translation", "rotation", "scale", "children", "depth", "user"];
 
-/// How much each term counts. They sum to 1.
+/// The weights of the terms, which sum to 1.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Weights(pub [f64; 6]);
 
 impl Default for Weights {
-    /// All the same, as A has it.
+    /// Equal weights, as in A.
     fn default() -> Self {
         Self([1.0 / 6.0; 6])
     }
 }
 
 impl Weights {
-    /// Checks each and the sum.
+    /// Checks each weight and the sum.
     ///
     /// # Errors
     /// [`InputError`] for weights outside 0..=1, and for a sum that is more than 1e-4 from 1.
@@ -70,36 +72,36 @@ impl Weights {
     }
 }
 
-/// One key of one bone.
+/// The priority of one key of one bone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeyPriority {
-    /// The bone.
+    /// Index of the bone.
     pub bone: u32,
-    /// Counted from 0, among the bone's keys.
+    /// Index of the key among the bone's keys.
     pub key: u32,
-    /// Seconds.
+    /// Time in seconds.
     pub time: f32,
-    /// As in [`TERMS`], each 0 to 1.
+    /// The terms in the order of [`TERMS`], each 0 to 1.
     pub terms: [f32; 6],
-    /// Their weighted mean.
+    /// The weighted mean of the terms.
     pub priority: f32,
 }
 
-/// Every key's priority: bone by bone, key by key.
+/// The priorities of all keys of a clip: bone by bone, key by key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Priorities {
     /// All keys.
     pub keys: Vec<KeyPriority>,
-    /// Where each bone's keys begin; one more than there are bones.
+    /// Where each bone's keys begin; one entry more than there are bones.
     pub offsets: Vec<u32>,
 }
 
 impl Priorities {
-    /// The priorities of a clip's keys. `user` has one value from 0 to 1 a bone.
+    /// Computes the priorities of a clip's keys. `user` has one value per bone, from 0 to 1.
     ///
     /// # Errors
-    /// [`InputError`] for weights that are none ([`Weights::validate`]), a clip of another skeleton, and other than
-    /// one user value a bone or one outside 0..=1.
+    /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, and for user
+    /// values that are not one per bone or that are outside 0..=1.
     pub fn new(
         skeleton: &Skeleton,
         clip: &Clip,
@@ -125,7 +127,7 @@ impl Priorities {
         Ok(Self { keys, offsets: differences.offsets })
     }
 
-    /// A bone's keys.
+    /// The keys of a bone.
     pub fn of(&self, bone: usize) -> &[KeyPriority] {
         &self.keys[self.offsets[bone] as usize..self.offsets[bone + 1] as usize]
     }
@@ -142,14 +144,14 @@ fn check_user(skeleton: &Skeleton, user: &[f32]) -> Result<(), InputError> {
     }
 }
 
-/// What changes between a key and the next.
+/// The change from a key to the next.
 struct Difference {
     bone: u32,
     key: u32,
     time: f32,
-    /// The time of the next key; its own, where none follows.
+    /// The time of the next key, or its own if there is none.
     until: f32,
-    /// Units of the model, radians, factors of the scale at rest.
+    /// The change in units of the model, in radians, and in factors of the scale at rest.
     change: [f64; 3],
 }
 
@@ -230,14 +232,15 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
     a.distance(b)
 }
 
-/// `2·acos(min(1, |a·b|))`, from the chord: exact for small angles, where the cosine's rounding would be 0.001 rad.
+/// The angle `2·acos(min(1, |a·b|))`, computed from the chord, which is exact for small angles; the rounding of
+/// the cosine would give 0.001 rad.
 fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|q| glam::DVec4::from(q.map(f64::from)).normalize());
     let b = if a.dot(b) < 0.0 { -b } else { b };
     4.0 * libm::asin((a.distance(b) / 2.0).min(1.0))
 }
 
-/// The diagonal of the box around all bones at rest, units of the model.
+/// The diagonal of the box around all bones at rest, in units of the model.
 pub fn size(skeleton: &Skeleton) -> f64 {
     let model_matrices = local_to_model(skeleton, &skeleton.rest());
     let places = model_matrices.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));
@@ -300,7 +303,7 @@ mod tests {
     fn terms_are_those_computed_by_hand() {
         let found = of(false, Weights::default());
         assert_eq!(found.offsets, [0, 3, 6, 9, 9]);
-        // Largest: 2 m, ¼ turn, 0.6; 3 children, depth 2.
+        // The largest values: 2 m, ¼ turn, 0.6; 3 descendants, depth 2.
         close(
             found.of(0),
             &[
@@ -318,7 +321,7 @@ mod tests {
                 (2.0, [0.0, 0.0, 0.0, third, two_thirds, 0.5]),
             ],
         );
-        // Keys at 0, 1 and 2 together: the scale is halfway at 1.
+        // The keys at 0, 1 and 2 together: the scale is halfway at 1.
         close(
             found.of(2),
             &[
@@ -333,7 +336,7 @@ mod tests {
     #[test]
     fn loops_lead_back_to_the_first_key() {
         let found = of(true, Weights::default());
-        // From (2, 1) to 0: √5 m is the largest translation now, and ⅜ of a turn the largest rotation.
+        // From (2, 1) to 0: √5 m is now the largest translation, and ⅜ of a turn the largest rotation.
         let far = 5.0_f32.sqrt();
         assert!(
             (found.of(0)[0].terms[0] - 2.0 / far).abs() < 1e-6
@@ -343,7 +346,7 @@ mod tests {
             (found.of(1)[0].terms[1] - 2.0 / 3.0).abs() < 1e-6
                 && (found.of(1)[2].terms[1] - 1.0).abs() < 1e-6
         );
-        // 0.3 + 0.3 there, 0.6 back.
+        // 0.3 + 0.3 forward, 0.6 back.
         assert!((found.of(2)[0].terms[2] - 0.5).abs() < 1e-6 && (found.of(2)[2].terms[2] - 1.0).abs() < 1e-6);
     }
 
@@ -372,10 +375,11 @@ mod tests {
         assert!(found.keys.iter().all(|key| key.terms[..3] == [0.0; 3]));
     }
 
-    /// Below a bone of another scale, translations count as far as they are seen, and noise stays noise.
+    /// Below a bone with another scale, translations count by their size in the model, and noise stays noise.
     #[test]
     fn units_do_not_matter() {
-        // 2 m tall, and as it was when bones were scaled and moved in other units; the arm is twice the hand's.
+        // A model 2 m tall, and the same with bones scaled and animated in other units; the arm's scale is
+        // twice the hand's.
         let found = |scale: f32, noise: f32| {
             let rest = |at: usize| Transform {
                 translation: [0.0, if at == 0 { 1.0 } else { 1.0 / scale }, 0.0],
@@ -387,7 +391,7 @@ mod tests {
                 plain.bones().iter().enumerate().map(|(at, bone)| Bone { rest: rest(at), ..bone.clone() });
             let skeleton = Skeleton::of_joints(bones.collect()).expect("valid");
             let moved = |x: f32| keys(&[0.0, 1.0], &[[0.0; 4], [x * noise, 0.0, 0.0, 0.0]]);
-            // Rounding of the scale, as far as it goes with noise alone.
+            // The rounding of the scale, as large as noise can be.
             let grown = scale * (1.0 + 5e-7);
             let bones = [
                 BoneKeys {
@@ -427,7 +431,7 @@ mod tests {
     #[test]
     fn bad_weights_and_user_values_are_refused() {
         let refused = |weights: [f64; 6], user: &[f32]| {
-            Priorities::new(&skeleton(), &clip(), true, &Weights(weights), user).expect_err("refused").field
+            Priorities::new(&skeleton(), &clip(), true, &Weights(weights), user).expect_err("refused").path
         };
         let good = Weights::default().0;
         assert_eq!(refused([0.5; 6], &[0.5; 4]), "weights");

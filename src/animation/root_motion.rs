@@ -1,24 +1,26 @@
-//! Root motion: what moves a character through its world is taken out of a clip and handed to the caller, who moves
-//! the character; the clip stays in place.
+//! Root motion: the part of a clip that moves a character through its world is taken out of the clip and given
+//! to the caller, who moves the character; the clip then plays in place.
 //!
-//! [`RootMotion::extract`] does this once a clip, at load. [`RootMotion::delta`] then answers, for what an instance
-//! plays, how it moves between two moments, across loops, many at once, backwards, and up to the ends where it clamps:
+//! [`RootMotion::extract`] does this once per clip, at load time. [`RootMotion::delta`] then gives the motion
+//! of an instance between two times, across any number of loops, backwards, and up to the ends of a clamped
+//! clip:
 //!
 //! `world(to) = world(from) · delta(from, to)`
 //!
-//! The work is a few lookups an instance, on the host, where characters' worlds are kept: it asks physics and
-//! navigation before it moves. [`deltas`] serves a crowd without allocation.
+//! It takes a few lookups per instance on the host, which keeps the characters' placements and asks physics and
+//! navigation before it moves them. [`deltas`] handles a crowd without allocation.
 //!
 //! # What is taken
 //!
-//! With the root bone's place p and rotation q in the model's space at a moment, and p₀ and q₀ at the clip's start,
-//! motion turns about the vertical (+Y) through p₀ by the *yaw* and then moves by those parts of p − p₀ that are
-//! [`Taken`]. The yaw is the twist of q · q₀⁻¹ about the vertical: what is left of it when its tilt is undone by the
-//! shortest arc. What is not taken stays in the pose, so motion · pose in place = pose, exactly but for rounding; where
-//! a rotation both turns and tilts between two keys, within [`YAW_BOUND`], since it is cut into short linear stretches.
+//! Let p and q be the root bone's position and rotation in the model's space at some time, and p₀ and q₀ those
+//! at the clip's start. The motion rotates about the vertical (+Y) through p₀ by the *yaw*, and then translates
+//! by those parts of p − p₀ that are [`Taken`]. The yaw is the twist of q · q₀⁻¹ about the vertical: the
+//! rotation that remains after its tilt is undone along the shortest arc. Everything else stays in the pose, so
+//! that motion · pose in place = pose, up to rounding; where a rotation both turns and tilts between two keys,
+//! it holds within [`YAW_BOUND`], because the rotation is split into short linear segments.
 //!
-//! Bones above the root must not move in the clip; they may turn, mirror and scale it (exporters' axes and units), but
-//! for a yaw they must scale evenly and not mirror.
+//! Bones above the root must not move in the clip. They may rotate, mirror and scale it (exporters' axes and
+//! units); but if the yaw is taken, their scale must be uniform and must not mirror.
 
 use crate::InputError;
 use crate::animation::instance::Instance;
@@ -35,58 +37,60 @@ mod rigid;
 
 use rigid::Rigid;
 
-/// How far motion · pose in place may turn away from the pose between keys of a rotation whose yaw is taken, in radians,
-/// for roots that tilt by less than 60°. Between linear keys that turn about the vertical alone, it does not. Otherwise
-/// a stretch is cut into pieces of at most [`PIECE`], or [`SPLINE_PIECES`] of a spline, in which yaw and tilt advance
-/// evenly: off by an eighth of the square of a piece times how fast the yaw bends, which tan(tilt) bounds. Measured on
-/// random keys: 7e-5 between linear ones, 2.6e-4 on splines with random tangents.
+/// The largest angle, in radians, between motion · pose in place and the pose, between keys of a rotation whose
+/// yaw is taken, for roots that tilt by less than 60°. Between linear keys that rotate about the vertical only,
+/// the angle is 0. Otherwise a segment is split into pieces of at most [`PIECE`], or [`SPLINE_PIECES`] for a
+/// spline, in which yaw and tilt advance at constant speed: the error is an eighth of the square of a piece
+/// times the curvature of the yaw, which tan(tilt) bounds. Measured on random keys: 7e-5 between linear keys,
+/// 2.6e-4 on splines with random tangents.
 pub const YAW_BOUND: f64 = 5e-4;
 
-/// What a piece turns by at most, in radians: 1°.
+/// The largest angle of a piece, in radians: 1°.
 pub const PIECE: f64 = std::f64::consts::PI / 180.0;
 
-/// Pieces of a stretch of a cubic spline.
+/// Number of pieces of a segment of a cubic spline.
 pub const SPLINE_PIECES: u32 = 128;
 
 /// Which parts of a root bone's motion are taken out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Taken {
-    /// Along x and z.
+    /// Translation along x and z.
     pub horizontal: bool,
-    /// Along y: climbing, jumps that physics should know of.
+    /// Translation along y, for climbing and for jumps that physics should handle.
     pub vertical: bool,
-    /// About y. Only together with `horizontal`.
+    /// Rotation about y; only together with `horizontal`.
     pub yaw: bool,
 }
 
 impl Default for Taken {
-    /// Horizontal motion alone.
+    /// Horizontal motion only.
     fn default() -> Self {
         Self { horizontal: true, vertical: false, yaw: false }
     }
 }
 
-/// What was taken out of a clip.
+/// The motion that was taken out of a clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RootMotion {
     duration: f64,
-    // Metres in the model's space since the clip's start.
+    // Translation in metres in the model's space since the clip's start.
     path: Keys,
-    // Key times and radians about the vertical since the clip's start, on straight lines.
+    // Key times and yaw in radians since the clip's start, with linear interpolation.
     turn_times: Vec<f32>,
     turns: Vec<f64>,
-    // Where the bone is at the clip's start: what it turns about.
+    // The bone's position at the clip's start, about which it rotates.
     pivot: [f64; 3],
-    // From start to end.
+    // The motion from start to end.
     whole: Rigid,
 }
 
 impl RootMotion {
-    /// Takes the motion of `bone` out of a clip: the clip in place, and the motion.
+    /// Takes the motion of `bone` out of a clip. Returns the clip in place, and the motion.
     ///
     /// # Errors
-    /// [`InputError`] for a clip of another skeleton, a bone that it lacks, nothing that is taken, a yaw without
-    /// horizontal motion, and bones above that move, have no extent, or, for a yaw, mirror or scale unevenly.
+    /// [`InputError`] for a clip of another skeleton, for a bone that it does not have, if nothing is taken,
+    /// for a yaw without horizontal motion, and for bones above that move, that have no extent, or that mirror
+    /// or scale unevenly while the yaw is taken.
     pub fn extract(
         skeleton: &Skeleton,
         clip: &Clip,
@@ -96,12 +100,12 @@ impl RootMotion {
         extract::extract(skeleton, clip, bone, taken)
     }
 
-    /// How what `instance` plays moves it from one moment to another, in seconds since its start as
-    /// `KeyframeCursorJob::set` counts them; `to` may lie before `from`. A rotation about +Y and a translation in metres, in the
-    /// space of the model at `from`.
+    /// The motion of an instance from one time to another, in seconds since its start as
+    /// `KeyframeCursorJob::set` counts them; `to` may be before `from`. The result is a rotation about +Y and a
+    /// translation in metres, in the space of the model at `from`.
     ///
     /// # Errors
-    /// [`InputError`] for moments, starts and rates that are not finite.
+    /// [`InputError`] for times, starts and rates that are not finite.
     pub fn delta(&self, instance: &Instance, from: f64, to: f64) -> Result<Transform, InputError> {
         check_times(from, to)?;
         instance.validate(usize::MAX)?;
@@ -125,7 +129,7 @@ impl RootMotion {
         self.since_start(before).inverse().then(loops).then(self.since_start(after)).transform()
     }
 
-    /// The motion from the clip's start to a time inside it.
+    /// The motion from the clip's start to a time inside the clip.
     fn since_start(&self, time: f64) -> Rigid {
         let at = keyframe_cursor(&self.path.times, time as f32);
         let [x, y, z, _] = vector_at(&self.path.values, self.path.interpolation, at).map(f64::from);
@@ -150,13 +154,13 @@ fn check_times(from: f64, to: f64) -> Result<(), InputError> {
     Ok(())
 }
 
-/// [`RootMotion::delta`] of a whole crowd, without allocation: of one layer of it. Deltas of clips that are blended blend
-/// by the same weights ([`blend`](crate::animation::sample::reference::blend)). `motions` has one entry a clip of the set: `None` where
-/// nothing was taken out, which does not move.
+/// As [`RootMotion::delta`], for one layer of a whole crowd and without allocation. Deltas of blended clips are
+/// blended by the same weights ([`blend`](crate::animation::sample::reference::blend)). `motions` has one entry
+/// per clip of the set; an instance whose clip has `None` does not move.
 ///
 /// # Errors
-/// As [`RootMotion::delta`]; [`InputError`] for instances that play none of the clips, and other than one delta an
-/// instance.
+/// As [`RootMotion::delta`], and [`InputError`] for instances of a clip that does not exist and for a number of
+/// deltas that is not one per instance.
 pub fn deltas(
     motions: &[Option<RootMotion>],
     instances: &[Instance],

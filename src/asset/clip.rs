@@ -422,7 +422,7 @@ mod tests {
         let refused = |translation, rotation| {
             let bones = [BoneKeys::default(), BoneKeys { translation, rotation, scale: None }];
             let error = Clip::new("a", &skeleton(), &bones, 0.0).expect_err("refused");
-            (error.field, error.value)
+            (error.path, error.value)
         };
         let linear = Interpolation::Linear;
         for (times, values, field, value) in [
@@ -444,8 +444,8 @@ mod tests {
         let spline = keys(&[0.0], &[[0.0; 4]; 3], Interpolation::CubicSpline);
         assert_eq!(refused(None, spline).0, "clip.bones[1].rotation.values[1]");
         let few = Clip::new("a", &skeleton(), &[], 0.0).expect_err("refused");
-        assert_eq!(few.field, "clip.bones.len");
+        assert_eq!(few.path, "clip.bones.len");
         let long = Clip::new("a", &skeleton(), &[BoneKeys::default(), BoneKeys::default()], f32::NAN);
-        assert_eq!(long.expect_err("refused").field, "clip.duration");
+        assert_eq!(long.expect_err("refused").path, "clip.duration");
     }
 }

@@ -146,7 +146,7 @@ mod tests {
     fn what_follows_nothing_or_too_much_is_refused() {
         let refused = |given: &[(u32, f32)], value: &str| {
             let error = influences(given).expect_err("refused");
-            assert_eq!((error.field.as_str(), error.value.as_str()), ("w[0]", value));
+            assert_eq!((error.path.as_str(), error.value.as_str()), ("w[0]", value));
         };
         refused(&[], "0");
         refused(&[(0, 0.0), (1, 0.0)], "0");

@@ -359,7 +359,7 @@ mod tests {
         let refused = |change: &dyn Fn(&mut Mesh)| {
             let (mut mesh, skins) = triangle();
             change(&mut mesh);
-            mesh.validate(&skins).expect_err("refused").field
+            mesh.validate(&skins).expect_err("refused").path
         };
         assert_eq!(refused(&|mesh| mesh.skin = 1), "mesh.skin");
         assert_eq!(refused(&|mesh| mesh.uv.clear()), "mesh.uv.len");
@@ -389,7 +389,7 @@ mod tests {
             let level =
                 |(indices, error): &(&[u32], f32)| MeshLevel { indices: indices.to_vec(), error: *error };
             mesh.levels = levels.iter().map(level).collect();
-            mesh.validate(&skins).map_err(|error| error.field)
+            mesh.validate(&skins).map_err(|error| error.path)
         };
         let (one, none): (&[u32], &[u32]) = (&[0, 1, 2], &[]);
         assert_eq!(levelled(&[(one, 0.0), (one, 0.5), (&[1, 1, 1], 0.5)]), Ok(()));

@@ -163,11 +163,11 @@ mod tests {
 
     #[test]
     fn keys_are_checked() {
-        let refused = |values: &[f32]| keys(values, Interpolation::Linear).expect_err("refused").field;
+        let refused = |values: &[f32]| keys(values, Interpolation::Linear).expect_err("refused").path;
         assert_eq!(refused(&[0.0; 3]), "v.len");
         assert_eq!(refused(&[0.0, 0.0, f32::NAN, 0.0]), "v[2]");
         let descending = WeightKeys::new(["t", "v"], vec![1.0, 0.0], vec![0.0; 2], Interpolation::Step, 1);
-        assert_eq!(descending.expect_err("refused").field, "t[1]");
+        assert_eq!(descending.expect_err("refused").path, "t[1]");
     }
 
     #[test]

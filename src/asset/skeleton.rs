@@ -241,7 +241,7 @@ mod tests {
     fn what_is_no_skeleton_is_refused() {
         let refused = |bones: Vec<Bone>, joints: Vec<u32>| {
             let error = Skeleton::new(bones, joints).expect_err("refused");
-            (error.field, error.value)
+            (error.path, error.value)
         };
         let text = |field: &str, value: &str| (field.to_owned(), value.to_owned());
         assert_eq!(refused(vec![], vec![]), text("bones.len", "0"));
@@ -263,7 +263,7 @@ mod tests {
         let identity = glam::Mat4::IDENTITY.to_cols_array();
         let skin = Skin { name: String::new(), bones: vec![0], inverse_binds: vec![identity] };
         assert_eq!(skin.validate(&skeleton), Ok(()));
-        let refused = |skin: Skin| skin.validate(&skeleton).expect_err("refused").field;
+        let refused = |skin: Skin| skin.validate(&skeleton).expect_err("refused").path;
         assert_eq!(refused(Skin { bones: vec![1], ..skin.clone() }), "skin.bones[0]");
         assert_eq!(refused(Skin { inverse_binds: vec![], ..skin.clone() }), "skin.inverse_binds.len");
         let mut matrix = identity;

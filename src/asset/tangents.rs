@@ -275,7 +275,7 @@ mod tests {
 
     fn refused(mesh: &Mesh<'_>, field: &str, value: &str) {
         let error = mesh.validate().expect_err("refused");
-        assert_eq!((error.field.as_str(), error.value.as_str()), (field, value));
+        assert_eq!((error.path.as_str(), error.value.as_str()), (field, value));
     }
 
     #[test]

@@ -180,7 +180,7 @@ mod tests {
         assert!(decomposed("m", &projection).expect_err("projection").bound.contains("last row"));
         let mut wrong = matrix(&Transform::IDENTITY);
         wrong[6] = f32::NAN;
-        assert_eq!(decomposed("m", &wrong).expect_err("NaN").field, "m[6]");
+        assert_eq!(decomposed("m", &wrong).expect_err("NaN").path, "m[6]");
     }
 
     #[test]
@@ -188,7 +188,7 @@ mod tests {
         let long = Transform { rotation: [0.0, 0.0, 3.0, 4.0], ..Transform::IDENTITY };
         assert_eq!(long.checked("b").expect("not zero").rotation, [0.0, 0.0, 0.6, 0.8]);
         let none = Transform { rotation: [0.0; 4], ..Transform::IDENTITY };
-        assert_eq!(none.checked("bones[1].rest").expect_err("zero").field, "bones[1].rest.rotation");
+        assert_eq!(none.checked("bones[1].rest").expect_err("zero").path, "bones[1].rest.rotation");
     }
 
     #[test]

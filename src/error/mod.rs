@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 #[cfg(feature = "gpu")]
 pub use gpu::GpuError;
 
-/// A value that is out of its bounds. Says which one, what it was and what it may be.
+/// A value that is out of its bounds. The fields may be matched: `error.path == "zones[2].max"`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{field} = {value}: {bound}")]
+#[error("{path} = {value}: {bound}")]
 pub struct InputError {
-    /// The field as the user wrote it, with its path where it lies inside something (`zones[2].max`).
-    pub field: String,
+    /// Where the value stands: the field, with what it lies in (`zones[2].max`).
+    pub path: String,
     /// The value that was refused.
     pub value: String,
     /// What the field may be.
@@ -22,9 +22,9 @@ pub struct InputError {
 }
 
 impl InputError {
-    /// Names field, value and bound.
-    pub fn new(field: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
-        Self { field: field.into(), value: value.to_string(), bound: bound.into() }
+    /// Names path, value and bound.
+    pub fn new(path: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
+        Self { path: path.into(), value: value.to_string(), bound: bound.into() }
     }
 }
 

@@ -74,7 +74,7 @@ impl Seen<'_> {
     /// What an instance has of a mesh: its levels, and which of them, from 0 on, where it is not the mesh itself.
     fn level(&self, instance: usize) -> Option<(&MeshLevels, usize)> {
         let (levels, own) = self.levels?;
-        let own = own.get(self.instance_lods[instance].level as usize).or(own.last())?;
+        let own = own.get(self.instance_lods[instance].mesh_lod as usize).or(own.last())?;
         // Its own level 1 is the first of its levels.
         Some((levels, (*own as usize).checked_sub(1)?))
     }
@@ -99,7 +99,7 @@ impl VertexMeter {
             let mut found = Self::default();
             let instances = stales.chunks(vertices).zip(freshes.chunks(vertices));
             for (instance, (stales, freshes)) in (part * each..).zip(instances) {
-                if seen.instance_lods[instance].most == 0 {
+                if seen.instance_lods[instance].max_influences == 0 {
                     found.unseen += vertices as u64;
                     continue;
                 }

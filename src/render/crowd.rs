@@ -10,7 +10,7 @@ use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
-use crate::skinning::bounding_sphere::bounding_sphere_in_clips;
+use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
@@ -34,7 +34,7 @@ pub struct Character<'a> {
     pub placements: &'a Buffer<Affine>,
     /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::projected_distance`]
     /// counts them.
-    pub fade: [f32; 2],
+    pub fade_range: [f32; 2],
     /// Distances, counted likewise and not descending, from which on levels 1, 2 … of the character are used:
     /// those at which each of its [`level_errors`](crate::skinning::level_errors) is permitted, as computed by
     /// [`Extent::level_ranges`](crate::skinning::Extent::level_ranges). If empty, the meshes themselves are
@@ -90,7 +90,7 @@ impl CrowdScene {
     /// of order, no instances, buffers that are too small, and dual quaternions under a gate whose bound holds
     /// for linear blending only ([`SkinFrame::new`]); [`GpuError`].
     pub fn add(&mut self, gpu: &Gpu, character: &Character<'_>) -> Result<usize, Error> {
-        let Character { model, matrices, placements, fade, levels, blend, albedos } = *character;
+        let Character { model, matrices, placements, fade_range, levels, blend, albedos } = *character;
         let (meshes, count) = (model.meshes.len(), placements.len());
         if meshes == 0 {
             return Err(InputError::new("model.meshes", "none", "must be at least one").into());
@@ -118,11 +118,21 @@ impl CrowdScene {
             )?);
             frames.push(skin);
         }
-        let (center, radius) = bounding_sphere_in_clips(model);
-        let [near, far] = fade;
+        let BoundingSphere { center, radius } = BoundingSphere::in_clips(model);
+        let [fade_start, fade_end] = fade_range;
         let (clip_from_world, eye) = (Mat4::IDENTITY, Vec3::ZERO);
-        let most = InstanceLod::FULL.most;
-        let view = LodView { clip_from_world, eye, near, far, steps: STEPS, most, center, radius, levels };
+        let most = InstanceLod::FULL.max_influences;
+        let view = LodView {
+            clip_from_world,
+            eye,
+            fade_start,
+            fade_end,
+            steps: STEPS,
+            max_influences: most,
+            center,
+            radius,
+            levels,
+        };
         let instance_lods = &frames[0].crowd.instance_lods;
         let lod = self.lod.prepare(gpu, &view, placements, instance_lods, &drawn, &scenes[0].arguments)?;
         let is_gated = matrices.updated_bones().is_some();

@@ -198,10 +198,11 @@ fn list(drawn: &Buffer<u32>, at: usize, words: usize) -> wgpu::BindingResource<'
 /// Instances of a mesh: set the camera, then draw in any render pass.
 #[derive(Debug, Clone)]
 pub struct SkinnedScene {
-    /// Of each level that `drawn` has a list of two indirect draws, five words each: indices, instances, the first index,
-    /// and two zeros. The first draw leaves out the instances that are mirrored, and the second draws no others; each goes
-    /// through so many of the list as its second word says. Where both sides are seen, the first draws all. The caller or
-    /// a kernel may change both numbers; the second draw's need not go beyond the last mirrored instance.
+    /// Two indirect draws, of five words each, for every level that has a list in `drawn`: number of indices, number
+    /// of instances, first index, and two zeros. The first draw omits mirrored instances, and the second omits all
+    /// others; each runs through as many entries of the list as its second word says. For double-sided meshes, the
+    /// first draws all instances. The caller or a kernel may change the two numbers of instances; the second draw
+    /// need not go beyond the last mirrored instance.
     pub arguments: Buffer<u32>,
     pipelines: Vec<wgpu::RenderPipeline>,
     view: SkinnedView,
@@ -244,7 +245,7 @@ mod tests {
         assert_eq!((lists(0, 9), lists(9, 9), lists(64, 64)), (Ok([1, 0]), Ok([1, 9]), Ok([1, 64])));
         assert_eq!((lists(192, 64), lists(256, 65)), (Ok([3, 64]), Ok([2, 128])));
         for (words, places) in [(64, 63), (10, 9), (129, 64), (17 * 64, 64)] {
-            assert_eq!(lists(words, places).expect_err("refused").field, "drawn.len");
+            assert_eq!(lists(words, places).expect_err("refused").path, "drawn.len");
         }
     }
 

@@ -1,4 +1,4 @@
-//! Bounding spheres of models in all of their clips.
+//! Bounding spheres: of points, and of models in all of their clips.
 
 use glam::Vec3;
 
@@ -14,15 +14,49 @@ use crate::asset::mesh::bone_radii;
 /// second.
 const MOMENTS: [usize; 2] = [32, 216_001];
 
-/// A sphere in the model's space around all meshes at rest and in every clip, for
-/// [`LodView`](super::lod::LodView). Clips are sampled 60 times a second, at least 32 times; a clip of more
-/// than an hour is sampled 216,001 times, at larger intervals. The sphere is enlarged by a twentieth for motion
-/// between samples. It is computed from the distances of vertices from their bones only, so that it may be half
-/// again as large as necessary; morph targets count as [`bone_radii`] says.
-///
-/// # Panics
-/// As [`bone_radii`].
-pub fn bounding_sphere_in_clips(model: &Model) -> (Vec3, f32) {
+/// The factor by which a sphere's radius is enlarged.
+pub(crate) const MARGIN: f32 = 1.05;
+
+/// A sphere in the model's space, in the model's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundingSphere {
+    /// The sphere's centre.
+    pub center: Vec3,
+    /// The sphere's radius.
+    pub radius: f32,
+}
+
+impl BoundingSphere {
+    /// A sphere around points, such as the vertices of a model at rest, larger by a twentieth. Without points it has the
+    /// radius 0 and lies at the origin.
+    pub fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
+        let (low, high) =
+            points.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
+        let center = middle_of(low, high);
+        Self { center, radius: MARGIN * points.map(|point| point.distance(center)).fold(0.0, f32::max) }
+    }
+
+    /// A sphere around all meshes at rest and in every clip, for
+    /// [`LodView`](super::lod::LodView). Clips are sampled 60 times a second, at least 32 times; a clip of more
+    /// than an hour is sampled 216,001 times, at larger intervals. The sphere is enlarged by a twentieth for motion
+    /// between samples. It is computed from the distances of vertices from their bones only, so that it may be half
+    /// again as large as necessary; morph targets count as [`bone_radii`] says.
+    ///
+    /// # Panics
+    /// As [`bone_radii`].
+    pub fn in_clips(model: &Model) -> Self {
+        let [low, high] = box_in_clips(model);
+        Self { center: middle_of(low, high), radius: MARGIN * low.distance(high) / 2.0 }
+    }
+}
+
+/// The centre of a box; the origin if the box is empty.
+pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
+    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
+}
+
+/// The corners of a box around all meshes at rest and in every clip.
+fn box_in_clips(model: &Model) -> [Vec3; 2] {
     let skeleton = &model.skeleton;
     let bone_radii = bone_radii(skeleton.len(), &model.skins, &model.meshes);
     let followed = followed(model);
@@ -43,10 +77,7 @@ pub fn bounding_sphere_in_clips(model: &Model) -> (Vec3, f32) {
             high = high.max(Vec3::from_slice(&found.high));
         }
     }
-    match low.cmple(high).all() {
-        true => (low.midpoint(high), 1.05 * low.distance(high) / 2.0),
-        false => (Vec3::ZERO, 0.0),
-    }
+    if low.cmple(high).all() { [low, high] } else { [Vec3::ZERO; 2] }
 }
 
 /// For each bone, whether any vertex follows it.
@@ -73,9 +104,9 @@ mod tests {
     use crate::skinning::vertex::Blend;
 
     #[test]
-    fn the_ball_holds_every_vertex_and_not_much_more() {
+    fn the_sphere_holds_every_vertex_and_not_much_more() {
         let model = crate::samples::creature().expect("valid");
-        let (center, radius) = bounding_sphere_in_clips(&model);
+        let BoundingSphere { center, radius } = BoundingSphere::in_clips(&model);
         let mesh = &model.meshes[0];
         let mut farthest = 0.0_f32;
         for clip in &model.clips {
@@ -90,14 +121,23 @@ mod tests {
         }
         assert!((farthest..1.6 * farthest).contains(&radius), "{radius} for {farthest}");
         let bare = Model { meshes: vec![], ..model };
-        assert_eq!(bounding_sphere_in_clips(&bare), (Vec3::ZERO, 0.0));
+        let none = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+        assert_eq!(BoundingSphere::in_clips(&bare), none);
+        assert_eq!(BoundingSphere::around(std::iter::empty()), none);
+    }
+
+    #[test]
+    fn spheres_hold_their_points() {
+        let points = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
+        let BoundingSphere { center, radius } = BoundingSphere::around(points.into_iter());
+        assert!(points.iter().all(|point| point.distance(center) <= radius) && radius < 1.5);
     }
 
     /// A clip of a minute and a half with a jump that lasts a tenth of a second.
     #[test]
-    fn the_ball_holds_what_long_clips_do() {
+    fn the_sphere_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");
-        let still = bounding_sphere_in_clips(&Model { clips: vec![], ..model.clone() }).1;
+        let still = BoundingSphere::in_clips(&Model { clips: vec![], ..model.clone() }).radius;
         let mut keys = vec![BoneKeys::default(); model.skeleton.len()];
         let at = |y: f32| [0.0, y, 0.0, 0.0];
         keys[0].translation = Some(Keys {
@@ -106,7 +146,7 @@ mod tests {
             interpolation: Interpolation::Linear,
         });
         model.clips = vec![Clip::new("jump", &model.skeleton, &keys, 90.0).expect("valid")];
-        let radius = bounding_sphere_in_clips(&model).1;
+        let radius = BoundingSphere::in_clips(&model).radius;
         assert!(radius > still + 3.5, "{radius}, {still} without a clip");
     }
 }

@@ -341,12 +341,12 @@ mod tests {
     fn requests_are_checked() {
         let model = model();
         let field = |counts: &[usize], kept: &[u32], poses| {
-            levels(&model, counts, kept, poses).expect_err("refused").field
+            levels(&model, counts, kept, poses).expect_err("refused").path
         };
         assert_eq!(field(&[5, 6], &[], 1), "counts[1]");
         assert_eq!(field(&[5], &[153], 1), "kept[0]");
         assert_eq!(field(&[5], &[], 0), "poses");
         let still = Model { clips: vec![], ..model.clone() };
-        assert_eq!(levels(&still, &[5], &[], 1).expect_err("refused").field, "clips");
+        assert_eq!(levels(&still, &[5], &[], 1).expect_err("refused").path, "clips");
     }
 }

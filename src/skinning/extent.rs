@@ -4,8 +4,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::bounding_sphere::bounding_sphere_in_clips;
-use super::lod::{MARGIN, middle_of};
+use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of};
 use super::pose::{Moment, Pose, mean, moments};
 use crate::InputError;
 use crate::animation::Projection;
@@ -49,7 +48,7 @@ impl Extent {
     }
 
     /// The extent of all meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them. The
-    /// sphere's centre is that of [`bounding_sphere_in_clips`], from which a scene measures distances; the
+    /// sphere's centre is that of [`BoundingSphere::in_clips`], from which a scene measures distances; the
     /// sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
     /// [`Extent::new`].
     ///
@@ -59,7 +58,7 @@ impl Extent {
         if model.meshes.is_empty() {
             return Err(InputError::new("model.meshes", "none", "must be at least one"));
         }
-        let mut all = Self { center: bounding_sphere_in_clips(model).0, radius: 0.0, stray: 0.0 };
+        let mut all = Self { center: BoundingSphere::in_clips(model).center, radius: 0.0, stray: 0.0 };
         for index in 0..model.meshes.len() {
             let moments = moments(model, index, clips, poses)?;
             let mesh = &model.meshes[index];
@@ -76,7 +75,7 @@ impl Extent {
     }
 
     /// The projected distances at which a crowd may begin to fade and may be rigid
-    /// ([`LodView::near`](super::lod::LodView::near), [`LodView::far`](super::lod::LodView::far)), so that no
+    /// ([`LodView::fade_start`](super::lod::LodView::fade_start), [`LodView::fade_end`](super::lod::LodView::fade_end)), so that no
     /// vertex is drawn more than `pixels` from its place, wherever it is in the picture. Placements must not
     /// scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
@@ -193,9 +192,8 @@ mod tests {
     #[test]
     fn requests_are_checked() {
         let model = crate::samples::creature().expect("valid");
-        let field = |mesh, clips: &[usize], poses| {
-            Extent::new(&model, mesh, clips, poses).expect_err("refused").field
-        };
+        let field =
+            |mesh, clips: &[usize], poses| Extent::new(&model, mesh, clips, poses).expect_err("refused").path;
         assert_eq!(field(1, &[0], 1), "mesh");
         assert_eq!(field(0, &[0, 3], 1), "clips[1]");
         assert_eq!(field(0, &[0], 0), "poses");
@@ -214,7 +212,7 @@ mod tests {
         assert_eq!(each[0], one);
         assert_eq!(
             (all.center, all.stray),
-            (bounding_sphere_in_clips(&model).0, each[0].stray.max(each[1].stray))
+            (BoundingSphere::in_clips(&model).center, each[0].stray.max(each[1].stray))
         );
         let points = |mesh: &Mesh| Pose::new(&model, mesh, Moment::In(0, 0.3)).positions(mesh);
         let farthest = model.meshes.iter().flat_map(points).map(|point| point.distance(all.center));
@@ -227,7 +225,7 @@ mod tests {
             (2.0 * all.center, 2.0 * all.radius, 2.0 * all.stray)
         );
         model.meshes.clear();
-        assert_eq!(Extent::of_model(&model, &[0], 9).expect_err("refused").field, "model.meshes");
+        assert_eq!(Extent::of_model(&model, &[0], 9).expect_err("refused").path, "model.meshes");
     }
 
     #[test]

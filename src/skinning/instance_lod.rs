@@ -10,28 +10,28 @@ use crate::asset::mesh::MAX_LEVELS;
 #[repr(C)]
 pub struct InstanceLod {
     /// The λ of `fade`, 0 to 1.
-    pub fade: f32,
+    pub influence_fade: f32,
     /// The k of `truncate`, at least 1; 0 for an instance that is not seen, which is not skinned.
-    pub most: u32,
+    pub max_influences: u32,
     /// The character's level of detail. Level 0 stands for the meshes themselves; at level n each mesh uses the
     /// coarsest of its [`Mesh::levels`](crate::asset::Mesh::levels) whose error is at most the n-th of
     /// [`level_errors`](super::level_errors). A number beyond the last level means the last.
-    pub level: u32,
+    pub mesh_lod: u32,
 }
 
 impl InstanceLod {
     /// All influences of all vertices.
-    pub const FULL: Self = Self { fade: 0.0, most: MAX_INFLUENCES as u32, level: 0 };
+    pub const FULL: Self = Self { influence_fade: 0.0, max_influences: MAX_INFLUENCES as u32, mesh_lod: 0 };
 
     /// For an instance that is not seen: nothing is skinned.
-    pub const UNSEEN: Self = Self { fade: 0.0, most: 0, level: 0 };
+    pub const UNSEEN: Self = Self { influence_fade: 0.0, max_influences: 0, mesh_lod: 0 };
 
     /// The `most` strongest influences.
     ///
     /// # Errors
     /// [`InputError`] unless `most` is in 1 to [`MAX_INFLUENCES`].
     pub fn truncate(most: u32) -> Result<Self, InputError> {
-        let instance_lod = Self { most, ..Self::FULL };
+        let instance_lod = Self { max_influences: most, ..Self::FULL };
         instance_lod.validate().map(|()| instance_lod)
     }
 
@@ -40,7 +40,7 @@ impl InstanceLod {
     /// # Errors
     /// [`InputError`] unless `fade` is in 0 to 1.
     pub fn fade(fade: f32) -> Result<Self, InputError> {
-        let instance_lod = Self { fade, ..Self::FULL };
+        let instance_lod = Self { influence_fade: fade, ..Self::FULL };
         instance_lod.validate().map(|()| instance_lod)
     }
 
@@ -49,28 +49,28 @@ impl InstanceLod {
     /// # Errors
     /// [`InputError`] unless `level` is below [`MAX_LEVELS`].
     pub fn level(level: u32) -> Result<Self, InputError> {
-        let instance_lod = Self { level, ..Self::FULL };
+        let instance_lod = Self { mesh_lod: level, ..Self::FULL };
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Full quality up to `near`, rigid from `far` on, and a fade in between.
+    /// Full quality up to `fade_start`, rigid from `fade_end` on, and a fade in between.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and if `near` is not below `far`.
-    pub fn at_distance(distance: f32, [near, far]: [f32; 2]) -> Result<Self, InputError> {
-        for (field, value) in [("distance", distance), ("near", near), ("far", far)] {
+    /// [`InputError`] for values that are not finite, and if `fade_start` is not below `fade_end`.
+    pub fn at_distance(distance: f32, [fade_start, fade_end]: [f32; 2]) -> Result<Self, InputError> {
+        for (field, value) in [("distance", distance), ("fade_start", fade_start), ("fade_end", fade_end)] {
             if !value.is_finite() {
                 return Err(InputError::new(field, value, "must be finite"));
             }
         }
-        if near >= far {
+        if fade_start >= fade_end {
             return Err(InputError::new(
-                "near",
-                near,
-                format!("must be below {far}, where vertices are rigid"),
+                "fade_start",
+                fade_start,
+                format!("must be below {fade_end}, where vertices are rigid"),
             ));
         }
-        Self::fade(((distance - near) / (far - near)).clamp(0.0, 1.0))
+        Self::fade(((distance - fade_start) / (fade_end - fade_start)).clamp(0.0, 1.0))
     }
 
     /// Checks the ranges; the instance must be one that is seen.
@@ -78,14 +78,18 @@ impl InstanceLod {
     /// # Errors
     /// [`InputError`] that names the field.
     pub fn validate(&self) -> Result<(), InputError> {
-        if !(0.0..=1.0).contains(&self.fade) {
-            return Err(InputError::new("fade", self.fade, "must be in 0..=1"));
+        if !(0.0..=1.0).contains(&self.influence_fade) {
+            return Err(InputError::new("influence_fade", self.influence_fade, "must be in 0..=1"));
         }
-        if !(1..=MAX_INFLUENCES as u32).contains(&self.most) {
-            return Err(InputError::new("truncate", self.most, format!("must be in 1..={MAX_INFLUENCES}")));
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
+            return Err(InputError::new(
+                "max_influences",
+                self.max_influences,
+                format!("must be in 1..={MAX_INFLUENCES}"),
+            ));
         }
-        if self.level as usize >= MAX_LEVELS {
-            return Err(InputError::new("level", self.level, format!("must be below {MAX_LEVELS}")));
+        if self.mesh_lod as usize >= MAX_LEVELS {
+            return Err(InputError::new("mesh_lod", self.mesh_lod, format!("must be below {MAX_LEVELS}")));
         }
         Ok(())
     }

@@ -147,7 +147,7 @@ mod tests {
         assert_eq!([0.0, 0.01, 1.0, 1.01].map(poses), [2, 2, 61, 62].map(Ok));
         // Every clip up to the limit gives a number of poses; only longer ones are refused.
         assert_eq!([16.75, 60.0, 3600.0].map(poses), [1006, 3601, 216_001].map(Ok));
-        assert_eq!(poses(3601.0).expect_err("refused").field, "clip.duration");
+        assert_eq!(poses(3601.0).expect_err("refused").path, "clip.duration");
     }
 
     #[test]

@@ -160,14 +160,14 @@ pub fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceLod> {
     let mut draw = Draw::new(case ^ 0xfade);
     let instance_lod = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
         0 => InstanceLod::FULL,
-        1 => InstanceLod { most: 1 + draw.word() % 8, ..InstanceLod::FULL },
-        2 => InstanceLod { fade: draw.signed().abs(), ..InstanceLod::FULL },
-        3 => InstanceLod { fade: (draw.word() % 2) as f32, ..InstanceLod::FULL },
+        1 => InstanceLod { max_influences: 1 + draw.word() % 8, ..InstanceLod::FULL },
+        2 => InstanceLod { influence_fade: draw.signed().abs(), ..InstanceLod::FULL },
+        3 => InstanceLod { influence_fade: (draw.word() % 2) as f32, ..InstanceLod::FULL },
         _ => InstanceLod::UNSEEN,
     };
     let levelled = |instance| {
         let level = [0, 0, 0, 0, 1, 2, 3, 15, u32::MAX][draw.word() as usize % 9];
-        InstanceLod { level, ..instance_lod(instance, &mut draw) }
+        InstanceLod { mesh_lod: level, ..instance_lod(instance, &mut draw) }
     };
     (0..instances).map(levelled).collect()
 }

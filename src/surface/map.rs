@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn maps_refuse_what_is_no_height_map() {
         let refused = |width, height, heights: Vec<f32>| {
-            HeightMap::new(width, height, heights).expect_err("refused").field
+            HeightMap::new(width, height, heights).expect_err("refused").path
         };
         assert_eq!(refused(0, 1, vec![]), "heights.width");
         assert_eq!(refused(1, MAP_EDGE + 1, vec![0.5]), "heights.height");

@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn views_of_nothing_are_refused() {
-        let field = |view: SquareView| view.validate().expect_err("refused").field;
+        let field = |view: SquareView| view.validate().expect_err("refused").path;
         for angle in [90.0, -1.0, f64::NAN] {
             assert_eq!(field(view(angle, 0.0)), "angle");
         }

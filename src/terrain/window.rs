@@ -6,7 +6,7 @@ use crate::terrain::config::{Border, Config};
 /// The largest number of samples by which a window may extend beyond its patch.
 pub const MAX_APRON: u32 = 4096;
 
-/// A patch and the samples around it: (patchSize + 2·reach)² of them.
+/// A patch and the samples around it: (patchSize + 2·apron)² of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
     /// Patch coordinates.
@@ -74,10 +74,10 @@ impl Window {
         Lattice { origin, width: self.width(config), spacing }
     }
 
-    /// Checks the reach and the patch coordinates.
+    /// Checks the apron and the patch coordinates.
     ///
     /// # Errors
-    /// [`InputError`] when the reach is too large, or when world coordinates, halo included, exceed `i32`.
+    /// [`InputError`] when the apron is too large, or when world coordinates, halo included, exceed `i32`.
     pub fn validate(&self, config: &Config) -> Result<(), InputError> {
         if self.apron > MAX_APRON {
             return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));

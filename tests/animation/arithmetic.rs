@@ -1,4 +1,4 @@
-//! The shaders' whole numbers, on the adapter, against wider ones.
+//! The shaders' integer arithmetic on the adapter, against wider integers.
 
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::gate::reference::{motion_at, motion_between, scale_by_fraction};
@@ -10,7 +10,8 @@ use crate::shader::called;
 
 const EDGES: [u32; 9] = [0, 1, 2, 0xffff, 0x1_0000, 0x1_0001, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff];
 
-/// Edges with each other, and random words of every length; the last of each are what `last` makes of them.
+/// Combinations of extreme values, and random words of every length; `last` makes the last word of each from
+/// the others.
 fn given(case: u32, last: impl Fn(u32) -> u32) -> Vec<[u32; 4]> {
     let mut draw = Draw::new(case);
     let mut given = Vec::new();
@@ -24,7 +25,7 @@ fn given(case: u32, last: impl Fn(u32) -> u32) -> Vec<[u32; 4]> {
     given
 }
 
-/// value · fraction / 65536 without overflow: its whole part, and of sums that go around as they do.
+/// value · fraction / 65536 without overflow: its integer part, and the same for sums that wrap.
 #[test]
 fn motion_of_the_shaders_is_exact() {
     // Fractions from 0 to 65536.
@@ -32,7 +33,7 @@ fn motion_of_the_shaders_is_exact() {
     let body = "
         let all = given[at];
         found[at] = vec4<u32>(
-            share_of(all.x, all.w), motion_at(all.xy, all.w), motion_between(all.x, all.y, all.z), 0u);";
+            scale_by_fraction(all.x, all.w), motion_at(all.xy, all.w), motion_between(all.x, all.y, all.z), 0u);";
     for (given, found) in given.iter().zip(called(&gpu(), &ANIMATION_GATE, body, &given)) {
         let [x, y, z, fraction] = *given;
         let floor = |value: u32| (u128::from(value) * u128::from(fraction) / 65536) as u32;
@@ -50,7 +51,8 @@ fn motion_of_the_shaders_is_exact() {
     }
 }
 
-/// Sixteen ranks an octave of a product of 48 bits, in words of 32: the reference's, which is near the logarithm.
+/// Sixteen ranks per octave of a 48-bit product, computed in 32-bit words: they equal the reference's, which
+/// are close to the logarithm.
 #[test]
 fn ranks_of_the_shader_are_the_references() {
     let given = given(2, |word| word & 0xffff);

@@ -1,4 +1,4 @@
-//! The promise of `bounded` on clips that were made to break it.
+//! The bound of `bounded`, on clips that are designed to break it.
 
 use relievo::animation::Choice;
 use relievo::animation::frame::reference::Crowd;
@@ -25,7 +25,7 @@ fn clip(skeleton: &Skeleton, bones: &[BoneKeys], duration: f32) -> Clip {
     Clip::new("clip", skeleton, bones, duration).expect("valid")
 }
 
-/// Instances of a skeleton, bounded and in full.
+/// Instances of a skeleton, under `bounded` and in full.
 struct Run<'a> {
     skeleton: &'a Skeleton,
     clips: &'a [Clip],
@@ -35,8 +35,8 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The largest error, less rounding of matrices, as a share of what is allowed. `step` changes instances and says how
-    /// long a frame takes.
+    /// The largest error, minus the rounding of matrices, divided by the permitted one. `step` changes
+    /// instances and returns the duration of a frame.
     fn worst(
         &self,
         instances: &[Instance],
@@ -56,7 +56,7 @@ impl Run<'_> {
             let seconds = step(&mut lazy.instances);
             elapsed += seconds;
             full.instances.clone_from(&lazy.instances);
-            // Now and then by more or less than a frame, back in time, and not at all.
+            // Sometimes by more or less than a frame, back in time, or not at all.
             let ahead = [1.0, 0.0, 2.0, 1.0, 0.3, -1.0][number as usize % 6] * seconds;
             let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
             lazy.advance(Choice::Gate(Gate::Bounded), &frame, elapsed);
@@ -94,7 +94,7 @@ fn looping() -> [Instance; 1] {
     [Instance::new(0, Wrap::Loop, 0.0, 1.0)]
 }
 
-/// A jump at the first key of all, after the clip's start.
+/// A jump at the clip's very first key, after the start.
 #[test]
 fn a_jump_at_the_first_key_is_seen() {
     let x = |x: f32| [x, 0.0, 0.0, 0.0];
@@ -116,7 +116,7 @@ fn a_jump_at_the_first_key_is_seen() {
     }
 }
 
-/// Less motion than a fraction of 16 bits tells.
+/// Motion smaller than a 16-bit fraction resolves.
 #[test]
 fn slow_stretches_hide_nothing() {
     let translation = keys(&[0.0, 100.0], &[[0.0; 4], [100.0, 0.0, 0.0, 0.0]], Interpolation::Linear);
@@ -134,7 +134,7 @@ fn slow_stretches_hide_nothing() {
     }
 }
 
-/// A spline from q to nearly −q turns by almost everything in no time.
+/// A spline from q to nearly −q rotates by almost half a turn in an instant.
 #[test]
 fn splines_through_nothing_are_always_sampled() {
     for (off, seconds) in [(0.02_f32, 1.0), (0.002, 10.0), (0.0004, 1.0)] {
@@ -196,7 +196,8 @@ fn random_instance(draw: &mut Draw) -> Instance {
     Instance::new(draw.word() % 3, wrap, 40.0 * draw.signed(), rate)
 }
 
-/// Chains and forests of random clips, started, reversed and changed at random, in frames from nothing to many turns.
+/// Chains and forests of random clips that start, reverse and change at random, in frames from 0 s to many
+/// turns.
 #[test]
 fn random_clips_keep_the_promise() {
     let mut closest = 0.0_f64;

@@ -64,8 +64,8 @@ fn shear_is_covered() {
     assert!((0..3).all(|axis| column(axis) < 7.2) && found.high[0] >= 10.0, "{found:?}");
 }
 
-/// Every point that bones of a walking creature may move lies inside, and points that two of them share; and some
-/// point lies at each side.
+/// Every point that bones of a walking creature may move is inside, and so are points that two bones share; and
+/// some point lies close to each side.
 #[test]
 fn all_that_bones_reach_lies_inside() {
     let model = creature().expect("valid");
@@ -96,7 +96,7 @@ fn all_that_bones_reach_lies_inside() {
         let [least, largest] = reached;
         let lower = least.iter().zip(found.low).map(|(reached, side)| reached - f64::from(side));
         let upper = largest.iter().zip(found.high).map(|(reached, side)| f64::from(side) - reached);
-        // 500 directions come within some degrees of every one, 0.5 % of the reach.
+        // 500 directions come within some degrees of every other one, 0.5 % of the radius.
         assert!(lower.chain(upper).all(|off| (0.0..0.01).contains(&off)), "{reached:?} in {found:?}");
     }
 }

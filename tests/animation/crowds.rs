@@ -1,4 +1,4 @@
-//! Crowds on the device at hand.
+//! Crowds on the device.
 
 use relievo::Error;
 use relievo::animation::bounds::{BoundsPass, Share, bone_radii};
@@ -35,7 +35,7 @@ fn plays(clip: u32, count: usize) -> Vec<Instance> {
 
 fn field(error: Error) -> String {
     match error {
-        Error::Input(error) => error.field,
+        Error::Input(error) => error.path,
         other => panic!("{other}"),
     }
 }
@@ -55,7 +55,7 @@ fn sampled(gpu: &Gpu, set: &ClipSet, crowd: &Crowd, elapsed: f32) -> Vec<Transfo
     crowd.locals.read_blocking(gpu).expect("read").iter().map(unpacked).collect()
 }
 
-/// What an engine does: places of all layers, poses, other weights the next frame.
+/// The steps of an engine: cursors of all layers, poses, other weights in the next frame.
 #[test]
 fn layers_play_from_places_to_poses() {
     let (gpu, (_, set)) = (gpu(), scene());
@@ -68,7 +68,7 @@ fn layers_play_from_places_to_poses() {
         let elapsed = 0.3 + frame as f32;
         let found = cursors(&set, &all_instances(&base, &layers), elapsed);
         let expected = sample_layers(&set, &base, &layers, &found, RotationPath::Slerp);
-        // Places may be off by 1e-3 of a key, and move bones so much.
+        // Cursors may be off by 1e-3 of a key, which moves bones accordingly.
         for (actual, expected) in sampled(&gpu, &set, &crowd, elapsed).iter().zip(&expected) {
             let off = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             let errors = [
@@ -104,7 +104,7 @@ fn layers_that_do_not_fit_are_refused() {
     assert_eq!(field(plain.prepare(&gpu, &clips, &crowd).expect_err("refused")), "crowd.layers");
 }
 
-/// Layers end in sampling: concatenation serves each instance once, whatever the layers.
+/// Layers end with sampling: concatenation handles each instance once, whatever the number of layers.
 #[test]
 fn layered_crowds_are_concatenated() {
     let (gpu, (model, set)) = (gpu(), scene());
@@ -127,12 +127,12 @@ fn layered_crowds_are_concatenated() {
     assert!(found.holds, "{found:?}");
 }
 
-/// What another shader would do to the first model matrices of a crowd.
+/// Overwrites the first model matrices of a crowd, as another shader might.
 fn overwrite(gpu: &Gpu, crowd: &Crowd, matrices: &[Affine]) {
     gpu.queue().write_buffer(crowd.model_matrices().raw(), 0, bytemuck::cast_slice(matrices));
 }
 
-/// A matrix that tells where it stands.
+/// A matrix that encodes its position.
 fn numbered(count: usize, frame: usize) -> Vec<Affine> {
     (0..count).map(|at| [[at as f32, frame as f32, 0.0, 1.0]; 3]).collect()
 }
@@ -146,7 +146,7 @@ fn the_palettes_of_the_frame_before_are_kept() {
     let crowd = crowd.with_previous(&gpu).expect("allocated");
     for frame in 1..4 {
         gpu.run("test", |encoder| crowd.record_previous(encoder)).expect("run");
-        // Concatenation of a part: what it leaves alone is the same in both.
+        // Partial concatenation: what it leaves unchanged is the same in both.
         overwrite(&gpu, &crowd, &numbered(100, frame));
         let previous = crowd.previous.as_ref().expect("remaining").read_blocking(&gpu).expect("read");
         let before = if frame == 1 { vec![[[0.0; 4]; 3]; 100] } else { numbered(100, frame - 1) };
@@ -185,8 +185,8 @@ fn chosen_bones_are_those_of_the_whole() {
     let other = [[2, 100], [0, 3]];
     chosen.choose(&other).expect("fewer");
     assert_eq!(read(&chosen), other.iter().map(at).collect::<Vec<_>>());
-    // What is refused changes nothing.
-    let refused = |error: relievo::InputError| error.field;
+    // A refused choice changes nothing.
+    let refused = |error: relievo::InputError| error.path;
     assert_eq!(refused(chosen.choose(&[[0, 0], [4, 0]]).expect_err("refused")), "chosen[1].instance");
     assert_eq!(refused(chosen.choose(&[[0, 153]]).expect_err("refused")), "chosen[0].bone");
     assert_eq!(refused(chosen.choose(&[[0, 0]; 11]).expect_err("refused")), "chosen.len");
@@ -209,5 +209,5 @@ fn bounds_that_do_not_fit_are_refused() {
         (refused(&bone_radii[1..], 3), refused(&bone_radii, 2)),
         ("bone_radii.len".into(), "bounds".into())
     );
-    assert_eq!(refused(&[&bone_radii[..152], &[f32::NAN]].concat(), 3), "reaches[152]");
+    assert_eq!(refused(&[&bone_radii[..152], &[f32::NAN]].concat(), 3), "bone_radii[152]");
 }

@@ -1,5 +1,5 @@
-//! The bound of `bounded` is one of linear blending: nothing blends the matrices of a crowd under it by dual quaternions.
-//! Whichever is prepared first excludes the other, on every way that leads to the crowd's matrices.
+//! The bound of `bounded` holds for linear blending only, so nothing may blend the matrices of a crowd under it
+//! by dual quaternions. Whichever is prepared first excludes the other, by every route to the crowd's matrices.
 
 use relievo::Error;
 use relievo::animation::active::Active;
@@ -28,7 +28,7 @@ use relievo::surface::Mips;
 
 use crate::harness::gpu;
 
-/// What everything is prepared with.
+/// The objects from which everything is prepared.
 struct Rig {
     gpu: Gpu,
     model: Model,
@@ -127,7 +127,7 @@ impl Rig {
             model: &self.model,
             matrices,
             placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
-            fade: NO_FADE,
+            fade_range: NO_FADE,
             levels: &[],
             blend,
             albedos: &[Albedo::from(ColorTexture::new(gpu, &clay, true).expect("uploaded"))],
@@ -141,7 +141,7 @@ impl Rig {
 #[track_caller]
 fn refuses(refused: Result<(), Error>, field: &str, value: &str) {
     let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-    assert_eq!((error.field.as_str(), error.value.as_str()), (field, value));
+    assert_eq!((error.path.as_str(), error.value.as_str()), (field, value));
     assert!(error.bound.contains("linear blending alone"), "{}", error.bound);
 }
 
@@ -172,7 +172,8 @@ fn bounded_and_dual_quaternions_exclude_each_other_in_any_order() {
     assert_eq!((gates, skins), (4, 7));
 }
 
-/// Other gates promise nothing, linear blending is what the bound holds for, and matrices of one's own are no crowd's.
+/// Other gates give no guarantee, the bound holds for linear blending, and the caller's own matrices belong to
+/// no crowd.
 #[test]
 fn nothing_else_is_excluded() {
     let rig = Rig::new();
@@ -195,7 +196,7 @@ fn nothing_else_is_excluded() {
     rig.bound(0, &crowd).expect("a way").expect("nothing precedes it");
 }
 
-/// A gate's list of active bones leads to no other crowd, where nobody would know of the gate.
+/// A gate's list of active bones cannot be used for another crowd, which would not know of the gate.
 #[test]
 fn lists_of_active_bones_are_of_one_crowd() {
     let rig = Rig::new();
@@ -213,7 +214,7 @@ fn lists_of_active_bones_are_of_one_crowd() {
     assert!(prepared(&crowd).iter().all(Result::is_ok));
     for refused in prepared(&other) {
         let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-        assert_eq!(error.field, "crowd");
+        assert_eq!(error.path, "crowd");
     }
     rig.blended(other.model_matrices(), Blend::DualQuaternion).expect("what was refused claims nothing");
 }

@@ -1,4 +1,4 @@
-//! Whole frames under a gate on the device at hand, layers included, beside frames in full.
+//! Whole frames under a gate on the device, with layers, compared with frames in full.
 
 use relievo::Error;
 use relievo::animation::active::Active;
@@ -33,7 +33,8 @@ fn furthest(a: &[Affine], b: &[Affine]) -> f32 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// Where nothing may be missed, a gated crowd is the full one: layers fade in and out, clips change, on both walks.
+/// If nothing may be missed, a gated crowd equals the full one: layers fade in and out, clips change, on both
+/// walks.
 #[test]
 fn a_gate_that_misses_nothing_changes_nothing() {
     let gpu = gpu();
@@ -96,7 +97,8 @@ fn a_gate_that_misses_nothing_changes_nothing() {
     }
 }
 
-/// What a gated frame leaves of a crowd of characters, every other one at half detail: active bits and palettes.
+/// The state after a gated frame of a crowd of characters, every second one at half detail: active bits and
+/// matrices.
 fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
     let model = creature().expect("valid");
     let set = ClipSet::new(&[&model.clips[0]]).expect("one skeleton");
@@ -124,7 +126,8 @@ fn played(gpu: &Gpu, choice: Choice) -> (Vec<u32>, Vec<Affine>) {
     (bits, crowd.model_matrices().read_blocking(gpu).expect("read"))
 }
 
-/// A device that another program opened, with WebGPU's default limits, decides in several dispatches; to the same end.
+/// A device that another program opened, with WebGPU's default limits, decides in several dispatches, with the
+/// same result.
 #[test]
 fn devices_with_default_limits_play_the_same_frames() {
     let (own, foreign) = (gpu(), foreign());
@@ -138,8 +141,8 @@ fn devices_with_default_limits_play_the_same_frames() {
     assert!(matches!(refused, GpuError::Limit { available: 8, .. }), "{refused}");
 }
 
-/// Whatever brings a table's motion and sampling together refuses two paths: a frame in one piece, a decision, and
-/// sampling.
+/// Every object that combines a table's motion with sampling refuses two different paths: a whole frame, a
+/// decision, and sampling.
 #[test]
 fn bounds_of_one_path_meet_no_sampling_of_the_other() {
     let gpu = gpu();
@@ -160,7 +163,7 @@ fn bounds_of_one_path_meet_no_sampling_of_the_other() {
             let frame = |crowd| GatedFrame::new(&gpu, skeleton, &buffers, crowd, table, choice).map(|_| ());
             assert!(frame(&own).is_ok(), "{path:?}, {choice:?}");
             names_both(frame(&foreign), [path, other]);
-            // The decision of another crowd than the gate knows.
+            // A decision for a crowd other than the gate's.
             let gate_state = GateState::new(&gpu, table, &own).expect("fits");
             let decide = DecidePass::new(&gpu, choice, Dispatches::Each).expect("compiled");
             let decided = |crowd| decide.prepare(&gpu, &buffers, crowd, &gate_state, &active).map(|_| ());
@@ -177,7 +180,7 @@ fn bounds_of_one_path_meet_no_sampling_of_the_other() {
 #[track_caller]
 fn names_both(refused: Result<(), Error>, [path, other]: [RotationPath; 2]) {
     let Err(Error::Input(error)) = refused else { panic!("{refused:?} is no refusal") };
-    assert_eq!((error.field.as_str(), error.value), ("crowd.path", format!("{other:?}")));
+    assert_eq!((error.path.as_str(), error.value), ("crowd.path", format!("{other:?}")));
     assert!(error.bound.contains(&format!("{path:?}")), "{}", error.bound);
 }
 
@@ -192,7 +195,7 @@ fn foreign() -> Gpu {
     Gpu::from_wgpu(device, queue)
 }
 
-/// One dispatch is chosen for small crowds on processors alone, and never for a budget.
+/// One dispatch is chosen only for small crowds on software adapters, and never for a budget.
 #[test]
 fn small_crowds_on_processors_are_decided_in_one_dispatch() {
     let gpu = gpu();

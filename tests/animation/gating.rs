@@ -1,4 +1,4 @@
-//! Gates: what they promise, on random clips and on the creature's.
+//! The guarantees of gates, on random clips and on the creature's.
 
 use relievo::animation::Choice;
 use relievo::animation::budget::reference::rank_of;
@@ -61,8 +61,8 @@ impl Stage {
         Crowd::new(&self.order, &self.set, table, path, instances.to_vec()).expect("one path")
     }
 
-    /// The farthest that a point which follows one bone alone is from where full evaluation puts it: the ends of the
-    /// bone's axes, as far out as its reach.
+    /// The largest distance between a point that follows one bone only and its position under full evaluation,
+    /// for the ends of the bone's axes at the bone's radius.
     fn error(&self, stale: &[Affine], fresh: &[Affine]) -> f64 {
         let mut worst = 0.0_f64;
         for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
@@ -83,9 +83,9 @@ fn frame(number: u32) -> Frame {
     Frame { ticks: number * 1092, frame_ticks: 1092, frame: number, ahead: 1.0 / 60.0 }
 }
 
-/// Plays instances with changing clips, directions and rates at uneven frame times, allowed to miss `times` the allowed
-/// way, beside ones that are evaluated in full; gives the largest share of the allowed error and the share of the bones
-/// that were sampled.
+/// Plays instances with changing clips, directions and rates at uneven frame times, permitted to miss `times`
+/// the permitted motion, beside instances that are evaluated in full. Returns the largest error divided by the
+/// permitted one, and the fraction of bones that were sampled.
 fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case: u32) -> (f64, f64) {
     let mut draw = Draw::new(case ^ 0xb0de);
     let instance = |draw: &mut Draw| {
@@ -116,7 +116,7 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
     (worst / f64::from(allowed), sampled as f64 / pairs as f64)
 }
 
-/// The promise of `bounded`: no point is further off than allowed. 1e-4 for rounding of matrices.
+/// The guarantee of `bounded`: no point is further off than permitted, with 1e-4 for the rounding of matrices.
 #[test]
 fn no_point_is_further_off_than_bounded_allows() {
     let (mut closest, mut least) = (0.0_f64, 1.0_f64);
@@ -133,7 +133,7 @@ fn no_point_is_further_off_than_bounded_allows() {
     assert!(closest > 0.5 && least < 0.3, "far too careful: {closest} of what is allowed, {least} sampled");
 }
 
-/// The test above sees a gate that lets bones miss four times as much.
+/// The test above detects a gate that lets bones miss four times as much.
 #[test]
 fn a_gate_that_allows_too_much_is_seen() {
     let stage = Stage::random(0, 1);
@@ -142,7 +142,7 @@ fn a_gate_that_allows_too_much_is_seen() {
     assert!(found.iter().any(|worst| *worst > 1.01), "{found:?}");
 }
 
-/// Without anything that may be missed, bounded and full evaluation are equal to the bit.
+/// If nothing may be missed, `bounded` and full evaluation are equal to the bit.
 #[test]
 fn nothing_allowed_is_nothing_missed() {
     let stage = Stage::creature();
@@ -208,7 +208,7 @@ fn uniform_and_random_take_their_share_of_the_bones() {
     }
 }
 
-/// The specification's words: skipped iff p ≤ t − t_prev or t/p ≠ t_prev/p, in whole numbers.
+/// A's rule in integers: an update is skipped if and only if p ≤ t − t_prev or t/p ≠ t_prev/p.
 #[test]
 fn skip_period_is_the_specifications() {
     let mut draw = Draw::new(1);
@@ -221,7 +221,7 @@ fn skip_period_is_the_specifications() {
     }
 }
 
-/// A's rule skips a bone once a period, at Ω = 1 never, at Ω = 0 always; more where priorities are low.
+/// A's rule skips a bone once per period: never at Ω = 1, always at Ω = 0, and more often at low priorities.
 #[test]
 fn skip_period_skips_once_a_period() {
     let stage = Stage::creature();
@@ -237,7 +237,7 @@ fn skip_period_skips_once_a_period() {
         done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
     };
     let moving = fraction(OMEGA_ONE);
-    // Priorities near ½ at Ω = ½: a skip each quarter of a second, of 15 frames.
+    // Priorities near ½ at Ω = ½ skip once every quarter of a second, which is 15 frames.
     let half = fraction(OMEGA_ONE / 2) / moving;
     assert!((0.8..0.96).contains(&half), "{half}");
     let tenth = fraction(OMEGA_ONE / 10) / moving;
@@ -288,7 +288,7 @@ fn budgets_are_kept_and_spent_on_what_missed_most() {
         // Every bone that moves has missed something.
         assert!(done[1..].iter().all(|work| work.pairs.len() == (most as usize).min(moving)), "{most}");
     }
-    // Twice as large on screen is served more.
+    // An instance twice as large on screen gets more samples.
     let instances: Vec<_> = (0..20).map(|at| Instance::new(0, Wrap::Loop, 0.618 * at as f32, 1.0)).collect();
     let mut crowd = stage.crowd(&table, RotationPath::Slerp, &instances);
     for (at, lod) in crowd.lods.iter_mut().enumerate() {
@@ -319,8 +319,8 @@ fn ranks_are_logarithms() {
     }
 }
 
-/// What holds for one path between keys does not hold for the other: between two keys nlerp turns up to 1.27 times as
-/// fast.
+/// A table for one path between keys does not hold for the other: between two keys nlerp turns up to 1.27 times
+/// as fast.
 #[test]
 fn tables_of_motion_hold_for_their_own_path_alone() {
     let stage = Stage::creature();
@@ -328,7 +328,7 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
     let refused = |table: &GateTable, path| {
         Crowd::new(&stage.order, &stage.set, table, path, instances.to_vec()).err().map(|error| {
             assert!(error.bound.contains(&format!("{:?}", table.path().expect("has motion"))), "{error}");
-            (error.field, error.value)
+            (error.path, error.value)
         })
     };
     let wrong = |path| Some(("crowd.path".to_owned(), format!("{path:?}")));
@@ -346,11 +346,11 @@ fn tables_of_motion_hold_for_their_own_path_alone() {
     assert_eq!([slerp, nlerp].map(|path| refused(&animated_bones, path)), [None, None]);
 }
 
-/// A table of another clip, or reaches that are none, are refused by name.
+/// A table of another clip, and invalid radii, are refused by name.
 #[test]
 fn tables_refuse_what_does_not_fit() {
     let stage = Stage::creature();
-    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").field;
+    let field = |result: Result<GateTable, relievo::InputError>| result.expect_err("refused").path;
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
     assert_eq!(field(GateTable::of_animated_bones(&stage.order, &stage.set, &clips[..1])), "clips.len");
     // As many clips, but in another order, or another one among them.
@@ -367,9 +367,9 @@ fn tables_refuse_what_does_not_fit() {
     assert_eq!(field(bounds(&[])), "bone_radii.len");
     let mut bone_radii = stage.bone_radii.clone();
     bone_radii[3] = f32::NAN;
-    assert_eq!(field(bounds(&bone_radii)), "reaches[3]");
+    assert_eq!(field(bounds(&bone_radii)), "bone_radii[3]");
     let other = Stage::random(0, 7);
     assert_eq!(field(GateTable::of_animated_bones(&other.order, &stage.set, &clips)), "skeleton.len");
-    // The reference alone, without phases, has nothing to decide.
+    // The reference alone, without clip clocks, has nothing to decide.
     assert!(gate(&stage.animated_bones(), Gate::Off, &frame(0), &[], &[], &mut []).bits.is_empty());
 }

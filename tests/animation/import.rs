@@ -1,4 +1,4 @@
-//! glTF documents as they may be.
+//! Valid glTF documents of many kinds.
 
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
@@ -28,7 +28,7 @@ fn place(affine: &Affine) -> [f32; 3] {
 #[test]
 fn bones_above_and_between_joints_count() {
     let mut scene = Scene::new();
-    // 3 (moves) ─ 2 (joint) ─ 0 (no joint, scaled) ─ 1 (joint), and a node that matters to nobody.
+    // 3 (moves) ─ 2 (joint) ─ 0 (no joint, scaled) ─ 1 (joint), and an unrelated node.
     scene.push("nodes", json!({"name": "between", "scale": [2.0, 2.0, 2.0], "children": [1, 4]}));
     scene.push("nodes", json!({"name": "tip", "translation": [0.0, 1.0, 0.0]}));
     scene.push("nodes", json!({"name": "root", "translation": [1.0, 0.0, 0.0], "children": [0]}));
@@ -93,7 +93,7 @@ fn interpolations_names_and_durations() {
     let step = scene.animate(0, "translation", "STEP", times, vectors);
     scene.json["animations"][step]["name"] = json!("hop");
     scene.animate(1, "scale", "CUBICSPLINE", times, spline);
-    // Of a node that is no bone, and of none: both count for nothing but the time.
+    // Channels of a node that is not a bone, and of no node: both count only for the duration.
     scene.push("nodes", json!({"name": "lamp"}));
     let late = scene.floats("SCALAR", &[0.0, 9.0]);
     scene.json["animations"][0]["samplers"]
@@ -114,7 +114,7 @@ fn interpolations_names_and_durations() {
     assert_eq!(model.clip("hop").expect("by name").duration(), 9.0);
     assert_eq!(model.clip("1").expect("by number").name(), "animation_1");
     let error = model.clip("2").expect_err("no such clip");
-    assert!(error.field == "clip" && error.bound.contains("hop"), "{error}");
+    assert!(error.path == "clip" && error.bound.contains("hop"), "{error}");
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn buffers_lie_beside_the_document() {
         Transform::from_translation([1.0, 2.0, 3.0])
     );
     let error = Model::from_gltf(&scene.gltf(), None).expect_err("no folder");
-    assert_eq!(error.field, "buffers[0].uri");
+    assert_eq!(error.path, "buffers[0].uri");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use relievo::samples::creature;
 use crate::player::{angle, dot, unit, wide};
 use crate::sampling::{noise, skeleton};
 
-/// below + (over − below) · share, part by part.
+/// below + (over − below) · weight, part by part.
 fn expected(below: &Transform, over: &Transform, weight: f64) -> ([f64; 3], [f64; 4], [f64; 3]) {
     let line = |a: [f32; 3], b: [f32; 3]| {
         std::array::from_fn(|i| f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * weight)

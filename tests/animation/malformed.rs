@@ -1,4 +1,4 @@
-//! Documents that are wrong: an error with the path inside the file, and never a panic.
+//! Invalid documents give an error with the path in the file, and never a panic.
 
 use relievo::asset::Model;
 use serde_json::{Value, json};
@@ -47,7 +47,7 @@ fn refused(pointer: &str, value: Value, field: &str, words: &[&str]) {
         other => panic!("{other} has no members"),
     }
     let error = Model::from_gltf(&scene.gltf(), None).expect_err(pointer);
-    assert_eq!(error.field, field, "{pointer}: {error}");
+    assert_eq!(error.path, field, "{pointer}: {error}");
     assert!(
         words.iter().all(|word| error.to_string().contains(word)),
         "{pointer}: {words:?} not in: {error}"
@@ -83,7 +83,7 @@ fn nodes_and_skins() {
     refused("/skins", json!([]), "nodes[2].skin", &[]);
     let mut bare = Scene::new();
     bare.push("nodes", json!({"name": "lamp"}));
-    assert_eq!(Model::from_gltf(&bare.gltf(), None).expect_err("refused").field, "nodes");
+    assert_eq!(Model::from_gltf(&bare.gltf(), None).expect_err("refused").path, "nodes");
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn sparse_indices_beyond_the_end() {
     let offset = scene.json["bufferViews"][view]["byteOffset"].as_u64().expect("an offset") as usize;
     scene.buffer[offset + 1] = 2;
     let error = Model::from_gltf(&scene.gltf(), None).expect_err("refused");
-    assert_eq!((&*error.field, &*error.value), ("accessors[3].sparse.indices[1]", "2"));
+    assert_eq!((&*error.path, &*error.value), ("accessors[3].sparse.indices[1]", "2"));
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn keys() {
         let offset = scene.json["bufferViews"][view]["byteOffset"].as_u64().expect("an offset") as usize;
         scene.buffer[offset + 4 * index..][..4].copy_from_slice(&value.to_le_bytes());
         let error = Model::from_gltf(&scene.gltf(), None).expect_err(field);
-        assert_eq!(error.field, field, "{error}");
+        assert_eq!(error.path, field, "{error}");
     }
 }
 
@@ -205,7 +205,7 @@ fn containers() {
     let with = |at: usize, bytes: &[u8]| {
         let mut changed = glb.clone();
         changed[at..at + bytes.len()].copy_from_slice(bytes);
-        Model::from_gltf(&changed, None).expect_err("refused").field
+        Model::from_gltf(&changed, None).expect_err("refused").path
     };
     assert_eq!(with(4, &[1, 0, 0, 0]), "GLB.version");
     for length in [0, 11, 0xffff_ffff_u32] {
@@ -218,7 +218,8 @@ fn containers() {
     }
 }
 
-/// Cut off anywhere, and with bytes changed at random: a model or an error, and a model can be played.
+/// Documents that are truncated anywhere or have random bytes changed give a model or an error, and a model can
+/// be played.
 #[test]
 fn nothing_panics() {
     let glb = full().glb();
@@ -251,7 +252,7 @@ fn play(model: &Model) {
     }
 }
 
-/// Every number, string, list and object of the JSON replaced by something else.
+/// Every number, string, list and object of the JSON is replaced by something else.
 #[test]
 fn every_value_may_be_wrong() {
     let scene = full();

@@ -132,7 +132,7 @@ fn progress_counts_the_frames() {
 /// The field that is refused.
 fn refused<T>(measured: Result<T, Error>) -> String {
     match measured {
-        Err(Error::Input(error)) => error.field,
+        Err(Error::Input(error)) => error.path,
         Err(other) => panic!("{other}"),
         Ok(_) => panic!("measured"),
     }

@@ -1,4 +1,4 @@
-//! Meshes of glTF documents, as they may be and as they may not.
+//! Meshes of glTF documents, valid and invalid.
 
 use relievo::InputError;
 use relievo::asset::Model;
@@ -43,7 +43,7 @@ impl Skinned {
 
     pub fn refused(&self, field: &str, words: &str) {
         let error = self.read().expect_err(field);
-        assert!(error.field == field && error.to_string().contains(words), "{error}");
+        assert!(error.path == field && error.to_string().contains(words), "{error}");
     }
 }
 
@@ -78,9 +78,9 @@ fn a_mesh_is_read() {
     let mesh = skinned.read().expect("valid");
     assert_eq!((&*mesh.name, mesh.skin, mesh.vertices()), ("body_0", 0, 4));
     assert_eq!(mesh.positions[3], [1.0, 1.0, 0.0]);
-    // Longer ones become units, ones of no length the surface's.
+    // Longer normals are scaled to units; those without length are replaced by the surface's.
     assert_eq!(mesh.normals, vec![[0.0, 0.0, 1.0]; 4]);
-    // glTF's handedness is the other one.
+    // glTF's handedness has the opposite sign.
     assert_eq!(mesh.tangents[..2], [[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 1.0]]);
     assert_eq!(mesh.uv[1], [1.0, 1.0]);
     // A strip.
@@ -198,7 +198,7 @@ fn targets_are_sparse_and_animated() {
     assert_eq!(found(&mesh.targets[0]), (vec![2], vec![[3.0; 3]]));
     assert_eq!(found(&mesh.targets[1]), (vec![1, 2], vec![[0.0; 3], [3.0; 3]]));
     assert_eq!(mesh.targets[1].deltas[0].normal, [0.0, 5.0, 0.0]);
-    // The node's weights win.
+    // The node's weights take precedence.
     skinned.0.json["nodes"][2]["weights"] = json!([1.0, 2.0]);
     let (times, values) =
         (skinned.0.floats("SCALAR", &[0.0, 2.0]), skinned.0.floats("SCALAR", &[0.0, 1.0, 4.0, -1.0]));
@@ -232,7 +232,7 @@ fn full() -> Scene {
     skinned.0
 }
 
-/// Whatever is read can be skinned, and stays finite.
+/// Everything that is imported can be skinned and stays finite.
 fn skin_all(model: &Model) {
     use relievo::animation::local_to_model::reference::local_to_model;
     use relievo::asset::bone_radii;
@@ -243,7 +243,7 @@ fn skin_all(model: &Model) {
     use relievo::skinning::skin::reference::skin;
     use relievo::skinning::vertex::Blend;
     let models = local_to_model(&model.skeleton, &model.skeleton.rest());
-    // Scales may drive places out of range; that is the pose's fault.
+    // Scales may move positions out of range, which is the pose's fault.
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
     assert_eq!(bone_radii(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
     for mesh in &model.meshes {

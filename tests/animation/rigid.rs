@@ -1,5 +1,5 @@
-//! Meshes without a skin: what they follow, and what their nodes become. Where their vertices are, `tests/cli/skin.rs`
-//! calculates.
+//! Meshes without a skin: which bones they follow, and what becomes of their nodes. `tests/cli/skin.rs` checks
+//! the positions of their vertices.
 
 use relievo::asset::Model;
 use serde_json::{Value, json};
@@ -85,7 +85,7 @@ fn what_hangs_on_no_joint_stays_where_it_is() {
     let model = read(&scene);
     assert_eq!(followed(&model), (vec!["root", "tip", "field"], vec![("stone_0", "field")]));
     assert_eq!(model.skins[1].inverse_binds[0][0], -1.0);
-    // Weights of targets move no node.
+    // Keys of morph weights move no node.
     let (times, values) = (scene.floats("SCALAR", &[0.0]), scene.floats("SCALAR", &[0.5]));
     scene.animate(stone, "weights", "LINEAR", times, values);
     let model = read(&scene);
@@ -121,7 +121,7 @@ fn skinned_meshes_come_first() {
 fn what_cannot_be_placed_is_refused() {
     let refused = |scene: &Scene, field: &str, words: &str| {
         let error = Model::from_gltf(&scene.gltf(), None).expect_err(field);
-        assert!(error.field == field && error.to_string().contains(words), "{error}");
+        assert!(error.path == field && error.to_string().contains(words), "{error}");
     };
     let mut round = scene();
     let first = round.push("nodes", json!({"mesh": 0, "children": [3]}));

@@ -39,7 +39,8 @@ fn keys(times: &[f32], values: Vec<[f32; 4]>, interpolation: Interpolation) -> O
     Some(Keys { times: times.to_vec(), values, interpolation })
 }
 
-/// A root that goes astray in every way, in the armature's centimetres, and tilts if told; a jump at 1.5 s.
+/// A root that moves and rotates in every way, in the armature's centimetres, and optionally tilts; it jumps at
+/// 1.5 s.
 fn astray(case: u32, interpolation: Interpolation, tilt: f32) -> Clip {
     let times = [0.25, 0.5, 1.0, 1.5, 1.5, 1.75];
     let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
@@ -63,7 +64,7 @@ fn delta(motion: &RootMotion, wrap: Wrap, from: f64, to: f64) -> DAffine3 {
     wide(&motion.delta(&Instance::new(0, wrap, 0.0, 1.0), from, to).expect("finite"))
 }
 
-/// How far a point two metres from the root lies from its place.
+/// How far a point two metres from the root is from its position.
 fn distance(a: &DAffine3, b: &DAffine3) -> f64 {
     let points = [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0];
     points.iter().map(|p| a.transform_point3(*p).distance(b.transform_point3(*p))).fold(0.0, f64::max)
@@ -164,7 +165,7 @@ fn loops_clamps_and_reverse_play() {
     assert!((moved(Wrap::Loop, 0.0, 1.0, 1e6, 1e6 + 1.0 / 64.0) - 1.0 / 32.0).abs() < 1e-6);
 }
 
-/// Deltas follow each other without a gap, wherever loops end, and lead back.
+/// Deltas join without a gap wherever loops end, and lead back.
 #[test]
 fn deltas_add_up() {
     for (case, interpolation) in [Interpolation::Linear, Interpolation::CubicSpline].into_iter().enumerate() {
@@ -190,7 +191,7 @@ fn deltas_add_up() {
     }
 }
 
-/// A quarter turn to the left a loop, a metre ahead: back after four.
+/// A quarter turn to the left and a metre ahead per loop leads back after four loops.
 #[test]
 fn four_left_turns_lead_back() {
     let (skeleton, _) = straight();
@@ -266,21 +267,21 @@ fn crowds_move_as_their_instances_do() {
         assert_eq!(*found, own.unwrap_or(Transform::IDENTITY));
     }
     let refused = |instances: &[Instance], to, room: usize| {
-        deltas(&motions, instances, 0.0, to, &mut vec![Transform::IDENTITY; room]).expect_err("refused").field
+        deltas(&motions, instances, 0.0, to, &mut vec![Transform::IDENTITY; room]).expect_err("refused").path
     };
     assert_eq!(refused(&instances, 1.0, 19), "deltas.len");
     assert_eq!(refused(&instances, f64::NAN, 20), "to");
     assert_eq!(refused(&[Instance::new(2, Wrap::Loop, 0.0, 1.0)], 1.0, 1), "instance.clip");
     let instance = Instance::new(0, Wrap::Loop, f32::NAN, 1.0);
     let motion = motions[1].as_ref().expect("taken");
-    assert_eq!(motion.delta(&instance, 0.0, 1.0).expect_err("refused").field, "instance.start");
+    assert_eq!(motion.delta(&instance, 0.0, 1.0).expect_err("refused").path, "instance.start");
 }
 
 #[test]
 fn what_cannot_be_taken_is_refused() {
     let (skeleton, clip) = (skeleton(), astray(900, Interpolation::Linear, 0.2));
     let refused = |skeleton: &Skeleton, clip: &Clip, bone, taken| {
-        RootMotion::extract(skeleton, clip, bone, taken).expect_err("refused").field
+        RootMotion::extract(skeleton, clip, bone, taken).expect_err("refused").path
     };
     let nothing = Taken { horizontal: false, vertical: false, yaw: false };
     assert_eq!(refused(&skeleton, &clip, 1, nothing), "taken");
@@ -307,7 +308,7 @@ fn what_cannot_be_taken_is_refused() {
         let clip = Clip::new("scaled", &skeleton, &[BoneKeys::default(), root, BoneKeys::default()], 0.0);
         let found = RootMotion::extract(&skeleton, &clip.expect("valid"), 1, Taken { yaw, ..YAW });
         assert_eq!(
-            found.err().map(|error| error.field),
+            found.err().map(|error| error.path),
             is_refused.then(|| "bones above".to_owned()),
             "{scale:?}"
         );

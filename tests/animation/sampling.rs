@@ -170,7 +170,7 @@ fn splines_are_gltfs() {
             let expected = spline(&values, 0, 2.0, f64::from(time - 0.5) / 2.0);
             let found = sample_bone(&clip, 0, time, RotationPath::Slerp);
             if is_rotation {
-                // Close to zero a direction is worth little.
+                // Close to zero the direction is ill-conditioned.
                 let length = player::dot(expected, expected).sqrt();
                 assert!(player::angle(wide(found.rotation), expected) * length < 4e-6, "{case} {time}");
             } else {
@@ -207,7 +207,7 @@ fn one_key_zero_length_and_repeated_times() {
     let none = linear(&[0.0, 0.0], &[1.0, 2.0]);
     assert_eq!((none.duration(), x(&none, 0.0)), (0.0, 2.0));
     assert_eq!(inside_clip(Wrap::Loop, none.duration(), 5.0), 0.0);
-    // A jump: the last of equal times counts, also at the ends.
+    // At a jump the last of equal times counts, also at the ends.
     let jump = linear(&[1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0], &[0.0, 1.0, 2.0, 9.0, 4.0, 6.0, 8.0]);
     for (time, expected) in
         [(0.5, 0.0), (1.0, 1.0), (1.5, 1.5), (2.0, 4.0), (2.5, 5.0), (3.0, 8.0), (4.0, 8.0)]
@@ -225,7 +225,7 @@ fn a_bone_without_tracks_rests() {
     }
 }
 
-/// Whatever the spacing, the place is the one that a linear search finds.
+/// Whatever the spacing, the cursor equals the one that a linear search finds.
 #[test]
 fn keys_are_found_wherever_they_lie() {
     for case in 0..60 {
@@ -302,7 +302,7 @@ fn crowds_are_sampled_as_bones_are_one_by_one() {
         let instances = starts.map(|start| Instance::new(0, Wrap::Clamp, start, 1.0));
         let cursors = cursors(&set, &instances, 0.0);
         for path in [RotationPath::Slerp, RotationPath::Nlerp] {
-            // Whatever lay there before is overwritten.
+            // Previous contents are overwritten.
             let mut transforms = vec![Transform { rotation: [9.0; 4], ..Transform::IDENTITY }; 8 * bones];
             sample_set_into(&set, &instances, &cursors, path, &mut transforms);
             let expected: Vec<_> = starts.iter().flat_map(|time| sample(&clip, *time, path)).collect();

@@ -30,7 +30,7 @@ fn read(scene: &Scene) -> Model {
 
 fn refused(scene: &Scene, field: &str, words: &str) {
     let error = Model::from_gltf(&scene.gltf(), None).expect_err(field);
-    assert!(error.field == field && error.to_string().contains(words), "{error}");
+    assert!(error.path == field && error.to_string().contains(words), "{error}");
 }
 
 fn bones(model: &Model) -> Vec<&str> {
@@ -76,7 +76,7 @@ fn the_default_scene_alone_is_imported() {
     scene.json["scene"] = json!(1);
     let second = read(&scene);
     assert_eq!((meshes(&second), bones(&second)), (vec!["quay_0", "gull_0"], vec!["quay", "gull"]));
-    // What moves in another scene is no bone here, and lasts as long.
+    // A node that moves only in another scene is not a bone here, but its clip's duration counts.
     keyed(&mut scene, 1, [9.0; 3]);
     let moved = read(&scene);
     assert_eq!((bones(&moved), moved.clips[0].duration()), (vec!["quay", "gull"], 2.0));
@@ -89,7 +89,7 @@ fn the_default_scene_alone_is_imported() {
     refused(&scene, "scenes[0].nodes[1]", "must be a root");
 }
 
-/// A skin's joints count where a node of the scene has it, or no node at all.
+/// A skin's joints count if a node of the scene uses it, or if no node at all does.
 #[test]
 fn skins_of_other_scenes_are_left_out() {
     let mut skinned = Skinned::new();
@@ -114,7 +114,7 @@ fn skins_of_other_scenes_are_left_out() {
     assert_eq!((&*model.skins[0].name, model.skins.len(), model.skinned), ("second", 2, 0));
 }
 
-/// glTF forbids it, and vertices follow such joints all the same.
+/// glTF forbids such joints, but vertices follow them nevertheless.
 #[test]
 fn joints_outside_the_scene_pose_the_vertices_that_follow_them() {
     let mut skinned = Skinned::new();
@@ -128,7 +128,7 @@ fn joints_outside_the_scene_pose_the_vertices_that_follow_them() {
     assert_eq!(at_rest(&model), at_rest(&inside));
 }
 
-/// A wagon whose wheel turns nothing but itself: nodes that move are bones, and meshes follow them.
+/// A wagon whose wheel turns only itself: moving nodes are bones, and meshes follow them.
 #[test]
 fn rigid_parts_need_no_skin() {
     let mut scene = with_triangle();
@@ -159,7 +159,7 @@ fn rigid_parts_need_no_skin() {
     near(found[0][1], [4.0, 0.0, 5.0]);
     near(found[1][0], [4.0, -2.0, 5.0]);
     near(found[1][1], [4.0, 0.0, 5.0]);
-    // What moves without a mesh is a bone too, and what neither moves nor carries any is none.
+    // A moving node without a mesh is a bone too; a node that neither moves nor carries a mesh is not.
     keyed(&mut scene, 4, [0.0; 3]);
     assert_eq!(bones(&read(&scene)), ["road", "wagon", "axle", "wheel", "camera"]);
 }
@@ -200,7 +200,7 @@ fn what_is_required_and_not_read_is_refused_by_name() {
         (json!(["KHR_materials_unlit"]), 0, "KHR_materials_unlit"),
     ] {
         let error = Model::from_gltf(&required(names).gltf(), None).expect_err(name);
-        assert_eq!((&*error.field, &*error.value), (&*format!("extensionsRequired[{at}]"), name));
+        assert_eq!((&*error.path, &*error.value), (&*format!("extensionsRequired[{at}]"), name));
         assert!(error.bound.contains("KHR_texture_transform"), "{error}");
     }
     read(&required(json!(["KHR_texture_transform", "KHR_mesh_quantization", "KHR_draco_mesh_compression"])));
@@ -209,7 +209,7 @@ fn what_is_required_and_not_read_is_refused_by_name() {
     read(&used);
 }
 
-/// What Draco compressed has neither vertices nor a buffer view; where its nodes are can be said.
+/// Meshes compressed with Draco have neither vertices nor a buffer view, but their nodes are known.
 #[test]
 fn compressed_meshes_are_left_out_and_their_bones_are_not() {
     let mut scene = with_triangle();
@@ -223,7 +223,8 @@ fn compressed_meshes_are_left_out_and_their_bones_are_not() {
     assert_eq!(read(&scene).meshes[0].positions, [[0.0; 3]; 3]);
 }
 
-/// Extensions of materials and images do not matter to those who read neither, nor do textures without an image.
+/// Extensions of materials and images do not matter to an import that reads neither, nor do textures without an
+/// image.
 #[test]
 fn who_reads_no_images_needs_none() {
     let folder = tempfile::tempdir().expect("a temporary folder");

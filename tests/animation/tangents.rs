@@ -1,5 +1,5 @@
-//! Tangents that a document lacks: what MikkTSpace's own implementation says they are, and what becomes of vertices whose
-//! corners have several.
+//! Tangents that a document lacks: the values of MikkTSpace's own implementation, and the treatment of vertices
+//! whose corners have several.
 
 use relievo::InputError;
 use relievo::asset::Mesh;
@@ -96,7 +96,7 @@ fn tangents_are_those_of_the_reference_implementation() {
             (positions[file], normals[file], uv[file])
         );
     }
-    // The six vertices in the mirror have two; and the others keep their place.
+    // The six mirrored vertices have two tangents; all others keep their index.
     assert_eq!(mesh.vertices(), surface.vertices + 6);
     assert_eq!(mesh.positions[..surface.vertices], positions);
 }
@@ -122,11 +122,11 @@ fn corners_with_tangents_of_their_own_become_vertices() {
     let target = &mesh.targets[0];
     assert_eq!(target.vertices, [2, 3, 4, 5, 6, 7]);
     assert_eq!(target.deltas[4..], target.deltas[..2]);
-    // A file's own are not touched.
+    // The file's own tangents are kept.
     surface.attribute("TANGENT", "VEC4", &[0.0, 1.0, 0.0, 1.0].repeat(6));
     let given = surface.read().expect("valid");
     assert_eq!(given.tangents, vec![[0.0, 1.0, 0.0, -1.0]; 6]);
-    // But without normals they mean nothing.
+    // But without normals they are meaningless.
     surface.primitive()["attributes"].as_object_mut().expect("an object").remove("NORMAL");
     assert_eq!(surface.read().expect("valid").tangents, mesh.tangents);
 }
@@ -150,7 +150,7 @@ fn copies_follow_the_same_bones() {
     assert_ne!(mesh.influences.of(6), mesh.influences.of(7));
 }
 
-/// The normal texture's coordinates count, before anything moves them; else the base colour's.
+/// The normal texture's coordinates count, before any transform; otherwise those of the base colour.
 #[test]
 fn tangents_go_along_the_normal_texture() {
     let mut surface = square();
@@ -175,7 +175,7 @@ fn tangents_go_along_the_normal_texture() {
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
 }
 
-/// Along circles of latitude on a globe, but for the poles.
+/// Tangents follow circles of latitude on a globe, except at the poles.
 #[test]
 fn a_globe_has_tangents_along_its_latitudes() {
     let (rows, columns) = (16_u32, 32_u32);
@@ -231,7 +231,7 @@ fn nothing_has_to_have_an_area() {
     assert!(surface.read().expect("valid").indices.is_empty());
 }
 
-/// More triangles around a vertex than MikkTSpace could go round in time, or on the stack.
+/// More triangles around a vertex than MikkTSpace could visit in time, or on the stack.
 #[test]
 fn crowded_vertices_are_solved() {
     wheel(1_000);
@@ -251,7 +251,7 @@ fn wheel(one_ring: u32) {
     assert!(mesh.tangents.iter().all(|tangent| tangent[0] > 0.99 && tangent[3] == -1.0));
 }
 
-/// Who draws nothing gets the file's vertices.
+/// An import without materials keeps the file's vertices.
 #[test]
 fn bare_models_have_no_copies() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -88,7 +88,7 @@ fn what_a_material_leaves_open_is_what_gltf_says() {
         skinned.0.json["materials"][0]["alphaMode"] = json!(mode);
         assert_eq!(of(&skinned).alpha, alpha);
     }
-    // What no mesh has is not read, not even where it is wrong.
+    // Materials that no mesh uses are not read, even if they are invalid.
     skinned.primitive()["material"] = json!(2);
     skinned.0.json["images"][0] = json!({"uri": "nowhere.png"});
     let model = model(&skinned);

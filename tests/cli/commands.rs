@@ -97,7 +97,7 @@ fn shaders_are_flat_and_described() {
     }
 }
 
-/// What an engine without wgpu makes layouts, buffers and pipelines from.
+/// The manifest has what an engine without wgpu needs for layouts, buffers and pipelines.
 #[test]
 fn the_manifest_tells_types_defaults_offsets_and_limits() {
     let folder = tempfile::tempdir().expect("a temporary folder");

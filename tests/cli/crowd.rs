@@ -56,7 +56,7 @@ const GATES: [&[&str]; 6] = [
     &["--gate", "bounded", "--pixels", "2"],
 ];
 
-/// The device decides as the references do; what it computes is off by rounding alone.
+/// The device decides as the references do; its results differ by rounding only.
 #[test]
 fn backends_decide_alike_and_reports_add_up() {
     for gate in GATES {
@@ -88,7 +88,7 @@ fn backends_decide_alike_and_reports_add_up() {
     }
 }
 
-/// Near everything is interpolated, beyond the range nothing; what is bounded is within its bound.
+/// Near the camera everything is interpolated, and beyond the range nothing; `bounded` stays within its bound.
 #[test]
 fn gates_save_and_err_as_they_say() {
     let cpu = |gate: &[&str]| report(&[gate, &["--backend", "cpu"]].concat());

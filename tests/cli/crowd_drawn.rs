@@ -33,7 +33,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// Pixels that are not as the first.
+/// Number of pixels that differ from the first one.
 fn covered(picture: &image::RgbaImage) -> usize {
     picture.pixels().filter(|pixel| *pixel != picture.get_pixel(0, 0)).count()
 }
@@ -51,7 +51,7 @@ fn crowds_are_drawn_and_timed() {
         let error = &row["vertex_error"];
         assert_eq!((number(&error["points"]), number(&error["unseen"])), (4.0 * 5284.0 * 11.0, 0.0));
     }
-    // Beyond the range nothing moves, so that nothing is skinned, and what is drawn is the first frame.
+    // Beyond the range nothing moves, so that nothing is skinned and the first frame is drawn.
     assert_eq!(number(&far["skinned_fraction"]), 0.0);
     assert!(number(&near["skinned_fraction"]) > 0.4);
     assert!(number(&far["vertex_error"]["max_metres"]) > 0.02);
@@ -83,7 +83,7 @@ fn scenes_compare_five_ways() {
         assert_eq!(worst(row, "off"), 0.0);
         let bound = 0.5 * 1.001;
         assert!(worst(row, "animation") > 0.0 && worst(row, "animation") <= bound, "{row}");
-        // Stale bones move no vertex further, whichever it follows.
+        // Stale bones move no vertex further, whichever bone it follows.
         assert!(worst(row, "both") <= worst(row, "skinning") + bound, "{row}");
         for way in ["off", "animation", "skinning", "both", "all"] {
             assert!(number(&row[way]["frame_nanoseconds"]) > 0.0, "{way}");
@@ -106,8 +106,8 @@ fn scenes_compare_five_ways() {
     assert!(metres(&truncated_near) > metres(&near));
 }
 
-/// Half a pixel for the gate, half a pixel for the fade, half a pixel for the meshes: one and a half for all, wherever
-/// the crowd stands.
+/// Half a pixel each for the gate, the fade and the meshes: one and a half in all, at any distance of the
+/// crowd.
 #[test]
 fn levels_of_detail_keep_their_pixels() {
     let gate = ["--gate", "bounded", "--pixels", "0.5", "--scene"];
@@ -164,7 +164,7 @@ fn growing() -> Vec<u8> {
     scene.gltf()
 }
 
-/// Morph targets move whatever the gate says, each instance's at its own time.
+/// Morph targets move whatever the gate decides, each instance's at its own time.
 #[test]
 fn morph_targets_move_in_crowds() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -67,7 +67,7 @@ fn map(path: &Path) -> HeightMap {
     HeightMap::from_file(path).expect("a height map")
 }
 
-/// The files say what happened: rays that enter at height 1, hits on them, errors against the exact intersection.
+/// The files agree: rays that enter at height 1, their hits, and errors against the exact intersection.
 #[test]
 fn rays_hits_and_errors_fit_together() {
     let bench = Bench::new();
@@ -168,7 +168,8 @@ fn alpha_is_the_height_where_no_other_is_given() {
     assert_ne!(bench.image("alpha/relief.png"), bench.image("height/relief.png"));
 }
 
-/// A normal map baked from the heights shades as the heights do, whichever way its green points.
+/// A normal map baked from the heights gives the shading of the heights, whichever way its green channel
+/// points.
 #[test]
 fn normal_maps_say_what_heights_say() {
     let bench = Bench::new();
@@ -199,7 +200,7 @@ fn normal_maps_say_what_heights_say() {
             let difference = Difference::of(&bench.image("normals/relief.png"), &from_heights, 24);
             assert!(difference.outliers < 0.04, "{light} {green}: {difference:?}");
         }
-        // The wrong way is far off where light comes along v.
+        // With the wrong direction the shading is far off if light comes along v.
         bench.made("wrong", &[&common[..], &["--normal", "@up.png", "--normal-green", "down"]].concat());
         let difference = Difference::of(&bench.image("wrong/relief.png"), &from_heights, 24);
         assert!(light == "90,30" || difference.outliers > 0.2, "{light}: {difference:?}");

@@ -122,7 +122,7 @@ fn both_backends_agree_and_every_option_matters() {
     assert_eq!(vertices(&["--influences", "fade:1"]), vertices(&["--influences", "truncate:1"]));
 }
 
-/// The vertices stay, with fewer triangles over them the further they may be off.
+/// The vertices stay the same; the larger the permitted error, the fewer triangles there are.
 #[test]
 fn triangles_are_left_out() {
     let bench = Bench::new();
@@ -209,7 +209,7 @@ fn what_cannot_be_skinned_is_refused() {
     bench.refused("builtin", &["--clip", "run"], "walk");
 }
 
-/// Column vectors in double precision, by nobody else's code.
+/// Matrices for column vectors in double precision, independent of other code.
 type Matrix = [[f64; 4]; 4];
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
@@ -238,8 +238,8 @@ fn turned(axis: usize, angle: f64) -> [f64; 4] {
     quaternion
 }
 
-/// A sword in a hand, on a belt of its own a charm that swings, a mirrored hat on the wagon that carries everything, and
-/// a stone by the wayside: none has a skin.
+/// A sword in a hand, a charm that swings on its own belt, a mirrored hat on the wagon that carries everything,
+/// and a stone by the road; none has a skin.
 #[test]
 fn meshes_without_a_skin_follow_what_they_hang_on() {
     let bench = Bench::new();

@@ -56,7 +56,7 @@ impl Instances {
 
     fn character<'a>(&'a self, model: &'a Model, albedos: &'a [Albedo], blend: Blend) -> Character<'a> {
         let Self { matrices, placements } = self;
-        Character { model, matrices, placements, fade: [5.0, 25.0], levels: &[], blend, albedos }
+        Character { model, matrices, placements, fade_range: [5.0, 25.0], levels: &[], blend, albedos }
     }
 }
 
@@ -111,7 +111,7 @@ fn creatures_and_figures_in_one_picture() {
                 .read_blocking(&gpu)
                 .expect("read")
                 .iter()
-                .map(|r| r.fade)
+                .map(|r| r.influence_fade)
                 .collect::<Vec<_>>()
         };
         let first = fades(&character.frames[0]);

@@ -1,4 +1,5 @@
-//! A crowd that walks in and out of view: what is not seen is not skinned, and what is seen looks as if all were.
+//! A crowd that walks in and out of view: unseen instances are not skinned, and the picture looks as if all
+//! were.
 
 use glam::{Mat4, Vec3, camera};
 use relievo::animation::ModelMatrices;
@@ -11,9 +12,10 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::samples::creature;
+use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, bounding_sphere, placed};
+use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, placed};
 use relievo::skinning::picture::Light;
 use relievo::skinning::select::SKINNED_WORDS;
 use relievo::skinning::vertex::Blend;
@@ -50,8 +52,8 @@ impl Stage {
         let eye = Vec3::new(0.0, 1.0, 9.0);
         let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.0, 0.8, 0.0), Vec3::Y);
         let projection = camera::rh::proj::directx::perspective(0.3, 160.0 / 96.0, 0.2, 100.0);
-        let (center, radius) =
-            bounding_sphere(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
+        let BoundingSphere { center, radius } =
+            BoundingSphere::around(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
         let clip_from_world: Mat4 = projection * look;
         Self {
             models: Buffer::new(&gpu, "model matrices", bones).expect("allocated"),
@@ -59,10 +61,10 @@ impl Stage {
             view: LodView {
                 clip_from_world,
                 eye,
-                near: 5.0,
-                far: 12.0,
+                fade_start: 5.0,
+                fade_end: 12.0,
                 steps: 16,
-                most: 4,
+                max_influences: 4,
                 center,
                 radius: 1.1 * radius,
                 levels: LevelRanges::NONE,
@@ -147,10 +149,10 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
             culled.skin.record_updated_bones(encoder);
         })
         .expect("run");
-        // The other one skins and draws everybody, as far faded where that is known.
+        // The other crowd skins and draws every instance, with the same fade where that is known.
         let instance_lods = culled.skin.crowd.instance_lods.read_blocking(gpu).expect("read");
         let full = |instance_lod: &InstanceLod| {
-            if instance_lod.most == 0 { InstanceLod::FULL } else { *instance_lod }
+            if instance_lod.max_influences == 0 { InstanceLod::FULL } else { *instance_lod }
         };
         let all: Vec<_> = instance_lods.iter().map(full).collect();
         whole.skin.crowd.instance_lods.write(gpu, &all).expect("written");
@@ -164,10 +166,10 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         let mut expected = 0;
         for (at, instance_lod) in instance_lods.iter().enumerate() {
             let seen = known[SKINNED_WORDS * at + 3];
-            let wanted = if instance_lod.most == 0 { 0 } else { (seen_before[at] + 1).min(2) };
+            let wanted = if instance_lod.max_influences == 0 { 0 } else { (seen_before[at] + 1).min(2) };
             assert_eq!(seen, wanted, "creature {at} of frame {frame}");
-            // What stands still is skinned when it comes back, or fades.
-            if instance_lod.most > 0 && at.is_multiple_of(2) || seen == 1 {
+            // An instance that stands still is skinned when it comes back or fades.
+            if instance_lod.max_influences > 0 && at.is_multiple_of(2) || seen == 1 {
                 expected += clusters;
             }
             back += usize::from(seen == 1 && frame > 0);
@@ -176,7 +178,10 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         let now = culled.skin.active.dispatched.read_blocking(gpu).expect("read")[3] as usize;
         assert!((expected..=expected + 5 * clusters).contains(&now), "{now} of {expected}, frame {frame}");
         let drawn = culled.scene.arguments.read_blocking(gpu).expect("read")[1];
-        assert_eq!(drawn as usize, instance_lods.iter().filter(|instance_lod| instance_lod.most > 0).count());
+        assert_eq!(
+            drawn as usize,
+            instance_lods.iter().filter(|instance_lod| instance_lod.max_influences > 0).count()
+        );
         if drawn == 0 {
             assert_eq!(now, 0, "frame {frame}");
             empty += 1;

@@ -1,4 +1,4 @@
-//! What stands on the ground touches it: every pixel's depth is that of the triangle which the CPU answers.
+//! Objects on the ground touch it: the depth of every pixel is that of the triangle which the CPU finds.
 
 use glam::{DMat4, DVec3, Vec3};
 use relievo::gpu::{Buffer, Gpu};

@@ -11,7 +11,7 @@ use relievo::asset::{MeshLevel, Model};
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
-use relievo::skinning::bounding_sphere::bounding_sphere_in_clips;
+use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::level_errors;
 use relievo::skinning::lod::reference::{lod, seen};
@@ -37,8 +37,8 @@ const SIZE: [u32; 2] = [2 * 176, 2 * 112];
 /// Where the character's levels begin, world units: as many as its meshes have errors, one more than either has levels.
 const BEGINS: [f32; 4] = [5.0, 6.0, 9.0, 14.0];
 
-/// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with one, that
-/// is less off than any of the limb's.
+/// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with
+/// one level, whose error is less than any of the limb's.
 fn model() -> Model {
     let mut model = limb();
     let level = |step: usize, rings: Range<usize>| {
@@ -91,15 +91,15 @@ impl Crowd {
 
     fn view(&self, eye: Vec3) -> LodView {
         let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.5, -6.0), Vec3::Y);
-        let (center, radius) = bounding_sphere_in_clips(&self.model);
+        let BoundingSphere { center, radius } = BoundingSphere::in_clips(&self.model);
         let [near, far] = NO_FADE;
         LodView {
             clip_from_world: camera::rh::proj::directx::perspective(0.6, 176.0 / 112.0, 0.2, 100.0) * look,
             eye,
-            near,
-            far,
+            fade_start: near,
+            fade_end: far,
             steps: 1,
-            most: 8,
+            max_influences: 8,
             center,
             radius,
             levels: LevelRanges::new(&BEGINS).expect("ascending"),
@@ -136,8 +136,9 @@ impl Crowd {
     }
 }
 
-/// From afar, from near, from aside and from afar again: what a level lacks is skinned when a finer one is used, what it
-/// has is not skinned anew, and the picture is the reference's.
+/// The crowd is seen from afar, from near, from the side and from afar again. Vertices that a level lacks are
+/// skinned when a finer level is used, vertices that it has are not skinned again, and the picture is the
+/// reference's.
 #[test]
 fn a_crowd_with_levels() {
     let crowd = Crowd::new();
@@ -153,7 +154,7 @@ fn a_crowd_with_levels() {
         model,
         matrices: &ModelMatrices::new(&models).with_updated_bones(&updated),
         placements: &Buffer::from_slice(gpu, "placements", places).expect("uploaded"),
-        fade: NO_FADE,
+        fade_range: NO_FADE,
         levels: &BEGINS,
         blend: Blend::Linear,
         albedos: &[clay.clone(), clay],
@@ -175,7 +176,7 @@ fn a_crowd_with_levels() {
         let picture = LinearImage { size: SIZE, pixels: target.read_linear(gpu).expect("read") };
         let picture = picture.reduced(2).encoded();
 
-        let levels: Vec<u32> = now.iter().map(|instance_lod| instance_lod.level).collect();
+        let levels: Vec<u32> = now.iter().map(|instance_lod| instance_lod.mesh_lod).collect();
         let difference =
             |levels: &[u32]| Difference::of(&picture, &crowd.drawn(&view, levels), Tolerance::IMAGE.levels);
         assert!(difference(&levels).within(Tolerance::IMAGE), "{eye}: {:?}", difference(&levels));
@@ -185,8 +186,9 @@ fn a_crowd_with_levels() {
         let drawn = &scene.characters()[0];
         let scenes = drawn.frames.iter().zip(&drawn.scenes);
         for ((mesh, own), (frame, scene)) in model.meshes.iter().zip(OWN).zip(scenes) {
-            let counts = (0..5)
-                .map(|level| now.iter().filter(|now| now.most > 0 && now.level == level).count() as u32);
+            let counts = (0..5).map(|level| {
+                now.iter().filter(|now| now.max_influences > 0 && now.mesh_lod == level).count() as u32
+            });
             let arguments = scene.arguments.read_blocking(gpu).expect("read");
             for ((level, count), words) in (0..).zip(counts).zip(arguments.chunks(10)) {
                 let held = frame.clusters.level(level);
@@ -197,8 +199,9 @@ fn a_crowd_with_levels() {
                 used[level as usize] += count;
             }
             // Nobody moves: only what comes into view, or gets finer.
-            let clusters =
-                |of: &InstanceLod| if of.most == 0 { 0 } else { frame.clusters.level(of.level).clusters };
+            let clusters = |of: &InstanceLod| {
+                if of.max_influences == 0 { 0 } else { frame.clusters.level(of.mesh_lod).clusters }
+            };
             let anew: u32 =
                 now.iter().zip(&last).map(|(now, last)| clusters(now).saturating_sub(clusters(last))).sum();
             assert_eq!(frame.active.dispatched.read_blocking(gpu).expect("read")[3], anew, "{eye}");

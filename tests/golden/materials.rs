@@ -44,7 +44,7 @@ fn a_figure_in_its_materials() {
         model: &model,
         matrices: &ModelMatrices::new(&matrices),
         placements: &Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
-        fade: [1e3, 2e3],
+        fade_range: [1e3, 2e3],
         levels: &[],
         blend: Blend::Linear,
         albedos: &albedos,

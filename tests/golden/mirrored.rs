@@ -1,5 +1,5 @@
-//! Mirrored placements and mirrored views: outside stays outside and lit as such, whether one side is seen or both, on the
-//! device as in the reference.
+//! Mirrored placements and mirrored views: the outside stays the outside and is lit as such, single-sided and
+//! double-sided, on the device as in the reference.
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
@@ -97,7 +97,7 @@ fn drawn(gpu: &Gpu, double_sided: bool, clip_from_world: Mat4, is_by_hand: bool)
             &Buffer::from_slice(gpu, "model matrices", &bones.repeat(4)).expect("uploaded"),
         ),
         placements,
-        fade: NO_FADE,
+        fade_range: NO_FADE,
         levels: &[],
         blend: Blend::Linear,
         albedos: std::slice::from_ref(&clay),

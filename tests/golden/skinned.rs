@@ -12,9 +12,10 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedScene, Target};
 use relievo::samples::creature;
+use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::lod::{LevelRanges, LodPass, LodView, bounding_sphere, placed};
+use relievo::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use relievo::skinning::picture::Light;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
@@ -196,15 +197,15 @@ fn a_crowd_near_and_far() {
     let eye = Vec3::new(-1.0, 2.6, 7.0);
     let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.4, -4.0), Vec3::Y);
     let clip_from_world = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0) * look;
-    let (center, radius) =
-        bounding_sphere(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
+    let BoundingSphere { center, radius } =
+        BoundingSphere::around(model.meshes[0].positions.iter().map(|position| Vec3::from(*position)));
     let view = LodView {
         clip_from_world,
         eye,
-        near: 5.0,
-        far: 30.0,
+        fade_start: 5.0,
+        fade_end: 30.0,
         steps: 64,
-        most: 8,
+        max_influences: 8,
         center,
         radius,
         levels: LevelRanges::NONE,

@@ -1,4 +1,5 @@
-//! A page in headless Chromium: served on localhost, started with a fresh profile, and heard by what it posts back.
+//! A page in headless Chromium: it is served on localhost to a browser with a fresh profile, and posts its
+//! results back.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tiny_http::{Header, Method, Request, Response, Server};
 
-/// Chooses the browser.
+/// The environment variable that selects the browser.
 pub const VARIABLE: &str = "RELIEVO_CHROMIUM";
 
 const NAMES: &[&str] = &["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -27,11 +28,11 @@ const FLAGS: &[&str] = &[
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
-    // Containers have little of it.
+    // Containers have little shared memory.
     "--disable-dev-shm-usage",
 ];
 
-/// The browser of the suite. None is a failure, with what to do.
+/// The browser of the suite. A missing browser is a failure, with advice on what to do.
 pub fn program() -> Result<PathBuf, String> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     program_among(std::env::var_os(VARIABLE).map(PathBuf::from), std::env::split_paths(&path))
@@ -52,8 +53,8 @@ pub fn program_among(
     })
 }
 
-/// Opens the page `/` of `files`, paths and contents, in `program`, and returns what it posts to `/result`. What it posts
-/// to `/note` before says, if it never comes to a result, how far it came.
+/// Opens the page `/` of `files`, paths and contents, in `program`, and returns what it posts to `/result`. If
+/// it never posts a result, what it posted to `/note` shows how far it came.
 ///
 /// # Errors
 /// Without a result within `patience`, or when the browser ends: why, and what the browser wrote to stderr.
@@ -111,7 +112,7 @@ fn body(request: &mut Request) -> Result<String, String> {
     Ok(text)
 }
 
-/// A browser that has gone meanwhile is noticed by its absence.
+/// Answers a request; a browser that has ended is noticed elsewhere.
 fn answer(request: Request, status: u16, media_type: &str, content: &[u8]) {
     let mut response = Response::from_data(content).with_status_code(status);
     if let Ok(header) = Header::from_bytes("Content-Type", media_type) {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use image::RgbaImage;
 use relievo::gpu::{AdapterSummary, Gpu, Options, adapters};
 
-/// The adapter of the suite. None is a failure, and so is another than `RELIEVO_ADAPTER` names.
+/// The adapter of the suite. A missing adapter is a failure, and so is one other than `RELIEVO_ADAPTER` names.
 pub fn gpu() -> Gpu {
     let gpu = Gpu::headless(&Options::default())
         .expect("the suite needs a Vulkan adapter: `make test` installs one");
@@ -39,20 +39,21 @@ pub fn gpu_of_bindings(bytes: u64) -> Gpu {
 /// How an image may differ from its golden, and why.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
-    /// Levels of 255 that a channel may differ by.
+    /// The largest difference of a channel, in levels of 255.
     pub levels: u8,
-    /// The share of pixels that may differ by more: rasterizers disagree about who owns a pixel on an edge.
+    /// The fraction of pixels that may differ by more: rasterizers may disagree about which triangle owns a
+    /// pixel on an edge.
     pub outliers: f64,
-    /// Mean FLIP.
+    /// The largest mean FLIP.
     pub flip: f32,
 }
 
 impl Tolerance {
-    /// Architecture "Truth" and platform "Floating point", tier c.
+    /// The tolerance of drawn pictures: drivers round colours differently and disagree about pixels on edges.
     pub const IMAGE: Self = Self { levels: 3, outliers: 0.02, flip: 0.01 };
 }
 
-/// What a comparison of images found.
+/// The result of a comparison of images.
 #[derive(Debug, Clone, Copy)]
 pub struct Difference {
     pub worst: u8,
@@ -88,7 +89,7 @@ fn flip(actual: &RgbaImage, expected: &RgbaImage) -> f32 {
     nv_flip::FlipPool::from_image(&map).mean()
 }
 
-/// Whether this run writes goldens: `make bless` alone.
+/// Whether this run writes goldens, which only `make bless` does.
 pub fn blessing() -> bool {
     blesses(std::env::var_os("RELIEVO_BLESS").as_deref())
 }
@@ -102,8 +103,8 @@ fn goldens() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens")
 }
 
-/// Compares an image with its golden. What is wrong, if anything; blessing is wrong too, so that the run that
-/// writes a golden never passes.
+/// Compares an image with its golden. Writing a golden counts as a failure, so that the run that writes one
+/// never passes.
 pub fn check_golden(name: &str, actual: &RgbaImage, tolerance: Tolerance) -> Result<Difference, String> {
     check_golden_in(&goldens(), name, actual, tolerance, blessing())
 }
@@ -160,7 +161,7 @@ fn report(name: &str, actual: &RgbaImage, expected: Option<&RgbaImage>) -> Strin
     format!("see {}", written.join(", "))
 }
 
-/// The difference of two images, eight times as strong.
+/// The difference of two images, amplified eight times.
 fn amplified(actual: &RgbaImage, expected: &RgbaImage) -> RgbaImage {
     let mut image = actual.clone();
     for (pixel, expected) in image.pixels_mut().zip(expected.pixels()) {
@@ -195,7 +196,7 @@ pub fn relievo_with(arguments: &[&str], environment: &[(&str, &str)]) -> Run {
     Run { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
 }
 
-/// What the adapter list holds, for messages.
+/// The list of adapters, for messages.
 pub fn all_adapters() -> String {
     adapters().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }

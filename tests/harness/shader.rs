@@ -1,10 +1,10 @@
-//! Single functions of shaders, called on the adapter as they are shipped.
+//! Calls single functions of shaders on the adapter, as they are shipped.
 
 use relievo::gpu::shaders::Shader;
 use relievo::gpu::{Buffer, Gpu};
 
-/// What `body`, statements of WGSL, makes of each of `given`: it reads `given[at]` and writes `found[at]`, both `vec4<u32>`,
-/// and may call every function of the shader.
+/// Runs `body`, statements of WGSL, for each element of `given`. It reads `given[at]` and writes `found[at]`,
+/// both `vec4<u32>`, and may call every function of the shader.
 pub fn called(gpu: &Gpu, shader: &Shader, body: &str, given: &[[u32; 4]]) -> Vec<[u32; 4]> {
     let source = format!(
         "{}

@@ -40,7 +40,7 @@ fn refused(scene: &Scene, field: &str) {
     let bytes = scene.gltf();
     let (outcome, peak) = import(&bytes, None);
     let error = outcome.err().unwrap_or_else(|| panic!("{field} is accepted, with {peak} bytes"));
-    assert_eq!(error.field, field, "{error}");
+    assert_eq!(error.path, field, "{error}");
     assert!(peak < 1 << 20, "{field}: {peak} bytes for {}", bytes.len());
 }
 
@@ -124,7 +124,8 @@ fn the_full_document_is_right() {
     assert!(peak < 1 << 20, "{peak}");
 }
 
-/// An accessor of some hundred bytes, of which 80 million vectors of zeros were made before anything was looked at.
+/// An accessor of some hundred bytes that claims 80 million vectors of zeros; the count is checked before
+/// anything is allocated.
 #[test]
 fn zeros_are_counted_before_they_are_made() {
     let _alone = alone();
@@ -164,7 +165,7 @@ fn zeros_are_counted_before_they_are_made() {
     assert!(model.meshes[0].targets[0].vertices.is_empty());
 }
 
-/// The same bytes again and again: instances of a mesh, primitives, targets, keys, tracks, buffers, images.
+/// The same bytes used repeatedly: instances of a mesh, primitives, targets, keys, tracks, buffers, images.
 #[test]
 fn what_is_repeated_is_counted_too() {
     let _alone = alone();
@@ -258,7 +259,7 @@ fn images_are_counted_before_they_are_decoded() {
     scene.json["meshes"][1]["primitives"] = (0..40).map(primitive).collect();
     let (outcome, peak) = import(&scene.gltf(), None);
     let error = outcome.expect_err("too many");
-    assert!(error.bound.contains("texels") && error.field.starts_with("images["), "{error}");
+    assert!(error.bound.contains("texels") && error.path.starts_with("images["), "{error}");
     assert!(peak < 128 << 20, "{peak}");
 }
 

@@ -15,8 +15,8 @@ fn uv_area(shape: &Shape, indices: &[u32]) -> f64 {
     indices.chunks_exact(3).map(area).sum()
 }
 
-/// Its texture is one square whose border is the seam: as long as that stays where it is, and no triangle takes corners
-/// from both sides, signed areas sum to the square's.
+/// The texture is one square whose border is the seam. As long as the seam stays in place, and no triangle
+/// takes corners from both sides, signed areas sum to the square's.
 #[test]
 fn seams_hold() {
     let shape = torus(20, 12);
@@ -32,8 +32,8 @@ fn seams_hold() {
     }
 }
 
-/// Every wedge of what goes becomes one of its neighbour's, and those with triangles one that they share an edge with,
-/// but for wedges around a pole.
+/// Every wedge of a collapsed point becomes one of its neighbour's. Wedges with triangles become one with which
+/// they share an edge, except those around a pole.
 #[test]
 fn every_wedge_finds_an_heir() {
     for (shape, poles) in [(torus(14, 8), 0), (sphere(14, 8), 2), (cube(4), 0)] {
@@ -102,7 +102,7 @@ fn what_attributes_say_counts() {
     };
     let [before, after] = [mean(&flat.indices), mean(&left)];
     assert!((before - after).abs() < 0.03 * before, "{before} {after}");
-    // Worth a thousandth of it, nobody cares.
+    // Scaled to a thousandth, the attribute no longer matters.
     let faint: Vec<f32> = spot.iter().map(|value| value * 0.001).collect();
     assert_eq!(simplified(&faint, 1, 0.05).triangles_left(), 2);
     assert_eq!(topology(&flat, &left).euler, 1);

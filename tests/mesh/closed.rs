@@ -17,7 +17,7 @@ fn each_way(shape: &Shape, mut check: impl FnMut(&Simplified, Cost)) {
     }
 }
 
-/// As the mesh has it, at every level; triangles as announced.
+/// The topology of every level equals the mesh's, and triangles are as announced.
 fn keeps_topology(shape: &Shape, expected: Topology) {
     assert_eq!(topology(shape, &shape.indices), expected);
     each_way(shape, |simplified, cost| {
@@ -55,7 +55,7 @@ fn charts_stay_together() {
         for [from, to] in all {
             assert_eq!(chart(*from), chart(*to), "{from} became {to}");
         }
-        // It is flat, so it is still there.
+        // The surface is flat, so it stays.
         let left = simplified.triangles(&shape.indices, simplified.collapses().len());
         assert!((area(&shape, 0, &left) - area(&shape, 0, &shape.indices)).abs() < 1e-5);
         assert_eq!(left.chunks_exact(3).filter(|corners| chart(corners[0]) != chart(corners[1])).count(), 0);
@@ -81,8 +81,8 @@ fn tetrahedra_have_no_legal_collapse() {
         assert_eq!((simplified.collapses().len(), simplified.stopped()), (0, Stopped::Exhausted));
         assert_eq!(simplified.triangles(&tetrahedron.indices, 0), tetrahedron.indices);
     });
-    // Two with a face in common: an edge of that face has both peaks and its third corner for neighbours. A peak may
-    // become a corner of it, if nothing turns around.
+    // Two tetrahedra with a common face: an edge of that face has both peaks and the third corner as
+    // neighbours. A peak may collapse into a corner of the face if nothing turns around.
     let places =
         vec![[1.0, 0.0, 0.0], [-0.5, 0.0, 0.9], [-0.5, 0.0, -0.9], [0.0, 0.1, 0.0], [0.0, -2.0, 0.0]];
     let double = bare(places, vec![0, 3, 1, 1, 3, 2, 2, 3, 0, 1, 4, 0, 2, 4, 1, 0, 4, 2]);
@@ -153,7 +153,7 @@ fn tattered_meshes_keep_their_topology() {
     }
 }
 
-/// Triangles of any corners, most edges with three triangles and more.
+/// Triangles with arbitrary corners, where most edges have three triangles or more.
 #[test]
 fn any_triangles_will_do() {
     let mut collapses = 0;

@@ -1,4 +1,4 @@
-//! What is asked of a simplified mesh.
+//! Measurements of simplified meshes.
 
 use std::collections::{HashMap, HashSet};
 

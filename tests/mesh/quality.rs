@@ -1,4 +1,4 @@
-//! How far simplified meshes are from what they were.
+//! How far simplified meshes are from the original.
 
 use relievo::mesh::{Cost, Options, Stopped, Surface, simplify};
 

@@ -1,4 +1,4 @@
-//! The promise of the `bounded` gate where it counts: at every vertex, on screen.
+//! The guarantee of the `bounded` gate for vertices: a largest error on screen.
 
 use relievo::animation::Choice;
 use relievo::animation::frame::reference::Crowd;
@@ -114,8 +114,8 @@ fn no_vertex_is_further_off_than_the_pixels_allow() {
     assert!(largest > 0.3, "far too careful: {largest} of what is allowed");
 }
 
-/// What a gate leaves alone need not be skinned again: its dirty bits choose the clusters, and the vertices of the
-/// others stay where they are.
+/// Vertices of bones that a gate skips need not be skinned again: its updated bones select the clusters, and
+/// the vertices of all others stay unchanged.
 #[test]
 fn clusters_without_a_dirty_bone_stay() {
     let stage = Stage::new();

@@ -1,5 +1,5 @@
-//! Levels of detail of a character of two meshes: each is as coarse as it may be, and what is drawn keeps what was promised
-//! in pixels.
+//! Levels of detail of a character with two meshes: each is as coarse as permitted, and the drawn surface keeps
+//! to the error in pixels.
 
 use glam::{Vec3, Vec4, camera};
 use relievo::animation::Projection;
@@ -60,10 +60,10 @@ fn each_mesh_changes_where_its_own_error_allows() {
     let view = LodView {
         clip_from_world: camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 1e5),
         eye: Vec3::ZERO,
-        near,
-        far,
+        fade_start: near,
+        fade_end: far,
         steps: 64,
-        most: 8,
+        max_influences: 8,
         center: extent.center,
         radius: extent.radius,
         levels: LevelRanges::new(&begins).expect("ascending"),
@@ -78,7 +78,7 @@ fn each_mesh_changes_where_its_own_error_allows() {
         let middle = Vec3::from(turned.map(|row| Vec3::from_slice(&row).dot(extent.center)));
         let placement = placed(projected_distance * side - middle, turn, 1.0);
         let instance_lod = lod(&view, &placement);
-        assert_eq!((instance_lod.most, instance_lod.level), (8, view.levels.at(1.0001 * begin)));
+        assert_eq!((instance_lod.max_influences, instance_lod.mesh_lod), (8, view.levels.at(1.0001 * begin)));
         let time = model.clips[0].duration() * (0.618 * at as f32).fract();
         for (mesh, (own, found)) in model.meshes.iter().zip(own.iter().zip(&found)) {
             let bones = Palette::Linear(palette(&model.skins[0], &models(&model, "walk", time)));
@@ -91,7 +91,7 @@ fn each_mesh_changes_where_its_own_error_allows() {
                 vertices.iter().map(|vertex| place(vertex.position)).collect()
             };
             let (full, drawn) = (placed(InstanceLod::FULL), placed(instance_lod));
-            let Some(level) = (own[instance_lod.level as usize] as usize).checked_sub(1) else { continue };
+            let Some(level) = (own[instance_lod.mesh_lod as usize] as usize).checked_sub(1) else { continue };
             for (vertex, wanted) in full.into_iter().enumerate() {
                 let nearest = found.nearest(level, vertex, wanted, |vertex| drawn[vertex as usize]);
                 let off = screen(nearest).distance(screen(wanted));

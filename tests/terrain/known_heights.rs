@@ -1,5 +1,5 @@
-//! Hashes of whole patches, made by an independent reference in Python (numpy, and point-by-point recursion,
-//! which agreed with each other) from the specification's text alone.
+//! Hashes of whole patches, computed by two independent programs in Python (one with numpy, one by recursion for each
+//! point), which agree with each other and share no code with this crate.
 
 use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;

@@ -1,5 +1,5 @@
-//! What makes terrain seamless, shown for random worlds: neighbours agree bit for bit wherever they meet, in
-//! every order and at every resolution, before and after despiking and erosion (spec sections 1.2 to 1.4).
+//! The properties that make terrain seamless, for random worlds: neighbours agree bit for bit wherever they
+//! meet, in every order and at every resolution, before and after despiking and erosion.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -35,7 +35,7 @@ fn settings() -> ProptestConfig {
 /// Heights by column and row, in samples of one patch's corner.
 type Points = BTreeMap<[i32; 2], f64>;
 
-/// A world, and the patch that is looked at.
+/// A world, and the patch under test.
 #[derive(Debug, Clone)]
 struct World {
     config: Config,
@@ -129,7 +129,7 @@ fn worlds() -> impl Strategy<Value = World> {
     })
 }
 
-/// Counts the samples of fields that lie where another field has one too.
+/// Counts the samples of fields that another field has too. Returns the first one that two fields disagree on.
 ///
 /// # Errors
 /// The first place that two fields fill differently.
@@ -483,8 +483,8 @@ fn with_and_without_blend(config: &Config, patches: &[[i32; 2]]) -> [Vec<Vec<i32
     })
 }
 
-/// `own` moved towards the earlier patch that lies in `direction`: what the specification says in quotients
-/// and remainders, as one exact fraction.
+/// `own` moved towards the earlier patch that lies in `direction`. The blend is computed as one exact fraction,
+/// where the code uses quotients and remainders.
 fn moved(own: &[i32], earlier: &[i32], size: usize, width: u32, direction: [i32; 2]) -> Vec<i32> {
     let mirrored = |at: usize, step: i32| if step == 0 { at } else { size - 1 - at };
     let distance = |at: usize, step: i32| if step < 0 { at } else { size - 1 - at };

@@ -1,5 +1,5 @@
 //! Bad input is refused with an error that names the field, its value and the bound, and the nearest good
-//! input is accepted (spec section 1.1). Edge cases of good input are accepted too.
+//! input is accepted. Edge cases of good input are accepted too.
 
 use relievo::InputError;
 use relievo::terrain::config::{Border, Config, Offset};

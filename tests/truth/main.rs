@@ -19,8 +19,9 @@ use relievo::skinning::picture::{Light, framing};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, InstanceLod, Vertex, add_levels};
 
-/// How far a vertex or a joint may lie from where three.js has it, as a share of the size of what it belongs to: positions,
-/// keys and matrices are `f32` in files, and both multiply some ten of them, here in `f32`.
+/// The largest distance between a vertex or joint and its position in three.js, relative to the size of its
+/// mesh or skeleton: positions, keys and matrices are `f32` in files, and both programs multiply about ten of
+/// them, here in `f32`.
 const PLACES: f32 = 1e-5;
 
 /// How far axes of joints may be off, as a share of the longest, and unit normals.
@@ -213,7 +214,7 @@ fn vertices_are_where_three_js_has_them() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Each fault alone is more than the comparison lets pass.
+/// Each of these faults alone exceeds what the comparison permits.
 #[test]
 fn a_planted_fault_is_found() {
     let truth = Truth::read();
@@ -302,7 +303,7 @@ fn closed_meshes_are_seen_from_outside() {
     assert!(triangles > 500 && levels > 20, "{triangles} triangles, {levels} levels");
 }
 
-/// From outside nothing shows whether the inside would be seen.
+/// From outside, closed meshes look the same whether their inside is drawn or not.
 #[test]
 fn pictures_of_closed_meshes_show_their_outside() {
     let truth = Truth::read();

@@ -1,4 +1,4 @@
-//! The browser's driver: whatever goes wrong is said, in time, and nothing stays behind.
+//! The browser's driver reports every failure in time and leaves no process behind.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

@@ -1,4 +1,5 @@
-//! What the page is to create, from the files and the manifest that `relievo shaders` writes.
+//! The list of pipelines that the page must create, from the files and the manifest that `relievo shaders`
+//! writes.
 
 use std::path::Path;
 

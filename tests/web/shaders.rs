@@ -1,4 +1,4 @@
-//! What the browser's compiler says of every shader and module, and of some that it must refuse.
+//! The verdict of the browser's compiler on every shader and module, and on some that it must refuse.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -21,7 +21,7 @@ const BEYOND_F32: &str = "const LARGEST = 3.40282347e38;
 const ILL_TYPED: &str = "@group(0) @binding(0) var<storage, read_write> out: array<f32>;
 @compute @workgroup_size(1) fn main() { out[0] = 1u; }";
 
-/// What all tests of this file look at: one page load.
+/// The results that all tests of this file examine, from one page load.
 struct Said {
     written: Written,
     result: Value,
@@ -47,7 +47,7 @@ fn said() -> &'static Said {
     })
 }
 
-/// Each module by itself, and before a shader of somebody's own.
+/// Each module alone, and before another program's shader.
 fn modules(written: &Written) -> Vec<Value> {
     let mut jobs = Vec::new();
     for (name, source) in &written.modules {
@@ -173,7 +173,7 @@ fn name_begins(pipeline: &Value, begin: &str) -> bool {
     pipeline["label"].as_str().is_some_and(|label| label.starts_with(begin))
 }
 
-/// By name, so that another one is no accident.
+/// They are listed by name, so that a further one is noticed.
 #[test]
 fn shaders_that_need_more_than_the_default_limits_are_known_by_name_and_refused() {
     let needs = |shader: &&Value| !shader["limits"].as_array().expect("a list").is_empty();

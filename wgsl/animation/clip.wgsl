@@ -1,11 +1,11 @@
-// A clip's place in a set.
+// Where the parts of a clip lie in a set.
 struct ClipEntry {
-    // Its first timeline.
+    // Index of its first timeline.
     first_timeline: u32,
-    // How many it has.
+    // Number of its timelines.
     timelines: u32,
-    // Seconds.
+    // Duration in seconds.
     duration: f32,
-    // Its first row in tables that have one for each time of its first timeline, and one more.
+    // Its first row in gate tables, which have one row for each time of its first timeline and one more.
     first_row: u32,
 }

@@ -1,5 +1,5 @@
-// Where an instance stands on the common timeline of its clip, in whole numbers, and whether anything but the time asks
-// for a new pose: what gates decide by.
+// The integer position of an instance on the common timeline of its clip, and the reason, other than time, to
+// update its pose. Gates decide by these.
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::gate_state::{LOD_HIDDEN, LOD_REFRESH, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock};
@@ -8,9 +8,9 @@ import package::wgsl::animation::timeline::keyframe_cursor;
 
 struct ClipClockParams {
     instances: u32,
-    // Seconds since the instances' starts.
+    // Seconds since the starts of the instances.
     elapsed: f32,
-    // Layers above the base.
+    // Number of layers above the base.
     layers: u32,
     // Seconds by which bones may be sampled ahead.
     ahead: f32,
@@ -21,18 +21,17 @@ struct ClipClockParams {
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // First time and number of keys.
 @group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
-// Binding 4: the times.
-// Binding 5: the levels of detail.
-// Weights of the layers above the base, layer by layer.
+// Binding 4 holds the key times, binding 5 the levels of detail. Weights of the layers above the base, layer by
+// layer.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
-// The last clip + 1, with BLENDED where layers lay above it, or 0 where no pose is stored; what these layers played; as
-// bits, the time inside the clip, and that ahead.
+// Per instance: the last clip + 1, with BLENDED if layers were above it, or 0 if no pose is stored; a hash of
+// what these layers played; and, as bits, the time inside the clip and the time ahead.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
-// Binding 8: the phases.
+// Binding 8 holds the clip clocks.
 
 const BLENDED = 0x80000000u;
 
-// A number of the clips that play above the base; 0 where none does.
+// A hash of the clips that play above the base; 0 if there are none.
 fn clips_above(instance: u32) -> u32 {
     var clips = 0u;
     for (var layer = 0u; layer < clip_clock_params.layers; layer++) {
@@ -43,12 +42,12 @@ fn clips_above(instance: u32) -> u32 {
     return clips;
 }
 
-// From the bits of a float, 0 to 65536.
+// Converts a float, given as bits, to a fraction of 0 to 65536.
 fn whole_fraction(bits: u32) -> u32 {
     return u32(clamp(bitcast<f32>(bits), 0.0, 1.0) * 65536.0);
 }
 
-// Its phase, with the flags of its level of detail; its history is kept.
+// The clip clock of an instance with the flags of its level of detail; updates its history.
 fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let instance = instances[index];
     let clip = clips[instance.clip];

@@ -1,13 +1,13 @@
-// Where in its clip a time falls.
+// The time inside a clip.
 
-// Stays at the clip's start and end. 0 loops.
+// Times outside the clip are clamped to its start and end; 0 loops.
 const WRAP_CLAMP = 1u;
 
-// After so many turns, f32 knows no place in a clip.
+// After this many turns, f32 cannot resolve a position in a clip.
 const MAX_TURNS = 16777216.0;
 
-// Seconds since the clip's start, 0 to `duration`, of a time in clip seconds, which may be negative; a loop never reaches
-// its end. Its start, where a loop's time is so large that it is nowhere.
+// Converts a time in clip seconds, which may be negative, to seconds since the clip's start, 0 to `duration`. A
+// loop never returns `duration` itself, and returns 0 for times too large to resolve.
 fn inside_clip(wrap: u32, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;
@@ -15,7 +15,7 @@ fn inside_clip(wrap: u32, duration: f32, time: f32) -> f32 {
     if wrap == WRAP_CLAMP {
         return min(max(time, 0.0), duration);
     }
-    // NaN is not below.
+    // The comparison is false for NaN.
     if !(abs(time) < MAX_TURNS * duration) {
         return 0.0;
     }

@@ -1,4 +1,4 @@
-// From bits to lists: the steps of kernels/animation/compact.wgsl.
+// The steps that turn bits into lists, for kernels/animation/compact.wgsl.
 import package::wgsl::animation::gated::bits::bits;
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::dispatch::rows_of_workgroups;
@@ -8,40 +8,40 @@ const WIDTH = 64u;
 struct CompactParams {
     instances: u32,
     bones: u32,
-    // Words of bits an instance.
+    // Words of bits per instance.
     words: u32,
-    // Dispatches beyond the first that serve updated instances.
+    // Number of dispatches, after the first, that handle updated instances.
     served: u32,
-    // Most workgroups along x.
+    // The largest number of workgroups along x.
     most_groups: u32,
 }
 
 @group(0) @binding(15) var<uniform> compact_params: CompactParams;
-// Binding 14: the bits.
-// Bone, parent, slots of the subtree.
+// Binding 14 holds the bits. Bone, parent, number of slots of the subtree.
 @group(0) @binding(16) var<storage, read> slots: array<vec4<u32>>;
 @group(0) @binding(17) var<storage, read_write> updated_bones: array<u32>;
-// Active pairs of each instance, then of all before it.
+// The number of active pairs of each instance; after the scan, of all instances before it.
 @group(0) @binding(18) var<storage, read_write> counts: array<u32>;
-// instance * bones + bone, with PAIR_AHEAD where it is sampled ahead.
+// instance * bones + bone, with PAIR_AHEAD if it is sampled ahead.
 @group(0) @binding(19) var<storage, read_write> pairs: array<u32>;
-// Workgroups along x, y, z for a thread a pair; how many.
+// Workgroups along x, y and z for one thread per pair, and the number of pairs.
 @group(0) @binding(20) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
 @group(0) @binding(21) var<storage, read_write> updated_instances: array<u32>;
-// Likewise for a thread a updated instance; then, where w says how many, for as many threads a updated instance.
+// The same for one thread per updated instance; then dispatches with several threads per updated instance, as
+// many as w said before.
 @group(0) @binding(22) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
 var<workgroup> sums: array<vec2<u32>, WIDTH>;
 
-// Bits from `start` to below `end`, both within 0..=32.
+// A mask of the bits from `start` to below `end`, both within 0..=32.
 fn run(start: u32, end: u32) -> u32 {
     let below = select(0xffffffffu, (1u << (end & 31u)) - 1u, end < 32u);
     return below & (0xffffffffu << start);
 }
 
-// Of the words of an instance so far.
+// State after the words of an instance so far.
 struct Spread {
-    // Chosen slots.
+    // Number of chosen slots.
     count: u32,
     // The slot after the last updated one.
     end: u32,
@@ -78,14 +78,14 @@ fn dispatch_of(threads: u32) -> vec3<u32> {
     return rows_of_workgroups(threads / WIDTH + u32(threads % WIDTH > 0u), compact_params.most_groups);
 }
 
-// The instances of a lane of the only workgroup, of `width` lanes: from x to below y.
+// The instances of a lane of a single workgroup with `width` lanes: from x to below y.
 fn instances_of(lane: u32, width: u32) -> vec2<u32> {
     let chunk = (compact_params.instances + width - 1u) / width;
     let first = min(lane * chunk, compact_params.instances);
     return vec2<u32>(first, min(first + chunk, compact_params.instances));
 }
 
-// Of one workgroup of at most WIDTH lanes.
+// The scan, for one workgroup of at most WIDTH lanes.
 fn scan(lane: u32, width: u32) {
     let own = instances_of(lane, width);
     var sum = vec2<u32>(0u);
@@ -117,7 +117,7 @@ fn scan(lane: u32, width: u32) {
     }
 }
 
-// Lists the pairs of a word from `start` on; where those of the next word begin.
+// Lists the pairs of a word, starting at `start`. Returns where those of the next word begin.
 fn list_word(instance: u32, word: u32, start: u32) -> u32 {
     let first_pair = instance * compact_params.bones;
     let first_slot = 32u * word;
@@ -148,7 +148,7 @@ fn scatter(index: u32) {
     list_word(instance, index - first_word, at);
 }
 
-// All pairs of one instance.
+// Lists all pairs of one instance.
 fn list_instance(instance: u32) {
     var at = counts[instance];
     for (var word = 0u; word < compact_params.words; word++) {

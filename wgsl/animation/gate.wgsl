@@ -1,4 +1,5 @@
-// Which bones of an instance are sampled this frame, a bit each, from whole numbers alone: every device decides alike.
+// Decides which bones of an instance are sampled this frame, one bit each. All arithmetic is on integers, so
+// that every device decides alike.
 import package::wgsl::animation::gated::bits::bits;
 import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
@@ -15,41 +16,42 @@ const BOUNDED = 4u;
 struct GateParams {
     instances: u32,
     bones: u32,
-    // Words of bits an instance.
+    // Words of bits per instance.
     words: u32,
-    // Entries of a row of the table.
+    // Entries per row of the table.
     stride: u32,
-    // Since the start, and since the last frame.
+    // Ticks since the start, and since the last frame.
     ticks: u32,
     frame_ticks: u32,
     // Ticks of the longest period.
     period: u32,
     // Frames since the start.
     frame: u32,
-    // Row of the table that tells for each slot the one above it that the first clip moves; then the other clips'.
+    // The row of the table that gives, for each slot, the nearest slot above it that the first clip moves; rows
+    // for the other clips follow.
     first_above: u32,
 }
 
 @group(0) @binding(9) var<uniform> gate_params: GateParams;
-// Of each clip: its row of periods, then a bit for each bone that moves in it.
+// For each clip, the row of its periods, then one bit for each bone that moves in it.
 @group(0) @binding(10) var<storage, read> animated_bones: array<u32>;
-// Priorities, four a vector; or for each bone the sum of motion and its rise, in a clip's last row that of the whole clip
-// and what the bone is granted.
+// Either priorities, four per vector; or for each bone the sum of motion and its rise to the next row. In a
+// clip's last row, the latter are the sum over the whole clip and the bone's error budget.
 @group(0) @binding(11) var<storage, read> table: array<vec2<u32>>;
-// For each bone, the sum of motion when it was sampled last.
+// For each bone, the sum of motion when it was last sampled.
 @group(0) @binding(12) var<storage, read_write> sampled: array<u32>;
-// For each bone that others than the next hang below, what it leaves of the allowed way.
+// For each bone that has children other than the next bone, what it leaves of the error budget.
 @group(0) @binding(13) var<storage, read_write> remaining: array<u32>;
 
-// A round of a multiplicative hash (Wellons' "lowbias32").
+// One round of a multiplicative hash (Wellons' "lowbias32").
 fn scramble(word: u32) -> u32 {
     var mixed = (word ^ (word >> 16u)) * 0x21f0aaadu;
     mixed = (mixed ^ (mixed >> 15u)) * 0x735a2d97u;
     return mixed ^ (mixed >> 15u);
 }
 
-// A skips an update each period: at once where a period is no longer than a frame, else when the last frame has passed
-// a multiple of it.
+// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
+// frame in which the clock passes a multiple of the period.
 fn is_skipped(period: u32, ticks: u32) -> bool {
     return period <= gate_params.frame_ticks || ticks % period < gate_params.frame_ticks;
 }
@@ -58,7 +60,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_cloc
     if omega >= OMEGA_ONE {
         return candidates;
     }
-    // Instances do not skip in step.
+    // The offset keeps instances from skipping in step.
     let ticks = gate_params.ticks + (scramble(instance) & 0xffffu);
     var chosen = candidates;
     var rest = candidates;
@@ -69,7 +71,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_cloc
         let four = table[clip_clock.row * gate_params.stride + slot / 4u];
         let two = select(four.x, four.y, (slot & 2u) != 0u);
         let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
-        // Of 65536; and the period that it stands for.
+        // The priority times Ω, in 65536ths, and the period that belongs to it.
         let level = (priority * omega) >> 16u;
         let whole = (gate_params.period >> 16u) * level;
         let period = whole + (((gate_params.period & 0xffffu) * level) >> 16u);
@@ -107,9 +109,10 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
 }
 
 const NO_PARENT = 0xffffffffu;
-// More than is ever allowed.
+// More than is ever permitted.
 const EVERYTHING = 1u << 30u;
-// Of what a bone is granted: above 8 bits its share of what is left, and in the lowest five what rounding may hide.
+// The encoding of a bone's error budget: above the lowest 8 bits its fraction of what is left, in the lowest
+// five the rounding error that must be added.
 const STARTS = 32u;
 const REMAINING = 64u;
 
@@ -117,24 +120,25 @@ fn quantization_slack_of(granted: u32) -> u32 {
     return (1u << (granted & 31u)) >> 1u;
 }
 
-// A bit each: what is sampled, and of this, what is sampled ahead.
+// One bit per bone: the bones that are sampled, and those of them that are sampled ahead.
 struct Chosen {
     bits: u32,
     ahead: u32,
 }
 
-// Of one instance.
+// The motion state of one instance.
 struct AccumulatedMotion {
     allowed: u32,
     clip_clock: ClipClock,
-    // The clip's last row.
+    // The last row of the clip.
     last_row: u32,
 }
 
-// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
-// One that missed more is sampled, and leaves them everything; or, where it moves no more than its share until then, it is
-// sampled ahead: it is off by as much now, and stays for twice as long. `asked`: those that are sampled whatever they
-// missed; so are all where nothing may be missed. `left`: what the bone before left.
+// Decides for bones in order, parents first. A bone that missed no more than its fraction of the remaining
+// budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is sampled, and
+// passes on all of it; or it is sampled ahead if its motion until then is within its fraction too: it is then
+// off by as much now, and can stay for twice as long. Bones in `asked` are sampled whatever they missed, and so
+// are all bones if nothing may be missed. `left` is what the previous bone left.
 fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
     let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
     let row = accumulated.clip_clock.row * gate_params.stride + first;
@@ -185,7 +189,8 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated
     return chosen;
 }
 
-// Up to 32 bones of one instance. BOUNDED takes words in their order: `left` is what the one before left.
+// Decides for up to 32 bones of one instance. BOUNDED handles the words in order: `left` is what the previous
+// word left.
 fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: ptr<function, u32>) -> Chosen {
     let first = 32u * word;
     let reason = update_reason_of(clip_clock);
@@ -195,7 +200,7 @@ fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: pt
     let record = clip_clock.clip * (gate_params.words + 1u);
     let all = 0xffffffffu >> (32u - min(gate_params.bones - first, 32u));
     let candidates = select(animated_bones[record + 1u + word], all, reason == UPDATE_REASON_BLENDED);
-    // Sums of motion know of one clip alone.
+    // Sums of motion describe a single clip, so they cannot be used for other reasons to update.
     let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
     var chosen = candidates;
     if MODE == BOUNDED {
@@ -214,7 +219,7 @@ fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: pt
     return Chosen(chosen, 0u);
 }
 
-// Stores what is chosen of a word.
+// Stores the decisions of a word.
 fn store_word(instance: u32, word: u32, chosen: Chosen) {
     let at = instance * gate_params.words + word;
     bits[at] = chosen.bits;

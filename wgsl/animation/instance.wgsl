@@ -1,11 +1,11 @@
-// What one character plays.
+// The clip that a character plays.
 struct AnimationInstance {
-    // Which clip of the set.
+    // Index of the clip in the set.
     clip: u32,
-    // What becomes of times outside the clip: 0 loops, 1 clamps.
+    // How times outside the clip are treated: 0 loops, 1 clamps.
     wrap_code: u32,
-    // Where in the clip it stands when nothing has elapsed, in seconds.
+    // The time inside the clip when no time has elapsed, in seconds.
     start: f32,
-    // Clip seconds a second; negative plays backwards.
+    // Playback rate in clip seconds per second; negative plays backwards.
     rate: f32,
 }

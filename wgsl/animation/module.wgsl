@@ -1,6 +1,6 @@
-// Animation: what the kernels' buffers hold (`AnimationInstance`, `ClipEntry`, `Lod`, `ClipClock`), where in its clip a time
-// falls, rotations between keys, and how far bones have moved. `build.rs` joins this file and what it imports, for
-// shaders that are not composed with WESL: put it before your own code.
+// Animation: the contents of the kernels' buffers (`AnimationInstance`, `ClipEntry`, `Lod`, `ClipClock`), times
+// inside clips, rotations between keys, and the motion of bones. `build.rs` joins this file and what it imports
+// into one text, for shaders that are not composed with WESL: put that text before your own code.
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::{WRAP_CLAMP, inside_clip};

@@ -1,11 +1,12 @@
 // Interpolation of unit quaternions whose dot product is not negative.
 
-// Eberly's polynomial (2011) for halved arcs: 1/(i(2i + 1)), the last term enlarged by 1.15.
+// Coefficients of Eberly's polynomial (Eberly 2011) for halved arcs: 1/(i(2i + 1)), the last one multiplied by
+// 1.15.
 const SLERP_U = array<f32, 5>(1.0 / 3.0, 1.0 / 10.0, 1.0 / 21.0, 1.0 / 36.0, 1.15 / 55.0);
-// Likewise i/(2i + 1).
+// Coefficients i/(2i + 1), with the same factor on the last.
 const SLERP_V = array<f32, 5>(1.0 / 3.0, 2.0 / 5.0, 3.0 / 7.0, 4.0 / 9.0, 1.15 * 5.0 / 11.0);
 
-// sin(t theta) / sin(theta) for less_one = cos(theta) - 1, for two t at once.
+// sin(t theta) / sin(theta) for less_one = cos(theta) - 1, for two values of t at once.
 fn slerp_weights(t: vec2<f32>, less_one: f32) -> vec2<f32> {
     let square = t * t;
     var sum = 1.0 + (SLERP_U[4] * square - SLERP_V[4]) * less_one;
@@ -16,8 +17,9 @@ fn slerp_weights(t: vec2<f32>, less_one: f32) -> vec2<f32> {
     return t * sum;
 }
 
-// Between unit quaternions (x, y, z, w) whose dot product is not negative, t from 0 to 1: at constant speed on the shortest
-// arc, halved: from the nearer end to the unit quaternion in the middle. Within 1e-6 of the exact one.
+// Spherical interpolation of unit quaternions (x, y, z, w) whose dot product is not negative, for t from 0 to
+// 1, at constant speed on the shortest arc. The arc is halved: the polynomial runs from the nearer end to the
+// unit quaternion in the middle. The error is within 1e-6.
 fn slerp(a: vec4<f32>, b: vec4<f32>, t: f32) -> vec4<f32> {
     let cosine = dot(a, b);
     let inverse = inverseSqrt(2.0 + 2.0 * cosine);
@@ -30,7 +32,7 @@ fn slerp(a: vec4<f32>, b: vec4<f32>, t: f32) -> vec4<f32> {
     return select(b, a, is_first) * of_nearer + select(a, b, is_first) * of_middle;
 }
 
-// Of length 1; the quaternion must not vanish.
+// The quaternion scaled to length 1; it must not vanish.
 fn unit_quaternion(q: vec4<f32>) -> vec4<f32> {
     return q * inverseSqrt(dot(q, q));
 }

@@ -1,9 +1,9 @@
-// Where a time lies among the key times of a timeline.
+// The position of a time among the key times of a timeline.
 
 @group(0) @binding(4) var<storage, read> times: array<f32>;
 
-// Key and, as bits, fraction: of the timeline whose first time and number of keys are given. The last of equal times
-// counts.
+// The cursor, a key and (as bits) a fraction, on the timeline with the given first time and number of keys. Of
+// equal times the last counts.
 fn keyframe_cursor(first: u32, keys: u32, time: f32) -> vec2<u32> {
     let last = keys - 1u;
     let start = times[first];
@@ -14,7 +14,7 @@ fn keyframe_cursor(first: u32, keys: u32, time: f32) -> vec2<u32> {
     if time >= end_time {
         return vec2<u32>(last, 0u);
     }
-    // Most clips are sampled evenly: a guess hits.
+    // Most clips have evenly spaced keys, so that a first guess is usually right.
     let evenly = (time - start) / (end_time - start) * f32(last);
     var key = min(u32(evenly), last - 1u);
     var before = times[first + key];

@@ -1,4 +1,4 @@
-//! The lists on the device.
+//! The lists of active bones and instances on the device.
 
 use crate::animation::crowd::Crowd;
 use crate::animation::model_matrices::ExclusiveConsumer;
@@ -6,18 +6,19 @@ use crate::animation::order::Order;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::{Error, InputError};
 
-/// The pairs of instance and bone that are to be sampled, in a buffer that kernels may fill.
+/// The pairs of instance and bone to be sampled, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
 pub struct ActivePairs {
-    /// `instance · bones + bone`, with [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) where it is sampled ahead; others are skipped.
+    /// `instance · bones + bone` of each pair, with [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) if it
+    /// is sampled ahead. All other pairs are skipped.
     pub pairs: Buffer<u32>,
-    /// Workgroups of 64 along x, y and z, and how many pairs: arguments of an indirect dispatch.
+    /// Workgroups of 64 along x, y and z, as arguments of an indirect dispatch, and the number of pairs.
     pub dispatched: Buffer<u32>,
     consumer: ExclusiveConsumer,
 }
 
 impl ActivePairs {
-    /// Room for all pairs of a crowd; none is active.
+    /// Allocates a list with room for all pairs of a crowd. It is empty at first.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -27,15 +28,15 @@ impl ActivePairs {
         Ok(Self { pairs: Buffer::new(gpu, "pairs", crowd.pairs())?, dispatched, consumer })
     }
 
-    /// Refuses another crowd than the one that they were made for.
+    /// Refuses a crowd other than the one for which the list was made.
     pub(crate) fn check_crowd(&self, crowd: &Crowd) -> Result<(), InputError> {
         crowd.model_matrices.consumer().check_same(&self.consumer)
     }
 
-    /// Makes these pairs active, from the host.
+    /// Sets the list from the host.
     ///
     /// # Errors
-    /// [`GpuError`], for more pairs than the crowd has too.
+    /// [`GpuError`], also for more pairs than the crowd has.
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
         let groups = pairs.len().div_ceil(64) as u32;
@@ -44,21 +45,22 @@ impl ActivePairs {
     }
 }
 
-/// What is to be done for a crowd in a frame. All buffers may be read and bound by the caller.
+/// The work of a frame for a crowd. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Active {
-    /// A bit for each slot of each instance, [`Order::words`] words an instance: those that are sampled; then likewise, those
-    /// of them that are sampled ahead. Written by a gate, or by the caller.
+    /// One bit per slot of each instance, in [`Order::words`] words per instance: the bones that are sampled;
+    /// then, in the same layout, those of them that are sampled ahead. A gate or the caller writes them.
     pub bits: Buffer<u32>,
-    /// Likewise: those that are concatenated.
+    /// In the same layout: the bones whose model matrices are updated.
     pub updated_bones: Buffer<u32>,
-    /// The pairs that are sampled.
+    /// The pairs to be sampled.
     pub pairs: ActivePairs,
-    /// Instances with an active bone.
+    /// Indices of the instances that have an active bone.
     pub instances: Buffer<u32>,
-    /// Workgroups of 64 along x, y, z for a thread an instance of the list, and how many these are; then, for each
-    /// level of chains, workgroups for a thread a chain of each of them, and the level's chains; last, workgroups for a
-    /// thread a place of each of them, and an instance's places.
+    /// Arguments of indirect dispatches. First, workgroups of 64 along x, y and z for one thread per listed
+    /// instance, and the number of these instances. Then, for each level of chains, workgroups for one thread
+    /// per chain of each instance, and the level's number of chains. Last, workgroups for one thread per cursor
+    /// of each instance, and an instance's number of cursors.
     pub dispatches: Buffer<[u32; 4]>,
     pub(crate) slots: Buffer<crate::animation::order::Slot>,
     pub(crate) counts: Buffer<u32>,
@@ -66,7 +68,7 @@ pub struct Active {
 }
 
 impl Active {
-    /// Room for a crowd of a skeleton; nothing is active.
+    /// Allocates the lists for a crowd of a skeleton; nothing is active.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].

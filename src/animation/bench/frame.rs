@@ -1,4 +1,4 @@
-//! Whole frames: places, sampling and concatenation of a crowd, and the copies of their bytes.
+//! Benchmarks of whole frames: cursors, sampling and concatenation of a crowd, and copies of the same bytes.
 
 use std::hint::black_box;
 
@@ -17,7 +17,7 @@ use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 use crate::baseline::gather::Reads;
 use crate::gpu::{Gpu, Job};
 
-/// A frame of the kernels.
+/// A frame computed by the kernels.
 pub struct DeviceFrame {
     cursor: KeyframeCursorJob,
     sample: Job,
@@ -56,7 +56,7 @@ impl DeviceFrame {
     }
 }
 
-/// A frame of the references.
+/// A frame computed by the references.
 pub struct ReferenceFrame {
     cursors: Vec<KeyframeCursor>,
     locals: Vec<Transform>,
@@ -86,7 +86,7 @@ impl ReferenceFrame {
     }
 }
 
-/// A frame of the opponent.
+/// A frame computed by plain structure-of-arrays code.
 pub struct PlainFrame {
     plain: PlainSoa,
     cursors: Vec<KeyframeCursor>,

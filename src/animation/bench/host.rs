@@ -1,4 +1,5 @@
-//! What the host adds to a frame, by its own clock: upload, dispatch and readback, each submitted and waited for.
+//! Benchmarks of the host's part of a frame, by its own clock: upload, dispatch and readback, each submitted
+//! and waited for.
 
 use std::hint::black_box;
 
@@ -9,7 +10,8 @@ use crate::asset::transform::AFFINE_IDENTITY;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// Beside each a kernel that moves the same bytes, and the same on the host alone: a copy of memory, or a frame.
+/// Each is measured beside a kernel that moves the same bytes, and beside the same work on the host alone: a
+/// copy of memory, or a frame.
 ///
 /// # Errors
 /// What the device reports.

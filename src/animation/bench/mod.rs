@@ -1,5 +1,5 @@
-//! Benchmarks of `kernels/animation/`: crowds of the creature's 153 bones that play a clip with 60 keys for each
-//! part of each bone, every instance at a time of its own.
+//! What the benchmarks of `kernels/animation/` share: crowds of the creature, with 153 bones, that play a clip
+//! with 60 keys for each part of each bone, every instance at a time of its own.
 
 pub(crate) mod frame;
 pub(crate) mod host;
@@ -23,16 +23,16 @@ use crate::gpu::{Gpu, Job};
 use crate::samples::creature;
 use crate::terrain::bench::copy_of;
 
-/// Instances of the cases.
+/// Numbers of instances of the cases.
 pub(crate) const CROWDS: [usize; 3] = [100, 1000, 10_000];
 
-/// Keys of each part.
+/// Number of keys of each part.
 pub(crate) const KEYS: usize = 60;
 
-/// When they are looked at, in seconds.
+/// The time of the frames, in seconds.
 pub(crate) const ELAPSED: f32 = 0.4;
 
-/// A crowd, on the host and the device, and its places.
+/// A crowd on the host and on the device, with its cursors.
 pub(crate) struct Scene {
     pub skeleton: Skeleton,
     pub clip: Clip,
@@ -66,24 +66,25 @@ impl Scene {
         Ok(Priorities::new(&self.skeleton, &self.clip, true, &Weights::default(), &user)?)
     }
 
-    /// A copy of what sampling reads, and of as many words as it writes.
+    /// A job that moves what sampling reads and writes.
     pub fn gathered(&self, gpu: &Gpu, reads: Reads) -> Result<Job, Error> {
         GatherPass::new(gpu, reads)?.prepare(gpu, &self.clips, &self.crowd)
     }
 
-    /// A copy of the words of concatenation: 10 in, 12 out.
+    /// A job that moves the words of concatenation: it reads 10 and writes 12 per bone.
     pub fn copied(&self, gpu: &Gpu) -> Result<Job, Error> {
         copy_of(gpu, 11 * self.pairs())
     }
 }
 
-/// Instances that play the first clip, never two at the same moment: fractions of the golden ratio.
+/// Instances that play the first clip, no two at the same time: their offsets are multiples of the golden
+/// ratio.
 pub(crate) fn crowd(count: usize) -> Vec<Instance> {
     let start = |index: usize| (index as f32 * 0.618_034).fract();
     (0..count).map(|i| Instance::new(0, Wrap::Loop, start(i), 1.0)).collect()
 }
 
-/// The creature, its first clip with keys everywhere, and a set of it.
+/// The creature, its first clip with keys on every part, and a set with that clip.
 pub(crate) fn dense_creature() -> Result<(Skeleton, Clip, ClipSet), Error> {
     let model = creature()?;
     let clip = dense(&model.skeleton, &model.clips[0])?;
@@ -91,7 +92,7 @@ pub(crate) fn dense_creature() -> Result<(Skeleton, Clip, ClipSet), Error> {
     Ok((model.skeleton, clip, set))
 }
 
-/// The clip with keys on every part of every bone.
+/// The clip resampled so that every part of every bone has keys.
 pub(crate) fn dense(skeleton: &Skeleton, clip: &Clip) -> Result<Clip, Error> {
     let times: Vec<f32> = (0..KEYS).map(|key| clip.duration() * key as f32 / (KEYS - 1) as f32).collect();
     let poses: Vec<_> = times.iter().map(|time| sample(clip, *time, RotationPath::Slerp)).collect();

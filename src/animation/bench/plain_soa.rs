@@ -1,6 +1,6 @@
-//! The opponent of the references: sampling and concatenation for processors as one writes them first when speed counts.
-//! Structure of arrays over the bones, in blocks that fill vectors; one timeline for all tracks, linear keys alone; no
-//! gating, no threads.
+//! The contender of the references: sampling and concatenation for CPUs in the way in which fast code is
+//! usually written first. It has structures of arrays over the bones, in blocks that fill vectors, one timeline
+//! for all tracks, linear keys only, no gates and no threads.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
@@ -11,18 +11,18 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};
 
-/// Bones of a block.
+/// Number of bones in a block.
 const LANES: usize = 8;
 
-/// A number of each bone of a block.
+/// One number for each bone of a block.
 type Lanes = [f32; LANES];
 
-/// Numbers of a transform: translation, rotation, scale.
+/// Numbers per transform: translation, rotation, scale.
 const NUMBERS: usize = 10;
 
-/// A clip's keys, and what a skeleton needs.
+/// The keys of a clip, and the skeleton's data.
 pub struct PlainSoa {
-    /// Key by key, number by number, bones in blocks.
+    /// Key by key and number by number, with bones in blocks.
     keys: Vec<Lanes>,
     parents: Vec<Option<u32>>,
 }
@@ -43,7 +43,7 @@ impl PlainSoa {
         let mut all = vec![[0.0; LANES]; keys * NUMBERS * blocks];
         for key in 0..keys {
             let of_key = &mut all[key * NUMBERS * blocks..][..NUMBERS * blocks];
-            // Where no bone is, nothing turns.
+            // Lanes without a bone get the identity rotation.
             of_key[6 * blocks + blocks - 1] = [1.0; LANES];
             for (bone, tracks) in tracks.chunks_exact(3).enumerate() {
                 let [t, r, s] = [0, 1, 2].map(|part| set.values()[tracks[part].first_value as usize + key]);
@@ -61,12 +61,12 @@ impl PlainSoa {
         self.parents.len().div_ceil(LANES)
     }
 
-    /// Room for an instance's local transforms.
+    /// Allocates an instance's local transforms.
     pub fn locals(&self) -> Vec<Lanes> {
         vec![[0.0; LANES]; NUMBERS * self.blocks()]
     }
 
-    /// An instance's local transforms.
+    /// Samples an instance's local transforms.
     pub fn sample(&self, cursor: KeyframeCursor, locals: &mut [Lanes]) {
         let blocks = self.blocks();
         let of_key = |key: usize| &self.keys[key * NUMBERS * blocks..][..NUMBERS * blocks];
@@ -88,7 +88,8 @@ impl PlainSoa {
         }
     }
 
-    /// An instance's palette. Bones wait for their parents, so one after another.
+    /// Computes an instance's model matrices. Bones depend on their parents, so they are handled one after
+    /// another.
     pub fn local_to_model(&self, locals: &[Lanes], model_matrices: &mut [Affine]) {
         let blocks = self.blocks();
         for (bone, parent) in self.parents.iter().enumerate() {
@@ -108,7 +109,7 @@ fn each(value: impl Fn(usize) -> f32) -> Lanes {
     std::array::from_fn(value)
 }
 
-/// As the reference's, with one fraction for all.
+/// As in the reference, with one fraction for all lanes.
 fn slerps(a: &[Lanes; 4], b: &[Lanes; 4], t: f32) -> [Lanes; 4] {
     let cosine = each(|l| a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l] + a[3][l] * b[3][l]);
     let inverse = each(|l| 1.0 / (2.0 + 2.0 * cosine[l]).sqrt());
@@ -165,7 +166,7 @@ mod tests {
             let (found, expected) =
                 (model_matrices.as_flattened().as_flattened(), expected.as_flattened().as_flattened());
             let largest = expected.iter().fold(1.0, |a: f32, b| a.max(b.abs()));
-            // The bound of locals, and of products.
+            // The bound of local transforms, and that of products.
             let bound = (SAMPLE_BOUND + LOCAL_TO_MODEL_BOUND) * deepest as f32 * largest;
             for (found, expected) in found.iter().zip(expected) {
                 assert!((found - expected).abs() <= bound, "{found} {expected}");
@@ -177,6 +178,6 @@ mod tests {
     fn tracks_that_it_cannot_play_are_refused() {
         let model = crate::samples::creature().expect("valid");
         let set = ClipSet::new(&[&model.clips[0]]).expect("valid");
-        assert_eq!(PlainSoa::new(&model.skeleton, &set).err().expect("refused").field, "tracks");
+        assert_eq!(PlainSoa::new(&model.skeleton, &set).err().expect("refused").path, "tracks");
     }
 }

@@ -1,4 +1,4 @@
-//! Bounds of crowds.
+//! Benchmark cases of `animation/bounds`: bounds of crowds.
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
@@ -12,7 +12,7 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// All instances, from their palettes.
+/// Measures all instances, from their model matrices.
 ///
 /// # Errors
 /// What the device reports.
@@ -29,7 +29,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         scene.crowd.model_matrices.buffer().write(gpu, &model_matrices)?;
         let bone_radii = bone_radii(&scene.skeleton);
         let job = pass.prepare(gpu, &scene.crowd, &bone_radii, &Buffer::new(gpu, "bounds", count)?)?;
-        // A palette in, 8 words out.
+        // The kernel reads the model matrices and writes 8 words per instance.
         let words = 12 * scene.pairs() + 8 * count;
         let copied = copy_of(gpu, words / 2)?;
         let contenders = vec![

@@ -1,4 +1,4 @@
-//! `kernels/animation/bounds.wgsl`.
+//! The GPU pass of `kernels/animation/bounds.wgsl`.
 
 use super::{Bounds, check_bone_radii};
 use crate::animation::crowd::Crowd;
@@ -7,23 +7,23 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::bounds::BoundsParams;
 use crate::{Error, InputError};
 
-/// What takes the bones of an instance together.
+/// The threads that handle the bones of one instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Share {
-    /// A workgroup: enough threads for a real GPU.
+    /// A workgroup, which gives enough threads to hardware.
     Workgroup,
-    /// A thread: no barriers, which are slow where processors are few.
+    /// A single thread, without barriers, which are slow on adapters with few processors.
     Whole,
 }
 
 impl Share {
-    /// The faster one on this kind of adapter.
+    /// The faster choice for this kind of adapter.
     pub fn of(gpu: &Gpu) -> Self {
         if gpu.adapter().kind == "cpu" { Self::Whole } else { Self::Workgroup }
     }
 }
 
-/// Finds the bounds of instances.
+/// Computes the bounds of instances.
 #[derive(Debug, Clone)]
 pub struct BoundsPass {
     kernel: Kernel,
@@ -40,11 +40,11 @@ impl BoundsPass {
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, share })
     }
 
-    /// Prepares the bounds of a crowd's instances from its palettes, with a reach a bone in metres.
+    /// Prepares the bounds of a crowd's instances from its model matrices, with one radius per bone in metres.
     ///
     /// # Errors
-    /// [`InputError`] for reaches that do not fit the crowd, 2²⁶ instances and more, and too few `bounds`, one an
-    /// instance; [`GpuError`].
+    /// [`InputError`] for radii that do not match the crowd, for 2²⁶ instances or more, and for a buffer with
+    /// less than one box per instance; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,12 +1,12 @@
-//! Bounds of instances: reference of `kernels/animation/bounds.wgsl`.
+//! Bounds of instances: the CPU reference of `kernels/animation/bounds.wgsl`.
 
 use crate::animation::bounds::{BOUNDS_GROWTH, BOUNDS_LEAST, BOUNDS_OF_CENTRE, Bounds};
 use crate::asset::transform::Affine;
 
-/// The bounds of each instance, from its palette and the reach of each bone.
+/// The bounds of each instance, from its model matrices and the radius of each bone.
 ///
 /// # Panics
-/// Without reaches.
+/// If there are no radii.
 pub fn bounds(model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<Bounds> {
     model_matrices
         .chunks_exact(bone_radii.len())

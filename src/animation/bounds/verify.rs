@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/bounds.wgsl`.
+//! Parity cases of `kernels/animation/bounds.wgsl`.
 
 use crate::Error;
 use crate::animation::bounds::reference::bounds;
@@ -9,8 +9,9 @@ use crate::asset::transform::Affine;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 
-/// Palettes of every size, sheared and flat and mirrored, around the model's origin and far from it, against the reference,
-/// sides as shares of the instance's largest; and the exact box in double precision lies inside.
+/// The cases cover matrices of every size, sheared, singular and mirrored, around the model's origin and far
+/// from it. Sides are compared relative to the instance's largest, and the exact box, in double precision, must
+/// lie inside.
 ///
 /// # Errors
 /// What the device reports.
@@ -64,7 +65,7 @@ fn random_palettes(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f
     (palettes, bone_radii)
 }
 
-/// Sides as shares of the expected box's largest.
+/// The sides divided by the largest side of the expected box.
 fn relative_sizes(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
     let each = |(found, expected): (&Bounds, &Bounds)| {
         let sides = |bounds: &Bounds| [bounds.low, bounds.high].concat();
@@ -74,7 +75,7 @@ fn relative_sizes(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
     boxes.iter().zip(expected).flat_map(each).collect()
 }
 
-/// For each side of each instance, whether every bone's ellipsoid lies inside.
+/// For each side of each instance, whether every bone's ellipsoid is inside.
 fn contain(boxes: &[Bounds], model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<bool> {
     let mut inside = Vec::with_capacity(6 * boxes.len());
     for (bounds, model_matrices) in boxes.iter().zip(model_matrices.chunks(bone_radii.len())) {

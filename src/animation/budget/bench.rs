@@ -1,4 +1,4 @@
-//! Decisions for crowds within a budget.
+//! Benchmark cases of `animation/budget`: decisions for crowds within a budget.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -14,7 +14,7 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// Half of the bones.
+/// Measures a budget of half of the bones.
 ///
 /// # Errors
 /// What the device reports.
@@ -42,9 +42,9 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &scene.crowd, &gate_state, &active)?;
         let most = pairs as u32 / 2;
         job.set(gpu, most)?;
-        // Of each bone four words in, half a word of ranks out and in, a word out.
+        // For each bone, the kernel reads four words, writes and reads half a word of ranks, and writes a word.
         let copied = copy_of(gpu, 3 * pairs)?;
-        // Bones missed something every time.
+        // Every bone has missed motion each time.
         let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| {

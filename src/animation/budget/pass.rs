@@ -1,4 +1,4 @@
-//! `kernels/animation/budget.wgsl`.
+//! The GPU pass of `kernels/animation/budget.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -28,12 +28,12 @@ impl BudgetPass {
         Ok(Self { stages: [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?] })
     }
 
-    /// Prepares the decision, from a crowd's phases. The gating's table is one of expectations. The budget is that of
-    /// all bones until it is set.
+    /// Prepares the decision from a crowd's clip clocks. The table must be one of expectations. Until it is
+    /// set, the budget is the number of all bones.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a table of another kind than expectations, or along another path than the crowd's;
-    /// [`GpuError`].
+    /// [`crate::InputError`] for a table of another kind, and for one of another rotation path than the
+    /// crowd's; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -87,7 +87,7 @@ pub struct BudgetJob {
 }
 
 impl BudgetJob {
-    /// Chooses how many bones may be sampled in the next submission.
+    /// Sets the number of bones that may be sampled in the next submission.
     ///
     /// # Errors
     /// [`GpuError`].

@@ -1,15 +1,15 @@
-//! Which bones are sampled when only so many may be: reference of `kernels/animation/budget.wgsl`.
+//! Selection of bones within a budget: the CPU reference of `kernels/animation/budget.wgsl`.
 
 use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::reference::{bits_of, motion_at, motion_between};
 use crate::animation::gate_table::GateTable;
 use crate::animation::lod::Lod;
 
-/// A bit for each slot of each instance: [`GateTable::words`] words an instance. `sampled` holds, for each slot of each
-/// instance, the sum of motion when it was sampled last.
+/// One bit per slot of each instance, in [`GateTable::words`] words per instance. `sampled` holds, for each
+/// slot of each instance, the sum of motion when it was last sampled.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need, and with a table without motion.
+/// With fewer levels of detail or sums than clip clocks need, and with a table without motion.
 pub fn budget(
     table: &GateTable,
     budget: u32,
@@ -37,7 +37,7 @@ pub fn budget(
         }
     }
     let room = (budget as usize).saturating_sub(chosen.len());
-    // Stable: equal ranks stay in order.
+    // The sort is stable: equal ranks stay in order.
     ranked.sort_by_key(|(rank, _)| std::cmp::Reverse(*rank));
     chosen.extend(ranked.iter().take(room).map(|(_, at)| *at));
     let mut bits = vec![0; clip_clocks.len() * words];
@@ -49,7 +49,7 @@ pub fn budget(
     bits
 }
 
-/// Slots that the phase's clip moves.
+/// The slots that the clip moves.
 fn animated_bones(table: &GateTable, clip_clock: &ClipClock) -> impl Iterator<Item = usize> {
     let (_, animated_bones) = table.record(clip_clock.clip);
     animated_bones.iter().enumerate().flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
@@ -65,7 +65,7 @@ fn missed_by(table: &GateTable, clip_clock: &ClipClock, slot: usize, last: u32) 
     motion_between(motion_now(table, clip_clock, slot), last, period)
 }
 
-/// 1 to 768, by the logarithm of `missed · weight`: sixteen an octave.
+/// The rank, 1 to 768, by the logarithm of `missed · weight`: sixteen ranks per octave.
 pub fn rank_of(missed: u32, weight: u32) -> u32 {
     let product = u64::from(missed) * u64::from(weight);
     let Some(lead) = product.checked_ilog2() else { return 1 };

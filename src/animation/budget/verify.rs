@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/budget.wgsl`.
+//! Parity cases of `kernels/animation/budget.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -14,8 +14,8 @@ use crate::asset::keyframe::RotationPath;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 
-/// Frame after frame, budgets from nothing to more than there are bones, weights of every size and equal ones: many
-/// have one rank then. Equal integers decide alike: to the bit.
+/// The cases cover sequences of frames, budgets from 0 to more than all bones, and weights of every size, also
+/// equal ones, which give many bones the same rank. The integer results must be equal to the bit.
 ///
 /// # Errors
 /// What the device reports.
@@ -53,7 +53,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             output.poison(gpu)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
             let mut expected = budget(&table, most, &lods, &clip_clocks, &mut sampled);
-            // None is sampled ahead.
+            // No bone is sampled ahead.
             expected.resize(2 * count * table.words(), 0);
             let name = format!("{most} of {bones} bones × {count}, frame {frame}");
             cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);

@@ -1,4 +1,4 @@
-//! Phases of crowds.
+//! Benchmark cases of `animation/clip_clock`: clip clocks of crowds.
 
 use crate::Error;
 use crate::animation::bench::{CROWDS, Scene};
@@ -11,7 +11,7 @@ use crate::animation::lod::Lod;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// Every instance of a crowd.
+/// Measures every instance of a crowd.
 ///
 /// # Errors
 /// What the device reports.
@@ -26,7 +26,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         scene.crowd.cursors.write(gpu, &found)?;
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &gate_state)?;
         job.set(gpu, 0.4, 0.0)?;
-        // 12 words in, 6 out.
+        // The kernel reads 12 words and writes 6 per instance.
         let copied = copy_of(gpu, 9 * count)?;
         let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 4]; count]);
         let contenders = vec![

@@ -1,8 +1,9 @@
-//! Where instances stand on the timeline that all bones of their clip share, in whole numbers: what gates decide by.
-//! Comes before `animation/gate`. Whether an instance has to be sampled in full is found here
-//! too: at its first frame, after it was hidden, when its clip changed, when the host asks for it
-//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip begin or end to count, or change their
-//! clips. While they count, sums of motion, which know of one clip alone, mean nothing.
+//! Clip clocks: the integer position of each instance on the timeline that all bones of its clip share. Gates
+//! decide by them, so this operation runs before `animation/gate`. It also finds whether an instance must be
+//! sampled in full: in its first frame, after it was hidden, when its clip changes, when the host asks for it
+//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip gain or lose all weight, or
+//! change their clips. While such layers have weight, sums of motion, which describe a single clip, cannot be
+//! used.
 
 pub use crate::shared::animation::clip_clock::BLENDED;
 pub use crate::shared::animation::gate_state::ClipClock;
@@ -18,17 +19,18 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{ClipClockJob, ClipClockPass};
 
-/// What asks for a pose besides the time.
+/// The reason, other than time, to update a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum UpdateReason {
-    /// Nothing: the gate decides.
+    /// There is none: the gate decides.
     Free = 0,
-    /// Nobody sees it: nothing is sampled.
+    /// The instance is not seen: nothing is sampled.
     Hidden = 1,
-    /// Its stored pose means nothing: everything is sampled.
+    /// The stored pose is invalid: everything is sampled.
     Forced = 2,
-    /// Layers lie above its clip: gates that decide by motion sample everything, others decide on every bone.
+    /// Layers have weight above the clip: gates that decide by motion sample everything, other gates decide for
+    /// every bone.
     Blended = 3,
 }
 
@@ -40,7 +42,7 @@ impl UpdateReason {
 }
 
 impl ClipClock {
-    /// A phase from its parts; nothing may be sampled ahead.
+    /// A clip clock from its parts, without sampling ahead.
     pub fn new(row: u32, fraction: u32, reason: UpdateReason, clip: u32) -> Self {
         let fraction_and_reason = (reason as u32) << 20 | fraction;
         Self { row, fraction_and_reason, clip, ahead_row: row, ahead_fraction: fraction }
@@ -51,12 +53,12 @@ impl ClipClock {
         (self.ahead_row, self.ahead_fraction) != (self.row, self.fraction())
     }
 
-    /// The way to the next row, 0 to 65536.
+    /// The fraction of the way to the next row, 0 to 65536.
     pub fn fraction(&self) -> u32 {
         self.fraction_and_reason & 0xf_ffff
     }
 
-    /// What asks for a pose besides the time.
+    /// The reason, other than time, to update the pose.
     pub fn reason(&self) -> UpdateReason {
         match self.fraction_and_reason >> 20 {
             0 => UpdateReason::Free,

@@ -1,4 +1,4 @@
-//! `kernels/animation/clip_clock.wgsl`.
+//! The GPU pass of `kernels/animation/clip_clock.wgsl`.
 
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
@@ -8,7 +8,7 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
-/// Finds phases.
+/// Computes clip clocks.
 #[derive(Debug, Clone)]
 pub struct ClipClockPass {
     kernel: Kernel,
@@ -23,7 +23,7 @@ impl ClipClockPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the phases of a crowd.
+    /// Prepares the clip clocks of a crowd.
     ///
     /// # Errors
     /// [`InputError`] for a table of other clips; [`GpuError`].
@@ -86,7 +86,7 @@ impl ClipClockTime {
     }
 }
 
-/// Prepared phases: set the time, then record.
+/// Prepared clip clocks: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct ClipClockJob {
     time: ClipClockTime,
@@ -94,8 +94,9 @@ pub struct ClipClockJob {
 }
 
 impl ClipClockJob {
-    /// Chooses the time of the next submission, as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`], and by how many seconds bones
-    /// may be sampled ahead of it, as [`Frame::ahead`](crate::animation::gate::Frame::ahead).
+    /// Sets the time of the next submission, as [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does,
+    /// and the seconds by which bones may be sampled ahead of it
+    /// ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors
     /// [`InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].

@@ -1,4 +1,4 @@
-//! Where instances stand on their clips' common timelines: reference of `kernels/animation/clip_clock.wgsl`.
+//! Clip clocks: the CPU reference of `kernels/animation/clip_clock.wgsl`.
 
 use crate::animation::clip_clock::{BLENDED, ClipClock, UpdateReason};
 use crate::animation::clip_set::ClipSet;
@@ -9,11 +9,11 @@ use crate::animation::lod::Lod;
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::keyframe_cursor;
 
-/// The phase of each instance. `layers` are those above the base; bones may be sampled `ahead` seconds ahead; `history` is
-/// kept from frame to frame, and zero at first.
+/// The clip clock of each instance. `layers` are those above the base, `ahead` is the number of seconds by
+/// which bones may be sampled ahead, and `history` is kept from frame to frame, zero at first.
 ///
 /// # Panics
-/// With fewer places, levels or histories than instances.
+/// If there are fewer levels of detail or histories than instances.
 pub fn clip_clocks(
     set: &ClipSet,
     instances: &[Instance],
@@ -57,7 +57,7 @@ pub fn clip_clocks(
     instances.iter().enumerate().map(of).collect()
 }
 
-/// A number of the clips that play above the base; 0 where none does.
+/// A hash of the clips that play above the base; 0 if there are none.
 fn clips_above(layers: &[Layer], instance: usize) -> u32 {
     layers.iter().fold(0, |clips: u32, layer| {
         let heard = if layer.weights[instance] > 0.0 { layer.instances[instance].clip + 1 } else { 0 };

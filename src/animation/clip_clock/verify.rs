@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/clip_clock.wgsl`.
+//! Parity cases of `kernels/animation/clip_clock.wgsl`.
 
 use crate::Error;
 use crate::animation::clip_clock::reference::clip_clocks;
@@ -14,9 +14,9 @@ use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 
-/// Frame after frame: the first, some hidden and some refreshed, others' clips and layers changed, and a leap
-/// of many turns. Times are whole 64ths of a second and clips too, so that all devices agree on every
-/// key; on a fraction they may differ by 1, from rounding of its division.
+/// The cases cover a sequence of frames: the first one, hidden and refreshed instances, changed clips and
+/// layers, and a leap of many turns. Times and clips are multiples of 1/64 s, so that all devices agree on
+/// every key; a fraction may differ by 1, from the rounding of its division.
 ///
 /// # Errors
 /// What the device reports.
@@ -77,7 +77,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The phases, those whose fractions are 1 beside the expected ones replaced by them.
+/// The clip clocks, with those whose fractions differ from the expected ones by 1 replaced by the expected
+/// ones.
 pub(crate) fn settled(actual: &[ClipClock], expected: &[ClipClock]) -> Vec<ClipClock> {
     let settle = |(actual, expected): (&ClipClock, &ClipClock)| {
         let is_near = actual.fraction().abs_diff(expected.fraction()) <= 1

@@ -1,4 +1,4 @@
-//! Lists of what is active in crowds.
+//! Benchmark cases of `animation/compact`: lists of the active bones of crowds.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -9,7 +9,7 @@ use crate::animation::gate::reference::Chosen;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// All bones active, and a quarter.
+/// Measures crowds with all bones active, and with a quarter.
 ///
 /// # Errors
 /// What the device reports.
@@ -31,7 +31,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             let bits = Chosen { ahead: vec![0; bits.len()], bits };
             let job = pass.prepare(gpu, &scene.crowd, &active, Stages::of(gpu, &active))?;
             let chosen: u32 = bits.bits.iter().map(|word| word.count_ones()).sum();
-            // Bits twice in and once out, a pair and its slot.
+            // The kernel reads bits twice and writes them once, and writes a pair and its slot.
             let words = (3 * bits.bits.len() + 2 * chosen as usize) / 2;
             let copied = copy_of(gpu, words)?;
             let contenders = vec![

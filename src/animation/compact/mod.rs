@@ -1,6 +1,6 @@
-//! From bits to lists: the pairs of instance and bone that are sampled, the slots that are concatenated since a bone
-//! above them is sampled, and the arguments of the indirect dispatches that do it. By prefix sums, in the same order on
-//! every device.
+//! Turns bits into lists: the pairs of instance and bone to be sampled, the slots to be concatenated because a
+//! bone at or above them is sampled, and the arguments of the indirect dispatches. It uses prefix sums, so that
+//! the order is the same on every device.
 
 #[cfg(feature = "verify")]
 pub mod bench;

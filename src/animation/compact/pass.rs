@@ -1,4 +1,4 @@
-//! `kernels/animation/compact.wgsl`.
+//! The GPU pass of `kernels/animation/compact.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -7,21 +7,21 @@ use crate::gpu::bindings::animation::compact as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::animation::compact::{ALL, CompactParams, SCAN, SCATTER, SPREAD};
 
-/// How threads share the work.
+/// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stages {
-    /// A dispatch that spreads, one that sums, one that lists.
+    /// Three dispatches: one spreads, one sums, one lists.
     Three,
-    /// One workgroup does all of it. On lavapipe, where a dispatch takes 20 µs and more, faster for some hundred
-    /// instances.
+    /// One workgroup does everything. On lavapipe, where a dispatch takes 20 µs and more, this is faster for up
+    /// to some hundred instances.
     One,
 }
 
 impl Stages {
-    /// Words of bits up to which one workgroup is enough where processors are few.
+    /// The number of words of bits up to which one workgroup suffices on adapters with few processors.
     const FEW: usize = 2048;
 
-    /// The faster way for a crowd on this kind of adapter.
+    /// The faster choice for a crowd on this kind of adapter.
     pub fn of(gpu: &Gpu, active: &Active) -> Self {
         if gpu.adapter().kind == "cpu" && active.updated_bones.len() <= Self::FEW {
             Self::One
@@ -31,14 +31,14 @@ impl Stages {
     }
 }
 
-/// Makes lists of bits.
+/// Turns bits into lists.
 #[derive(Debug, Clone)]
 pub struct CompactPass {
     stages: [Kernel; 3],
     all: Kernel,
 }
 
-/// Prepared lists.
+/// The prepared lists.
 pub type CompactJob = Job;
 
 impl CompactPass {

@@ -1,22 +1,22 @@
-//! From bits to lists: reference of `kernels/animation/compact.wgsl`.
+//! Lists from bits: the CPU reference of `kernels/animation/compact.wgsl`.
 
 use crate::animation::active::PAIR_AHEAD;
 use crate::animation::gate::reference::{Chosen, bits_of};
 use crate::animation::order::Order;
 
-/// What is to be done in a frame.
+/// The work of a frame.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Work {
-    /// `instance · bones + bone` of each pair that is sampled, in the order of instances and slots, with [`PAIR_AHEAD`] where
-    /// it is sampled ahead.
+    /// `instance · bones + bone` of each pair to be sampled, in the order of instances and slots, with
+    /// [`PAIR_AHEAD`] if it is sampled ahead.
     pub pairs: Vec<u32>,
-    /// A bit for each slot of each instance: those below an active one too.
+    /// One bit per slot of each instance, set for active bones and for all bones below them.
     pub updated_bones: Vec<u32>,
-    /// Instances with an active bone.
+    /// Indices of the instances that have an active bone.
     pub instances: Vec<u32>,
 }
 
-/// The work that active bits mean; `chosen` holds [`Order::words`] words an instance.
+/// The work for the given bits, of which there are [`Order::words`] words per instance.
 pub fn compact(order: &Order, chosen: &Chosen) -> Work {
     let Chosen { bits, ahead } = chosen;
     let bones = order.slots.len() as u32;

@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/compact.wgsl`.
+//! Parity cases of `kernels/animation/compact.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -12,7 +12,8 @@ use crate::harness::Cases;
 use crate::harness::compare::{Comparison, exact};
 use crate::harness::poison::{POISON, Poisoned};
 
-/// No bit, all, every third, single ones, whole instances; half of them ahead; more instances than the sums have threads.
+/// The cases cover no bit, all, every third, single ones and whole instances; half of the bits ahead; and more
+/// instances than the sums have threads.
 ///
 /// # Errors
 /// What the device reports.
@@ -36,7 +37,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Words of bits, none beyond the bones.
+/// Words of random bits; bits beyond the bones are 0.
 fn random_bits(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Vec<u32> {
     let words = order.words();
     let mut bits = vec![0; count * words];
@@ -89,14 +90,14 @@ fn add(
     Ok(())
 }
 
-/// A list, and poison behind it.
+/// A list, followed by poison.
 pub(crate) fn padded(list: &[u32], room: usize) -> Vec<u32> {
     let mut list = list.to_vec();
     list.resize(room, POISON);
     list
 }
 
-/// Workgroups of 64 for each pair, each instance, each level's chains, each place.
+/// The expected dispatches: workgroups of 64 for pairs, instances, the chains of each level, and cursors.
 pub(crate) fn dispatches(
     gpu: &crate::gpu::Gpu,
     order: &Order,

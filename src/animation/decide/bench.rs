@@ -1,4 +1,4 @@
-//! First halves of frames.
+//! Benchmark cases of `animation/decide`: the decisions at the beginning of a frame.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -12,7 +12,7 @@ use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// Nothing skipped, and everything.
+/// Measures frames in which nothing is skipped, and in which everything is.
 ///
 /// # Errors
 /// What the device reports.
@@ -39,7 +39,7 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame, ELAPSED)?;
     let mut decider = Decider::new(&scene.set, &table, count);
-    // In the first frame no pose is stored, and nothing can be skipped.
+    // In the first frame no pose is stored, so nothing can be skipped.
     gpu.run("first", |encoder| job.record(encoder))?;
     let mut decide = || {
         let clip_clocks = decider.clip_clocks(&scene.instances, &[], &lods, ELAPSED, 0.0);
@@ -47,7 +47,8 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     };
     decide();
     let chosen = decide().pairs.len();
-    // 12 words in and 6 out of an instance; bits twice out and once in; a pair and its slot.
+    // For each instance the kernel reads 12 words and writes 6; it writes bits twice and reads them once, and
+    // writes a pair and its slot.
     let words = (18 * count + 3 * active.updated_bones.len() + 2 * chosen) / 2;
     let copied = copy_of(gpu, words)?;
     let contenders = vec![

@@ -1,7 +1,7 @@
-//! The first half of a frame: from the time to lists of what is sampled and concatenated. It is `clip_clock`, `gate` (or
-//! `budget`) and `compact`, one after another; for a gate and a small crowd all in one dispatch, where a dispatch costs
-//! more than other processors gain and the device lets a shader bind that many buffers. Both ways leave the same in every
-//! buffer.
+//! The first half of a frame: from the time to the lists of what is sampled and concatenated. It consists of
+//! `clip_clock`, `gate` (or `budget`) and `compact`, one after another. For a gate and a small crowd all of
+//! them run in one dispatch, if a dispatch costs more than further processors gain and the device permits that
+//! many buffer bindings in a shader. Both ways leave the same contents in every buffer.
 
 use super::gate::{Frame, Gate};
 
@@ -16,17 +16,17 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{DecideJob, DecidePass, Dispatches};
 
-/// Who decides which bones are sampled.
+/// How the bones to be sampled are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
-    /// A gate.
+    /// By a gate.
     Gate(Gate),
-    /// At most so many bones of the crowd.
+    /// By visibility, at most this many bones of the crowd.
     Budget(u32),
 }
 
 impl Choice {
-    /// By how many seconds bones may be sampled ahead in a frame: nothing but [`Gate::Bounded`] does so.
+    /// The seconds by which bones may be sampled ahead in a frame; only [`Gate::Bounded`] does so.
     pub fn ahead(self, frame: &Frame) -> f32 {
         if self == Self::Gate(Gate::Bounded) { frame.ahead } else { 0.0 }
     }

@@ -1,4 +1,4 @@
-//! `kernels/animation/decide.wgsl`, and the kernels that it stands for.
+//! The GPU pass of `kernels/animation/decide.wgsl`, and of the separate kernels that it replaces.
 
 use super::Choice;
 use crate::animation::active::Active;
@@ -16,17 +16,17 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::CompactParams;
 use crate::{Error, InputError};
 
-/// How many dispatches share the work.
+/// How many dispatches divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dispatches {
     /// One workgroup does all of it.
     One,
-    /// A dispatch for each step, or more.
+    /// At least one dispatch for each step.
     Each,
 }
 
 impl Dispatches {
-    /// The faster way for a crowd on this device.
+    /// The faster choice for a crowd on this device.
     pub fn of(gpu: &Gpu, choice: Choice, active: &Active) -> Self {
         let is_gate = matches!(choice, Choice::Gate(_));
         let is_small = Stages::of(gpu, active) == Stages::One;
@@ -34,18 +34,18 @@ impl Dispatches {
     }
 }
 
-/// Storage buffers that one dispatch needs.
+/// The number of storage buffers that the single dispatch needs.
 fn needed() -> u32 {
     let is_storage = |kind| matches!(kind, BindingKind::StorageRead | BindingKind::StorageReadWrite);
     shaders::ANIMATION_DECIDE.bindings.iter().filter(|binding| is_storage(binding.kind)).count() as u32
 }
 
-/// Storage buffers that the device lets a shader bind.
+/// The number of storage buffers that the device permits in a shader.
 fn available(gpu: &Gpu) -> u32 {
     gpu.device().limits().max_storage_buffers_per_shader_stage
 }
 
-/// Decides what is sampled, and lists it.
+/// Decides which bones are sampled, and lists them.
 #[derive(Debug, Clone)]
 pub struct DecidePass {
     choice: Choice,
@@ -72,11 +72,11 @@ enum Decider {
 }
 
 impl DecidePass {
-    /// Compiles the pipelines. A budget takes a dispatch for each step in any case.
+    /// Compiles the pipelines. A budget always takes one dispatch for each step.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] for one dispatch on a device that does not let a shader bind enough buffers; what the
-    /// driver's compiler reports.
+    /// [`GpuError::Limit`] for a single dispatch on a device that does not permit enough buffers in a shader;
+    /// errors of the driver's compiler.
     pub fn new(gpu: &Gpu, choice: Choice, dispatches: Dispatches) -> Result<Self, GpuError> {
         let steps = |decider| {
             let (clip_clock, compact) = (ClipClockPass::new(gpu)?, CompactPass::new(gpu)?);
@@ -93,7 +93,7 @@ impl DecidePass {
     /// Prepares the decision for a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a table of other clips, or of another kind than the choice needs, and as
+    /// [`InputError`] for a table of other clips or of a kind that the choice cannot use, and as
     /// [`GatePass::prepare`]; [`GpuError`].
     pub fn prepare(
         &self,
@@ -115,7 +115,7 @@ impl DecidePass {
     }
 }
 
-/// The kernel of all steps.
+/// The kernel that performs all steps.
 fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
     let (needed, available) = (needed(), available(gpu));
     if needed > available {
@@ -210,7 +210,8 @@ enum Decision {
 }
 
 impl DecideJob {
-    /// Chooses frame and time of the next submission, the latter as for [`super::super::keyframe_cursor::KeyframeCursorJob::set`].
+    /// Sets frame and time of the next submission, the time as
+    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite; [`GpuError`].
@@ -231,10 +232,10 @@ impl DecideJob {
         Ok(())
     }
 
-    /// Chooses how many bones may be sampled from the next submission on.
+    /// Sets the number of bones that may be sampled from the next submission on.
     ///
     /// # Errors
-    /// [`InputError`] where a gate decides; [`GpuError`].
+    /// [`InputError`] if a gate decides; [`GpuError`].
     pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
         match &self.work {
             Work::Each { decision: Decision::Budget(job), .. } => Ok(job.set(gpu, most)?),

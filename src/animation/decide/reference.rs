@@ -1,4 +1,5 @@
-//! From the time to what is done: reference of `kernels/animation/decide.wgsl`, and of the kernels that it stands for.
+//! The decisions of a frame: the CPU reference of `kernels/animation/decide.wgsl` and of the separate kernels
+//! that it replaces.
 
 use crate::animation::budget::reference::budget;
 use crate::animation::clip_clock::ClipClock;
@@ -12,29 +13,29 @@ use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::Lod;
 
-/// What a crowd is decided by, and what that keeps from frame to frame.
+/// The data by which a crowd is decided, and the state kept from frame to frame.
 #[derive(Debug, Clone)]
 pub struct Decider<'a> {
-    /// What instances play.
+    /// The clips.
     pub set: &'a ClipSet,
-    /// What the gate decides by.
+    /// The gate's table.
     pub table: &'a GateTable,
-    /// Of each instance, what it played when it was looked at last; see [`clip_clocks`].
+    /// For each instance, what it played when it was last decided; see [`clip_clocks`].
     pub history: Vec<[u32; 4]>,
-    /// Of each slot of each instance, the sum of motion when it was sampled last; see [`gate`].
+    /// For each slot of each instance, the sum of motion when it was last sampled; see [`gate`].
     pub sampled: Vec<u32>,
 }
 
 impl<'a> Decider<'a> {
-    /// Before the first frame of so many instances.
+    /// The state of `instances` instances before the first frame.
     pub fn new(set: &'a ClipSet, table: &'a GateTable, instances: usize) -> Self {
         Self { set, table, history: vec![[0; 4]; instances], sampled: vec![0; instances * set.bones()] }
     }
 
-    /// Where instances stand, as [`clip_clocks`] finds it.
+    /// The clip clocks of instances; see [`clip_clocks`].
     ///
     /// # Panics
-    /// With fewer levels than instances.
+    /// If there are fewer levels of detail than instances.
     pub fn clip_clocks(
         &mut self,
         instances: &[Instance],
@@ -46,10 +47,12 @@ impl<'a> Decider<'a> {
         clip_clocks(self.set, instances, layers, lods, elapsed, ahead, &mut self.history)
     }
 
-    /// What is sampled: [`compact`](crate::animation::compact::reference::compact) makes lists of them.
+    /// The bones that are sampled; [`compact`](crate::animation::compact::reference::compact) turns them into
+    /// lists.
     ///
     /// # Panics
-    /// With fewer levels than phases, and with a table of another kind than the choice needs.
+    /// If there are fewer levels of detail than clip clocks, and with a table of a kind that the choice cannot
+    /// use.
     pub fn bits(&mut self, choice: Choice, frame: &Frame, lods: &[Lod], clip_clocks: &[ClipClock]) -> Chosen {
         let Self { table, sampled, .. } = self;
         match choice {

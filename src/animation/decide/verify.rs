@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/decide.wgsl`, and of the kernels that it stands for together.
+//! Parity cases of `kernels/animation/decide.wgsl`, and of the separate kernels that it replaces.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -24,10 +24,10 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 
-/// Every gate, frame after frame, in one dispatch where the device allows it and in several: levels of detail of every
-/// size, some instances hidden, some refreshed, layers above every third crowd. Times are whole 64ths of a second, so
-/// that devices agree on every key; a fraction may be off by 1, and what follows is compared with what the references make of
-/// the device's own: to the bit.
+/// The cases cover every gate over sequences of frames, in one dispatch if the device permits it and in
+/// several: levels of detail of every size, hidden and refreshed instances, layers above every third crowd.
+/// Times are multiples of 1/64 s, so that devices agree on every key; a fraction may be off by 1. What follows
+/// is compared, to the bit, with the references' results for the device's own clip clocks.
 ///
 /// # Errors
 /// What the device reports.
@@ -58,7 +58,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// What is played.
+/// What the crowd plays.
 struct Play<'a> {
     case: u32,
     name: String,
@@ -68,7 +68,7 @@ struct Play<'a> {
     instances: &'a [Instance],
 }
 
-/// Buffers that the kernels write.
+/// The buffers that the kernels write.
 struct Outputs {
     clip_clocks: Poisoned<ClipClock>,
     bits: Poisoned<u32>,

@@ -1,4 +1,4 @@
-//! A frame of a crowd under a gate in one piece, and the same without a device.
+//! A frame of a crowd under a gate as one object, on the device and on the CPU.
 
 #[cfg(feature = "gpu")]
 mod pass;

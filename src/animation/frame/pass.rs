@@ -1,6 +1,6 @@
-//! A frame of a crowd under a gate in one piece, from the time to palettes: `decide`, `cursor`, `sample`, `local_to_model`, the
-//! latter three for what is active alone, in one compute pass. Only in this order `bounded` keeps its promise: places are
-//! looked up at the times that the gate saw.
+//! A frame of a crowd under a gate as one object, from the time to model matrices: `decide`, then
+//! `keyframe_cursor`, `sample` and `local_to_model` for active bones, in one compute pass. The bound of
+//! `bounded` holds only in this order, because cursors use the times that the gate saw.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -17,12 +17,12 @@ use crate::animation::sample::{SampleActiveJob, SamplePass};
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Gpu, compute_pass};
 
-/// Prepared frames: set the time, then record.
+/// A prepared frame: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct GatedFrame {
-    /// What the gate knows; levels of detail may be written between frames.
+    /// The gate's state; levels of detail may be written between frames.
     pub gate_state: GateState,
-    /// What the frame that was recorded last did.
+    /// The work of the frame that was recorded last.
     pub active: Active,
     model_matrices: ModelMatrices,
     decide: DecideJob,
@@ -32,14 +32,14 @@ pub struct GatedFrame {
 }
 
 impl GatedFrame {
-    /// Compiles and prepares all of it for a crowd, in the ways that are fastest on this device. Rotations take the
-    /// crowd's path.
+    /// Compiles and prepares everything for a crowd, with the choices that are fastest on this device.
+    /// Rotations use the crowd's path.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, and a table of other bones or clips, of another
-    /// kind than the choice needs, or of motion along another path than the crowd's ([`Crowd::path`]), and for
-    /// [`Gate::Bounded`](crate::animation::gate::Gate::Bounded) over model matrices that dual quaternions were prepared to blend;
-    /// [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a crowd of another skeleton, for a table of other bones or clips,
+    /// of a kind that the choice cannot use or of another rotation path than the crowd's ([`Crowd::path`]), and
+    /// for [`Gate::Bounded`](crate::animation::gate::Gate::Bounded) over model matrices that are prepared for
+    /// dual quaternions; [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
@@ -67,13 +67,14 @@ impl GatedFrame {
         })
     }
 
-    /// What skinning takes: the crowd's model matrices, the bones that a frame updates, and the gate that decides so.
+    /// The input of skinning: the crowd's model matrices, with the record of which bones a frame updates and of
+    /// the gate that decides it.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
 
-    /// Chooses frame and time of the next submission: seconds since the instances' starts, which should follow the clock
-    /// every few minutes: `f32` seconds grow coarse.
+    /// Sets frame and time of the next submission. The time is in seconds since the starts of the instances.
+    /// Move the starts every few minutes, because `f32` seconds lose precision.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`](crate::gpu::GpuError).
@@ -85,12 +86,12 @@ impl GatedFrame {
     /// As [`DecideJob::set_budget`].
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) where a gate decides; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) if a gate decides; [`GpuError`](crate::gpu::GpuError).
     pub fn set_budget(&self, gpu: &Gpu, most: u32) -> Result<(), Error> {
         self.decide.set_budget(gpu, most)
     }
 
-    /// Records the frame: afterwards the crowd's model matrices are those of the time.
+    /// Records the frame. Afterwards the crowd's model matrices are those of the set time.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation"));
     }
@@ -102,18 +103,18 @@ impl GatedFrame {
         self.dispatch_local_to_model(pass);
     }
 
-    /// The frame's first part: which bones are active.
+    /// Adds the first part of the frame: which bones are active.
     pub fn dispatch_gate(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.decide.dispatch(pass);
     }
 
-    /// The second part: places and samples of these.
+    /// Adds the second part: cursors and samples of the active bones.
     pub fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.cursor.dispatch(pass);
         self.sample.dispatch(pass);
     }
 
-    /// The third part: palettes of what lies below them.
+    /// Adds the third part: model matrices of the active bones and of all bones below them.
     pub fn dispatch_local_to_model(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.local_to_model.dispatch(pass);
     }

@@ -17,28 +17,28 @@ use crate::animation::sample::reference::sample_pair;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
-/// Instances of one skeleton, and what they keep from frame to frame.
+/// Instances of one skeleton, with the state kept from frame to frame.
 #[derive(Debug, Clone)]
 pub struct Crowd<'a> {
     /// The skeleton's order.
     pub order: &'a Order,
     path: RotationPath,
-    /// May be changed between frames.
+    /// The instances, which may be changed between frames.
     pub instances: Vec<Instance>,
-    /// May be changed between frames; one an instance.
+    /// One level of detail per instance, which may be changed between frames.
     pub lods: Vec<Lod>,
-    /// `instance · bones + bone`, in the parents' spaces.
+    /// Local transforms, at `instance · bones + bone`.
     pub locals: Vec<Transform>,
-    /// Likewise, in the model's space.
+    /// Model matrices, in the same order.
     pub model_matrices: Vec<Affine>,
     decider: Decider<'a>,
 }
 
 impl<'a> Crowd<'a> {
-    /// A crowd before its first frame, whose rotations take `path` between keys.
+    /// A crowd before its first frame, with the given path of rotations between keys.
     ///
     /// # Errors
-    /// [`InputError`] for a table of motion along another path.
+    /// [`InputError`] for a table of another rotation path.
     pub fn new(
         order: &'a Order,
         set: &'a ClipSet,
@@ -59,12 +59,12 @@ impl<'a> Crowd<'a> {
         })
     }
 
-    /// Brings the crowd to a time, and says what was done for it.
+    /// Advances the crowd to a time, and returns the work that was done.
     pub fn advance(&mut self, choice: Choice, frame: &Frame, elapsed: f32) -> Work {
         let set = self.decider.set;
         let lead = choice.ahead(frame);
         let now = cursors(set, &self.instances, elapsed);
-        // Nothing is sampled there without a lead.
+        // Without a lead nothing is sampled ahead.
         let ahead = if lead == 0.0 { Vec::new() } else { cursors(set, &self.instances, elapsed + lead) };
         let clip_clocks = self.decider.clip_clocks(&self.instances, &[], &self.lods, elapsed, lead);
         let bits = self.decider.bits(choice, frame, &self.lods, &clip_clocks);

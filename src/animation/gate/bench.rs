@@ -1,4 +1,4 @@
-//! Decisions for crowds.
+//! Benchmark cases of `animation/gate`: decisions for crowds.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -14,7 +14,7 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// Each mode at half detail, where it looks at every bone.
+/// Measures each gate at half detail, where it examines every bone.
 ///
 /// # Errors
 /// What the device reports.
@@ -42,7 +42,8 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
     let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &gate_state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
     job.set(gpu, &frame)?;
-    // Bits out; of each bone half a word of priorities, or four of motion in and one out.
+    // The kernel writes the bits, and for each bone reads half a word of priorities, or reads four words of
+    // motion and writes one.
     let pairs = scene.pairs();
     let words = match mode {
         Gate::Bounded => 5 * pairs / 2,
@@ -50,7 +51,7 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
         _ => 4 * count,
     };
     let copied = copy_of(gpu, words.max(1))?;
-    // Bones missed something every time.
+    // Every bone has missed motion each time.
     let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| {
@@ -69,7 +70,7 @@ fn case(bench: &mut Bench<'_>, mode: Gate, count: usize) -> Result<(), Error> {
 }
 
 impl Scene {
-    /// A mode's table of the scene's clip.
+    /// The table of the scene's clip for a gate.
     pub(crate) fn table(&self, mode: Gate) -> Result<GateTable, Error> {
         let (order, clips) = (self.order(), [&self.clip]);
         Ok(match mode {

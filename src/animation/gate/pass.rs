@@ -1,4 +1,4 @@
-//! `kernels/animation/gate.wgsl`.
+//! The GPU pass of `kernels/animation/gate.wgsl`.
 
 use super::{Frame, Gate};
 use crate::Error;
@@ -20,7 +20,7 @@ pub struct GatePass {
 }
 
 impl GatePass {
-    /// Compiles the pipeline of a mode.
+    /// Compiles the pipeline of a gate.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -28,12 +28,12 @@ impl GatePass {
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { mode: mode(gate) })?, gate })
     }
 
-    /// Prepares the decision, from a crowd's phases.
+    /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a table of another kind than the gate needs, or of motion along another path than the crowd's
-    /// rotations take, for another crowd than the active bones are listed of, and for [`Gate::Bounded`] over model matrices
-    /// that dual quaternions were prepared to blend; [`GpuError`].
+    /// [`InputError`](crate::InputError) for a table of a kind that the gate cannot use or of another rotation
+    /// path than the crowd's, for a crowd other than that of the active bones, and for [`Gate::Bounded`] over
+    /// model matrices that are prepared for dual quaternions; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -61,7 +61,7 @@ impl GatePass {
     }
 }
 
-/// `MODE` of the kernel.
+/// The kernel's `MODE`.
 pub(crate) fn mode(gate: Gate) -> u32 {
     match gate {
         Gate::Off => modes::OFF,
@@ -111,7 +111,7 @@ impl GateTime {
         Ok(Self { params, uniform: Uniform::new(gpu, "gate", &params)? })
     }
 
-    /// One a word of bits, or an instance where words wait for each other.
+    /// One thread per word of bits, or per instance if words depend on each other.
     fn threads(&self, gate: Gate) -> u32 {
         self.params.instances * if gate == Gate::Bounded { 1 } else { self.params.words }
     }
@@ -131,7 +131,7 @@ pub struct GateJob {
 }
 
 impl GateJob {
-    /// Chooses the frame of the next submission.
+    /// Sets the frame of the next submission.
     ///
     /// # Errors
     /// [`GpuError`].

@@ -1,4 +1,4 @@
-//! Which bones are sampled: reference of `kernels/animation/gate.wgsl`.
+//! Gates: the CPU reference of `kernels/animation/gate.wgsl`.
 
 use crate::animation::clip_clock::{ClipClock, UpdateReason};
 use crate::animation::gate::{Frame, Gate};
@@ -6,26 +6,28 @@ use crate::animation::gate_table::{EVERYTHING, ErrorBudget, GateTable};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::animation::order::NO_PARENT;
 
-/// What is sampled.
+/// The bones that are sampled.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chosen {
-    /// A bit for each slot of each instance: [`GateTable::words`] words an instance.
+    /// One bit per slot of each instance, in [`GateTable::words`] words per instance.
     pub bits: Vec<u32>,
-    /// Likewise, those of them that are sampled ahead.
+    /// In the same layout: those of them that are sampled ahead.
     pub ahead: Vec<u32>,
 }
 
 impl Chosen {
-    /// As `Active::bits` holds them.
+    /// Both in the layout of `Active::bits`.
     pub fn words(&self) -> Vec<u32> {
         [self.bits.as_slice(), &self.ahead].concat()
     }
 }
 
-/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was sampled last; [`Gate::Bounded`] alone uses it.
+/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was
+/// last sampled; only [`Gate::Bounded`] uses it.
 ///
 /// # Panics
-/// With fewer levels or sums than the phases need, and with a table of another kind than the gate needs.
+/// If there are fewer levels of detail or sums than clip clocks need, and with a table of a kind that the gate
+/// cannot use.
 pub fn gate(
     table: &GateTable,
     gate: Gate,
@@ -47,7 +49,8 @@ pub fn gate(
             chosen.bits.push(match (clip_clock.reason(), gate) {
                 (UpdateReason::Hidden, _) => 0,
                 (reason, Gate::Bounded) => {
-                    // Sums of motion know of one clip alone.
+                    // Sums of motion describe a single clip, so they cannot be used for other reasons to
+                    // update.
                     let forced = if reason.forces_motion() { all } else { 0 };
                     let sampled = &mut sampled[instance * table.bones()..];
                     let [active, early] =
@@ -70,7 +73,7 @@ pub fn gate(
     chosen
 }
 
-/// A word's place.
+/// The position of a word.
 struct At {
     instance: u32,
     first: usize,
@@ -84,15 +87,15 @@ pub fn scramble(word: u32) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// The numbers of a word's bits.
+/// The indices of the bits that are set in a word.
 pub fn bits_of(word: u32) -> impl Iterator<Item = usize> {
     std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
         .take_while(|rest| *rest != 0)
         .map(|rest| rest.trailing_zeros() as usize)
 }
 
-/// A skips an update each period: at once where a period is no longer than a frame, else when the last frame has
-/// passed a multiple of it.
+/// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
+/// frame in which the clock passes a multiple of the period.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
@@ -129,17 +132,18 @@ fn at_random(at: &At, lod: &Lod, candidates: u32, frame: &Frame) -> u32 {
     bits_of(candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-/// What is left of the allowed way of an instance.
+/// What is left of the error budget of an instance.
 struct AccumulatedMotion<'a> {
-    /// By the bone before.
+    /// What the previous bone left.
     left: u32,
-    /// By bones that others hang below.
+    /// What bones with several children left.
     remaining: &'a mut [u32],
 }
 
-/// Parents first: a bone that missed no more than its share of what is left stays, and leaves the rest to those below it.
-/// One that missed more is sampled, and leaves them everything; or it is sampled ahead, where it moves no more than its
-/// share until then. What is sampled, and of this, what is sampled ahead.
+/// Decides for the bones of a word, parents first. A bone that missed no more than its fraction of the
+/// remaining budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is
+/// sampled, and passes on all of it; or it is sampled ahead, if its motion until then is within its fraction
+/// too. Returns the bones that are sampled, and those of them that are sampled ahead.
 #[allow(clippy::too_many_arguments, reason = "the shader's own")]
 fn by_motion(
     table: &GateTable,
@@ -151,7 +155,7 @@ fn by_motion(
     sampled: &mut [u32],
     accumulated: &mut AccumulatedMotion<'_>,
 ) -> [u32; 2] {
-    // So are all where nothing may be missed.
+    // If nothing may be missed, all bones are forced too.
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let last_row = table.record(clip_clock.clip).0;
     let [mut active, mut ahead] = [forced, 0];
@@ -187,17 +191,19 @@ fn by_motion(
     [active, ahead]
 }
 
-/// `value · fraction / 65536`, the fraction at most 65536.
+/// `value · fraction / 65536`; the fraction is at most 65536.
 pub fn scale_by_fraction(value: u32, fraction: u32) -> u32 {
     ((u64::from(value) * u64::from(fraction)) >> 16) as u32
 }
 
-/// How far a bone has moved along its clip: the sum at a row's start, its rise to the next, and the way there.
+/// The sum of motion at a time, given the sum at a row's start, its rise to the next row, and the fraction of
+/// the way there.
 pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
     start.wrapping_add(scale_by_fraction(rise, fraction))
 }
 
-/// The shorter way between two sums: directly, or over the clip's end. `period`: that of the whole clip.
+/// The smaller difference of two sums: directly, or across the clip's end. `period` is the sum of the whole
+/// clip.
 pub fn motion_between(now: u32, last: u32, period: u32) -> u32 {
     let direct = now.abs_diff(last);
     direct.min(period.max(direct) - direct)

@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/gate.wgsl`.
+//! Parity cases of `kernels/animation/gate.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -19,7 +19,9 @@ use crate::asset::skeleton::Skeleton;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 
-/// Every mode, frame after frame, with whole numbers of every size: Ω from 0 to 1, phases at both ends of rows, ticks before and after they begin again, all verdicts. Equal integers decide alike: to the bit.
+/// The cases cover every gate over sequences of frames, with integers of every size: Ω from 0 to 1, clip clocks
+/// at both ends of rows, ticks before and after they wrap, and all update reasons. The integer results must be
+/// equal to the bit.
 ///
 /// # Errors
 /// What the device reports.
@@ -104,7 +106,7 @@ fn add(
     Ok(())
 }
 
-/// Levels and phases of a frame; all forced at first.
+/// Random levels of detail and clip clocks of a frame; in the first frame all are forced.
 pub(crate) fn random_state(
     draw: &mut Draw,
     set: &ClipSet,
@@ -132,7 +134,7 @@ pub(crate) fn random_state(
         let ahead_row = entry.first_row + draw.word() % (set.rows(entry) - 1);
         match draw.word() % 3 {
             0 => clip_clock,
-            // A little ahead, and anywhere.
+            // Slightly ahead, or anywhere.
             1 => ClipClock { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..clip_clock },
             _ => ClipClock { ahead_row, ahead_fraction: draw.word() % 65537, ..clip_clock },
         }

@@ -1,4 +1,4 @@
-//! Where instances stand in their clips.
+//! Benchmark cases of `animation/keyframe_cursor`: cursors of crowds.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// One timeline an instance: all tracks share it.
+/// Measures one timeline per instance, which all tracks share.
 ///
 /// # Errors
 /// What the device reports.
@@ -21,7 +21,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let scene = Scene::new(gpu, count)?;
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
         job.set(gpu, ELAPSED)?;
-        // An instance and four times in, a place out: 10 words.
+        // The kernel reads an instance and four times, and writes a cursor: 10 words.
         let copied = copy_of(gpu, 5 * count)?;
         let mut cursors = vec![KeyframeCursor::default(); count];
         let contenders = vec![

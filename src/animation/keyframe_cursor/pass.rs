@@ -1,4 +1,4 @@
-//! `kernels/animation/keyframe_cursor.wgsl`.
+//! The GPU pass of `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -10,7 +10,7 @@ use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
-/// Finds where instances stand in their clips.
+/// Finds the keyframe cursors of instances.
 #[derive(Debug, Clone)]
 pub struct KeyframeCursorPass {
     all: Kernel,
@@ -27,7 +27,7 @@ impl KeyframeCursorPass {
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
-    /// Prepares the places of a crowd.
+    /// Prepares the cursors of a crowd.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -46,7 +46,7 @@ impl KeyframeCursorPass {
         Ok(KeyframeCursorJob { params, uniform, work })
     }
 
-    /// Prepares the places of instances with an active bone alone, at the times that the gate saw: after
+    /// Prepares the cursors of instances with an active bone, at the times that the gate saw. Record it after
     /// `animation/compact`.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl KeyframeCursorParams {
     }
 }
 
-/// Which instances are placed.
+/// The listed instances.
 struct Listed<'a> {
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
@@ -121,7 +121,7 @@ enum Work {
     Active(IndirectJob),
 }
 
-/// Prepared places: set the time, then record.
+/// Prepared cursors: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct KeyframeCursorJob {
     params: KeyframeCursorParams,
@@ -130,8 +130,8 @@ pub struct KeyframeCursorJob {
 }
 
 impl KeyframeCursorJob {
-    /// Chooses the time of the next submission: seconds since the instances' starts. Let starts follow the clock every
-    /// few minutes: `f32` seconds grow coarse.
+    /// Sets the time of the next submission, in seconds since the starts of the instances. Move the starts
+    /// every few minutes, because `f32` seconds lose precision.
     ///
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
@@ -155,10 +155,11 @@ impl KeyframeCursorJob {
 }
 
 impl Crowd {
-    /// Room for `instances` of a set's clips.
+    /// Allocates a crowd of instances of a set's clips, with one layer.
     ///
     /// # Errors
-    /// [`crate::InputError`] for no instances, or ones that play no clip of the set; [`GpuError`].
+    /// [`crate::InputError`] for no instances, and for instances of a clip that the set does not have;
+    /// [`GpuError`].
     pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
         Self::layered(gpu, set, instances, &[])
     }

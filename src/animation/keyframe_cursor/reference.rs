@@ -1,15 +1,15 @@
-//! Where instances stand in their clips: reference of `kernels/animation/keyframe_cursor.wgsl`.
+//! Keyframe cursors: the CPU reference of `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::asset::keyframe::{KeyframeCursor, keyframe_cursor};
 
-/// After so many turns, `f32` knows no place in a clip.
+/// After this many turns, `f32` cannot resolve a position in a clip.
 const MAX_TURNS: f32 = 16_777_216.0;
 
-/// Seconds since the clip's start, inside the clip; its start, where a loop's time is so large that it is nowhere. In the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more
-/// exact where times are large.
+/// The time inside the clip, in seconds since its start; 0 for a loop whose time is too large to resolve. It
+/// computes in the order of `wgsl/animation/clock.wgsl`; [`Wrap::inside`] is more exact for large times.
 pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;
@@ -17,7 +17,7 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if wrap == Wrap::Clamp {
         return time.max(0.0).min(duration);
     }
-    // NaN is not below.
+    // The comparison is false for NaN.
     let is_somewhere = time.abs() < MAX_TURNS * duration;
     if !is_somewhere {
         return 0.0;
@@ -32,18 +32,18 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     inside
 }
 
-/// The place of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] an instance. Where the clip
-/// has fewer, the rest is left as it is by the kernel, and at the start here.
+/// The cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. If the
+/// clip has fewer timelines, the kernel leaves the other cursors unchanged; here they are at the start.
 pub fn cursors(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<KeyframeCursor> {
     let mut cursors = vec![KeyframeCursor::default(); instances.len() * set.timelines_a_clip()];
     cursors_into(set, instances, elapsed, &mut cursors);
     cursors
 }
 
-/// [`cursors`] without allocation, for one frame after another.
+/// As [`cursors`], without allocation.
 ///
 /// # Panics
-/// For an instance of no clip of the set.
+/// For an instance of a clip that the set does not have.
 pub fn cursors_into(set: &ClipSet, instances: &[Instance], elapsed: f32, cursors: &mut [KeyframeCursor]) {
     for (instance, cursors) in instances.iter().zip(cursors.chunks_mut(set.timelines_a_clip())) {
         let clip = &set.clips()[instance.clip as usize];

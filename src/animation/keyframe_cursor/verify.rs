@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/keyframe_cursor.wgsl`.
+//! Parity cases of `kernels/animation/keyframe_cursor.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -18,8 +18,8 @@ use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 
-/// Every kind of timeline, loops, clamps, reverse play, clips without length, at the start and later. Room for
-/// timelines that a clip lacks stays untouched.
+/// The cases cover every kind of timeline, loops, clamps, reverse play, and clips of 0 seconds, at the start
+/// and later. Cursors of timelines that a clip does not have must stay unchanged.
 ///
 /// # Errors
 /// What the device reports.
@@ -39,7 +39,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             gpu.run("verify", |encoder| job.record(encoder))?;
             let mut expected = cursors(&set, &instances, elapsed);
             let used = expected.len();
-            // Nothing is looked up ahead.
+            // Nothing is sampled ahead.
             expected.resize(rooms, KeyframeCursor::default());
             let room = set.timelines_a_clip();
             let is_used = |at: usize| {
@@ -54,8 +54,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     of_a_list(cases, &pass)
 }
 
-/// Instances of a list, with their layers, at the times that gates saw, and where they will stand ahead; the places of
-/// others stay untouched.
+/// Compares listed instances with their layers, at the times that gates saw, and at the times ahead; the
+/// cursors of others must stay unchanged.
 fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
@@ -71,7 +71,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
         let table = GateTable::of_animated_bones(&order, &set, &model_clips.iter().collect::<Vec<_>>())?;
         let gate_state = GateState::new(gpu, &table, &crowd)?;
         let active = Active::new(gpu, &order, &crowd)?;
-        // Every third, and what the gate saw is not what the clock says.
+        // Every third instance is listed, and the times that the gate saw differ from the clock.
         let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
         active.instances.write(gpu, &listed)?;
         let room = set.timelines_a_clip();
@@ -84,7 +84,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
             .iter()
             .map(|instance| inside_clip(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25))
             .collect();
-        // Every second listed instance will be elsewhere when it is sampled ahead.
+        // Every second listed instance has a different time when it is sampled ahead.
         let ahead: Vec<f32> = (seen.iter().enumerate())
             .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
             .collect();
@@ -117,13 +117,13 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
     Ok(())
 }
 
-/// Places that are used, and poison elsewhere.
+/// Compares the cursors that are used, and expects poison elsewhere.
 fn compare_cursors(
     actual: &[KeyframeCursor],
     expected: &[KeyframeCursor],
     is_used: impl Fn(usize) -> bool,
 ) -> Comparison {
-    // Untouched rooms compare as −1.
+    // Unused cursors compare as −1.
     let clip_clock = |cursor: &KeyframeCursor| match cursor.key == POISON {
         true if cursor.fraction.to_bits() == POISON => -1.0,
         _ => cursor.key as f32 + cursor.fraction,
@@ -135,8 +135,8 @@ fn compare_cursors(
     compare::absolute(&actual, &expected, KEYFRAME_CURSOR_BOUND)
 }
 
-/// Times that loops cannot tell, up to infinity, are the clip's start; a clamped one is its end. The bounds of instances
-/// are far below: the device's buffer says otherwise.
+/// Loop times too large to resolve, up to infinity, give the clip's start, and clamped ones its end. Valid
+/// instances stay far below; the test writes such values to the device's buffer.
 fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let (gpu, edges) = (cases.gpu, edges()?);
     let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
@@ -168,7 +168,7 @@ fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error
     Ok(())
 }
 
-/// Places that are known without a reference.
+/// Compares cursors that are known without a reference.
 fn at_edges(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let (gpu, edges) = (cases.gpu, edges()?);
     let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &edges.instances)?);

@@ -1,4 +1,4 @@
-//! Concatenation of crowds, whole frames, and what the host adds.
+//! Benchmark cases of `animation/local_to_model`: concatenation of crowds, whole frames, and the host's part.
 
 use std::hint::black_box;
 
@@ -14,7 +14,8 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::AFFINE_IDENTITY;
 use crate::harness::{Backend, Bench, Contender};
 
-/// All bones of all instances: concatenation, then sampling and concatenation; then a frame's parts on the host's clock.
+/// Measures concatenation of all bones of all instances, then whole frames, then the parts of a frame by the
+/// host's clock.
 ///
 /// # Errors
 /// What the device reports.
@@ -58,7 +59,7 @@ fn alone(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     bench.case(format!("{} × 153", scene.instances.len()), (pairs, "bone"), 88 * pairs as u64, contenders)
 }
 
-/// A frame: places, sampling and concatenation in one submission. On the host, one instance after another.
+/// A frame: cursors, sampling and concatenation in one submission. On the host, one instance after another.
 fn both(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
     let frame = DeviceFrame::new(bench.gpu, scene)?;
     let (mut reference, mut plain) = (ReferenceFrame::new(scene), PlainFrame::new(scene)?);

@@ -1,12 +1,14 @@
 //! Concatenation of local transforms into the model's space, parents first.
 //!
-//! Bones are walked in an order of their own ([`Order`](super::Order)): every bone before its children, subtrees without a gap, and
-//! first of a bone's children the one that continues its chain. A chain is a run of slots from parent to child, as
-//! heavy-path decompositions cut trees, with the parent's matrix in registers: every matrix is read once a chain
-//! instead of once a bone, and a dispatch serves every chain whose parent is done. There are far fewer such dispatches
-//! than levels of bones. Where processors are few, a thread walks all chains of its instance (`Walk`).
+//! Bones are walked in the order of [`Order`](super::Order): every bone comes before its children, subtrees are
+//! contiguous, and the first child of a bone continues its chain. A chain is a run of slots from parent to
+//! child, as in heavy-path decompositions of trees; a thread walks it with the parent's matrix in registers.
+//! Each matrix is thus read once per chain and not once per bone, and a dispatch handles every chain whose
+//! parent is done. There are far fewer such dispatches than levels of bones. On adapters with few processors, a
+//! thread walks all chains of its instance (`Walk`).
 //!
-//! What is below an active bone is a run of slots too: so a thread that knows the first bone to compute knows them all.
+//! Everything below an active bone is a run of slots too, so that a thread that knows the first bone to compute
+//! knows them all.
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -19,7 +21,8 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass, Walk};
 
-/// How far a component may lie from the reference's, on any device: times the bones of the longest chain, times the largest
-/// component (at least 1). A local matrix carries 10ε of its scale (ε = 2⁻²⁴, each operation to either neighbour 2ε), a
-/// row of the product 8ε of the sum of its terms, at most √3 of the largest component: 32ε a bone, rounded up.
+/// The largest difference allowed between a component and the reference, on any device, relative to the number
+/// of bones of the longest chain times the largest component (at least 1). A local matrix carries 10ε of its
+/// scale (ε = 2⁻²⁴, each operation 2ε), and a row of the product 8ε of the sum of its terms, which is at most
+/// √3 times the largest component: 32ε per bone, rounded up.
 pub const LOCAL_TO_MODEL_BOUND: f32 = 2e-6;

@@ -1,4 +1,4 @@
-//! `kernels/animation/local_to_model.wgsl`.
+//! The GPU pass of `kernels/animation/local_to_model.wgsl`.
 
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
@@ -9,18 +9,19 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, U
 use crate::shared::animation::local_to_model::LocalToModelParams;
 use crate::{Error, InputError};
 
-/// How threads share the work.
+/// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walk {
-    /// A thread a chain, a dispatch a level of chains: enough threads for a real GPU.
+    /// One thread per chain and one dispatch per level of chains, which gives enough threads to hardware.
     Levels,
-    /// A thread an instance, one dispatch: an instance's bones stay in the cache of a processor. On lavapipe about
-    /// one and a half times as fast; a workgroup an instance with barriers between levels is three times as slow.
+    /// One thread per instance, in one dispatch: the bones of an instance stay in a processor's cache. On
+    /// lavapipe this is about one and a half times as fast; a workgroup per instance with barriers between
+    /// levels is three times as slow.
     Whole,
 }
 
 impl Walk {
-    /// The faster one on this kind of adapter.
+    /// The faster choice for this kind of adapter.
     pub fn of(gpu: &Gpu) -> Self {
         if gpu.adapter().kind == "cpu" { Self::Whole } else { Self::Levels }
     }
@@ -34,10 +35,10 @@ pub struct LocalToModelPass {
     walk: Walk,
 }
 
-/// A prepared concatenation: a dispatch for each level of chains.
+/// A prepared concatenation, with one dispatch per level of chains.
 pub type LocalToModelJob = Job;
 
-/// A prepared concatenation of what is updated.
+/// A prepared concatenation of updated bones.
 pub type LocalToModelActiveJob = IndirectJob;
 
 impl LocalToModelPass {
@@ -51,7 +52,7 @@ impl LocalToModelPass {
         Ok(Self { all: kernel(false)?, compacted: kernel(true)?, walk })
     }
 
-    /// Prepares the model-space matrices of a crowd from its local transforms.
+    /// Prepares the model matrices of a crowd from its local transforms.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
@@ -74,10 +75,10 @@ impl LocalToModelPass {
         Ok(Job::new(gpu, "animation/local_to_model", steps.collect::<Result<_, GpuError>>()?)?)
     }
 
-    /// Prepares the matrices of what is updated alone; the others stay.
+    /// Prepares the model matrices of updated bones; all others stay unchanged.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another skeleton, and for another than the active bones were listed of;
+    /// [`InputError`] for a crowd of another skeleton, and for a crowd other than that of the active bones;
     /// [`GpuError`].
     pub fn prepare_active(
         &self,
@@ -111,14 +112,14 @@ impl LocalToModelPass {
     }
 }
 
-/// Which instances and slots are walked.
+/// The instances and slots that are walked.
 struct Lists<'a> {
     updated_bones: &'a Buffer<u32>,
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
 }
 
-/// What is bound where every slot is walked.
+/// Stand-ins that are bound where every slot is walked.
 struct Nothing {
     words: Buffer<u32>,
     dispatches: Buffer<[u32; 4]>,
@@ -134,7 +135,7 @@ impl Nothing {
     }
 }
 
-/// What all dispatches bind.
+/// The resources that all dispatches bind.
 struct Binder<'a> {
     order: Order,
     slots: Buffer<Slot>,

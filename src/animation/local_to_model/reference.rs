@@ -1,23 +1,24 @@
-//! Concatenation into the model's space: reference of `kernels/animation/local_to_model.wgsl`.
+//! Concatenation into the model's space: the CPU reference of `kernels/animation/local_to_model.wgsl`.
 
 use crate::animation::order::{CONTINUES, NO_PARENT, Order};
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
-/// Each bone's transform in the model's space, from those in the parents' spaces.
+/// The model matrix of each bone, from the local transforms.
 ///
 /// # Panics
-/// With fewer locals than bones.
+/// If there are fewer local transforms than bones.
 pub fn local_to_model(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> {
     let mut model_matrices = vec![AFFINE_IDENTITY; skeleton.len()];
     local_to_model_into(skeleton, locals, &mut model_matrices);
     model_matrices
 }
 
-/// [`local_to_model()`] of one instance after another without allocation: as many locals and models an instance as bones.
+/// As [`local_to_model()`], for one instance after another and without allocation: there are as many local
+/// transforms and matrices per instance as bones.
 ///
 /// # Panics
-/// Where the last instance's locals or models are not whole.
+/// If the transforms or matrices of the last instance are incomplete.
 pub fn local_to_model_into(skeleton: &Skeleton, locals: &[Transform], model_matrices: &mut [Affine]) {
     let bones = skeleton.len();
     for (locals, model_matrices) in locals.chunks(bones).zip(model_matrices.chunks_mut(bones)) {
@@ -29,7 +30,7 @@ pub fn local_to_model_into(skeleton: &Skeleton, locals: &[Transform], model_matr
     }
 }
 
-/// Translation · rotation · scale.
+/// The matrix translation · rotation · scale.
 pub fn affine(transform: &Transform) -> Affine {
     let [x, y, z, w] = transform.rotation;
     let [sx, sy, sz] = transform.scale;
@@ -42,9 +43,9 @@ pub fn affine(transform: &Transform) -> Affine {
     ]
 }
 
-/// `a · b`: b first.
+/// The product `a · b`, which applies b first.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
-    // Loops over whole rows, so that compilers use vectors: closures took twice as long.
+    // Loops over whole rows, so that compilers vectorize them; closures took twice as long.
     let mut product = [[0.0; 4]; 3];
     for (row, [x, y, z, moved]) in product.iter_mut().zip(a) {
         for (column, entry) in row.iter_mut().enumerate() {
@@ -55,11 +56,11 @@ pub fn product(a: &Affine, b: &Affine) -> Affine {
     product
 }
 
-/// One instance's transforms in the model's space, of the updated slots alone: `updated_bones` holds a bit for each slot, with a
-/// slot's always all below it.
+/// The model matrices of one instance, for updated slots only. `updated_bones` holds one bit per slot; if a
+/// slot is set, so are all slots below it.
 ///
 /// # Panics
-/// With fewer bits, locals or models than bones.
+/// If there are fewer bits, local transforms or matrices than bones.
 pub fn local_to_model_updated(
     order: &Order,
     updated_bones: &[u32],

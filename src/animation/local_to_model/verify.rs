@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/local_to_model.wgsl`.
+//! Parity cases of `kernels/animation/local_to_model.wgsl`.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -16,8 +16,8 @@ use crate::asset::transform::{Affine, Transform};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 
-/// Random skeletons of every size and shape, mirrored and uneven scales; a chain and a star. All bones, and those below
-/// active ones alone: the others keep their matrices to the bit.
+/// The cases cover random skeletons of every size and shape, with mirrored and uneven scales; a chain and a
+/// star; all bones, and only those below active ones. All other bones must keep their matrices to the bit.
 ///
 /// # Errors
 /// What the device reports.
@@ -72,7 +72,7 @@ fn add_updated(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usi
     let stale: Vec<Affine> =
         before.chunks(bones).flat_map(|locals| local_to_model(skeleton, locals)).collect();
     let mut draw = Draw::new(case ^ 0xd127);
-    // A third of the instances have none, a third few, a third all but few.
+    // A third of the instances have no active bone, a third a few, and a third all but a few.
     let mut bits = vec![0; count * order.words()];
     for (instance, words) in bits.chunks_mut(order.words()).enumerate() {
         for slot in (0..bones).filter(|_| instance % 3 > 0) {
@@ -127,7 +127,7 @@ fn add_updated(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usi
     Ok(())
 }
 
-/// Scales near 1, so that long chains stay in range.
+/// Scales are close to 1, so that long chains stay in range.
 fn random_locals(case: u32, count: usize) -> Result<Vec<Transform>, Error> {
     let mut draw = Draw::new(case ^ 0x10ca);
     let mut local = || {

@@ -1,5 +1,5 @@
-//! Weights from the clip itself (A section 14, future work): which terms tell how much error it causes to freeze a
-//! bone over a key.
+//! Derives weights from a clip itself (A section 14, future work): how well each term predicts the error of
+//! freezing a bone from one key to the next.
 
 use super::{Differences, Weights};
 use crate::InputError;
@@ -10,16 +10,17 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};
 
-/// Moments at which a frozen bone is looked at, as shares of the way to the next key.
+/// The times at which a frozen bone is examined, as fractions of the way to the next key.
 const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
 
 impl Weights {
-    /// Derives the weights of the first five terms from a clip: the non-negative least squares fit of the terms to
-    /// the error in the model's space that freezing each bone from each of its keys to the next causes. The user's
-    /// term keeps its default weight, and the fit shares the rest. A clip in which nothing moves, or in which no term
-    /// tells anything, gives the default weights.
+    /// Derives the weights of the first five terms from a clip, by a non-negative least squares fit of the
+    /// terms to the errors in the model's space that result from freezing each bone from each of its keys to
+    /// the next. The user's term keeps its default weight, and the fit divides the rest. A clip in which
+    /// nothing moves, or in which no term has an effect, gives the default weights.
     ///
-    /// The error is the root of the mean square, over four moments and all bones, of how far points a bone's length
+    /// The error is the root of the mean square, over four moments and all bones, of how far points a bone's
+    /// length
     /// along its axes lie from where they should.
     ///
     /// # Errors
@@ -28,7 +29,7 @@ impl Weights {
         let differences = Differences::new(skeleton, clip, loops)?;
         let errors = freezing_errors(skeleton, clip, &differences);
         let largest = errors.iter().copied().fold(0.0, f64::max);
-        // Nothing can be frozen after the last key.
+        // After the last key there is nothing to freeze.
         let last = differences.keys.iter().map(|key| key.until <= key.time);
         let rows = differences.terms(skeleton).into_iter().zip(&errors).zip(last).filter(|(_, last)| !last);
         let (terms, targets): (Vec<_>, Vec<_>) =
@@ -45,7 +46,7 @@ impl Weights {
     }
 }
 
-/// A bone that is frozen, at a moment.
+/// A frozen bone at one time.
 struct Probe {
     time: f32,
     key: usize,
@@ -53,7 +54,7 @@ struct Probe {
     frozen: Transform,
 }
 
-/// For each key, the error of freezing its bone until the next.
+/// For each key, the error of freezing its bone until the next key.
 fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) -> Vec<f64> {
     let mut probes = Vec::new();
     for (index, key) in differences.keys.iter().enumerate().filter(|(_, key)| key.until > key.time) {
@@ -66,7 +67,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
             frozen,
         }));
     }
-    // All probes of a moment share its pose.
+    // All probes of one time share its pose.
     probes.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.key.cmp(&b.key)));
     let lengths = skeleton.lengths();
     let mut squares = vec![0.0; differences.keys.len()];
@@ -81,7 +82,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
     squares.into_iter().map(|square| (square / values).sqrt()).collect()
 }
 
-/// The sum over all bones of the squared error that one frozen bone causes.
+/// The sum, over all bones, of the squared error that one frozen bone causes.
 fn square_error(
     skeleton: &Skeleton,
     locals: &[Transform],
@@ -108,7 +109,7 @@ fn square_error(
     sum
 }
 
-/// How far the worst of three points, `length` along the bone's axes, lies from its place.
+/// The largest displacement of three points at `length` along the bone's axes.
 pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
     let off = |axis: usize| {
         let squares = stale.iter().zip(fresh).map(|(stale, fresh)| {
@@ -120,8 +121,8 @@ pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
     off(0).max(off(1)).max(off(2))
 }
 
-/// The `x ≥ 0` that makes `|rows · x − targets|` least. With five unknowns, the solution is the best of those that
-/// have no constraint on some of them and 0 for the others.
+/// The `x ≥ 0` that minimizes `|rows · x − targets|`. With five unknowns, it is the best of the solutions in
+/// which some unknowns are unconstrained and the others are 0.
 pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> [f64; 5] {
     let mut normal = [[0.0; 5]; 5];
     let mut right = [0.0; 5];
@@ -131,7 +132,7 @@ pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> 
             (0..5).for_each(|j| normal[i][j] += row[i] * row[j]);
         }
     }
-    // |rows · x − targets|² less a constant.
+    // |rows · x − targets|² minus a constant.
     let cost = |x: &[f64; 5]| -> f64 {
         let product = |i: usize| (0..5).map(|j| normal[i][j] * x[j]).sum::<f64>();
         (0..5).map(|i| x[i] * (product(i) - 2.0 * right[i])).sum()
@@ -148,7 +149,7 @@ pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> 
     best
 }
 
-/// Solves the equations of a subset of the unknowns, if they have one solution.
+/// Solves the equations for a subset of the unknowns, if the solution is unique.
 fn solve(normal: &[[f64; 5]; 5], right: &[f64; 5], subset: u32) -> Option<[f64; 5]> {
     let chosen: Vec<usize> = (0..5).filter(|i| subset & (1 << i) != 0).collect();
     let mut rows: Vec<Vec<f64>> =
@@ -191,7 +192,7 @@ mod tests {
         };
         let found = non_negative_least_squares(&rows, &of(&truth));
         assert!(found.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
-        // A negative truth is cut off at 0, and no other x ≥ 0 nearby is better.
+        // The true negative value is clamped to 0, and no other x ≥ 0 nearby is better.
         let targets = of(&[1.0, -0.5, 0.0, 0.3, 0.0]);
         let found = non_negative_least_squares(&rows, &targets);
         let cost = |x: &[f64; 5]| of(x).iter().zip(&targets).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -229,7 +230,8 @@ mod tests {
         Some(Keys { times, values, interpolation: Interpolation::Linear })
     }
 
-    /// By hand: the middle bone moves 4 m in a second, so it is 1, 2, 3 and 4 m off, and so is its child.
+    /// Computed by hand: the middle bone moves 4 m in a second, so that it is 1, 2, 3 and 4 m off, and so is
+    /// its child.
     #[test]
     fn the_error_of_freezing_is_the_one_computed_by_hand() {
         let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [4.0, 0.0, 0.0, 0.0]]), None, None]);
@@ -239,7 +241,7 @@ mod tests {
         assert!((errors[0] - expected).abs() < 1e-6 && errors[1] == 0.0, "{errors:?} {expected}");
     }
 
-    /// Where only one part moves, and its change is in proportion to the error, only its weight is left.
+    /// If only one part moves, and its change is proportional to the error, only its weight remains.
     #[test]
     fn the_part_that_moves_gets_the_weight() {
         let distances = [0.0, 1.0, 1.5, 4.0, 0.0].map(|x| [x, 0.0, 0.0, 0.0]);

@@ -1,4 +1,4 @@
-//! Taking the motion out of a clip.
+//! Extraction of root motion from a clip.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -11,10 +11,10 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 
-/// By how much scales above a yaw may differ, and be sheared.
+/// The largest unevenness or shear of scales above a yaw.
 const UNEVEN: f64 = 1e-4;
 
-/// A quaternion with less about the vertical has no yaw; the one before counts.
+/// A quaternion with a smaller part about the vertical has no yaw; the previous one counts.
 const UPSIDE_DOWN: f64 = 1e-12;
 
 pub(super) fn extract(
@@ -50,7 +50,7 @@ pub(super) fn extract(
     Ok((clip.replaced(bone, translation, rotation)?, motion))
 }
 
-/// From the bone's parent's space into the model's.
+/// The transform from the space of the bone's parent into the model's.
 fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, InputError> {
     let mut above = DAffine3::IDENTITY;
     let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -67,7 +67,7 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
         above = wide(&sample_bone(clip, ancestor, 0.0, RotationPath::Slerp)) * above;
     }
     let matrix = above.matrix3;
-    // Zero also where rounding alone keeps it from being so.
+    // Also refused if only rounding keeps the determinant from being zero.
     let size = matrix.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if matrix.determinant().abs() <= 1e-9 * size.powi(3) {
         return Err(InputError::new("bones above", "scale 0", "must not be flat"));
@@ -92,8 +92,8 @@ fn moves(clip: &Clip, track: &Track) -> bool {
     track.keys > 1 && (bends || differ)
 }
 
-/// The part of the translation that is taken, in the model's space from the start on, and the keys of the rest. Both
-/// are linear in the values, so every interpolation between keys stays what it was.
+/// The translation that is taken, in the model's space since the start, and the keys of the rest. Both are
+/// linear in the values, so that every interpolation stays the same.
 fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Taken) -> (Keys, Option<Keys>) {
     let part = |is_taken: bool| f64::from(u8::from(is_taken));
     let (horizontal, vertical) = (part(taken.horizontal), part(taken.vertical));
@@ -114,8 +114,7 @@ fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Tak
     (path, moves.then_some(rest))
 }
 
-/// Radians about the vertical from the start on, and the keys of what is left of the rotation; `None` where it never
-/// changes.
+/// The yaw in radians since the start, and the keys of the remaining rotation; `None` if it never changes.
 fn split_turn(
     clip: &Clip,
     bone: usize,
@@ -154,7 +153,7 @@ fn split_turn(
     Ok(Some((turns, Keys { times, values, interpolation: Interpolation::Linear })))
 }
 
-/// Rotations at all keys, on both sides of jumps, and between them; none where there is nothing between keys.
+/// Rotations at all keys, on both sides of jumps, and in between where the interpolation needs it.
 fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
     let is_spline = keys.interpolation == Interpolation::CubicSpline;
     let mut samples: Vec<(f32, [f32; 4])> = Vec::new();
@@ -190,7 +189,7 @@ fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
     samples
 }
 
-/// How many, so that none turns by more than [`PIECE`].
+/// The number of pieces for which none rotates by more than [`PIECE`].
 fn pieces(before: [f32; 4], after: [f32; 4]) -> u32 {
     let cosine: f64 = before.iter().zip(after).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
     ((2.0 * cosine.abs().min(1.0).acos() / PIECE).ceil() as u32).max(1)

@@ -1,10 +1,11 @@
-//! Turns about the vertical and translations, in double precision: after an hour of loops, positions still hold.
+//! Rotations about the vertical with translations, in double precision, so that positions stay exact after an
+//! hour of loops.
 
 use glam::{DQuat, DVec3};
 
 use crate::asset::transform::Transform;
 
-/// Turns about +Y, then moves.
+/// A rotation about +Y, followed by a translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rigid {
     turn: f64,
@@ -14,13 +15,13 @@ pub(super) struct Rigid {
 impl Rigid {
     const IDENTITY: Self = Self { turn: 0.0, translation: DVec3::ZERO };
 
-    /// Turns about the vertical through a pivot, then moves.
+    /// A rotation about the vertical through a pivot, followed by a translation.
     pub fn about(pivot: [f64; 3], turn: f64, translation: [f64; 3]) -> Self {
         let [pivot, translation] = [pivot, translation].map(DVec3::from);
         Self { turn, translation: pivot + translation - DQuat::from_rotation_y(turn) * pivot }
     }
 
-    /// This, then `next` in the space that this has made.
+    /// This motion, followed by `next` in the space that results from this one.
     pub fn then(self, next: Self) -> Self {
         let turned = DQuat::from_rotation_y(self.turn) * next.translation;
         Self { turn: self.turn + next.turn, translation: self.translation + turned }
@@ -31,7 +32,7 @@ impl Rigid {
         Self { turn: -self.turn, translation: back }
     }
 
-    /// As many in a row; negative: of the inverse.
+    /// This motion repeated `count` times; a negative count repeats its inverse.
     pub fn power(self, count: i64) -> Self {
         let mut square = if count < 0 { self.inverse() } else { self };
         let (mut left, mut product) = (count.unsigned_abs(), Self::IDENTITY);

@@ -1,4 +1,4 @@
-//! Sampling of crowds.
+//! Benchmark cases of `animation/sample`: sampling of crowds.
 
 use std::hint::black_box;
 
@@ -19,8 +19,8 @@ use crate::baseline::gather::Reads;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
 
-/// All bones, a list of every fourth, and two clips blended. `copy` reads and writes the same words, `limit` the same
-/// keys without looking tracks up.
+/// Measures all bones, a list of every fourth, and two blended clips. `copy` reads and writes the same words;
+/// `limit` reads the same keys without looking tracks up.
 ///
 /// # Errors
 /// What the device reports.
@@ -76,7 +76,7 @@ fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     bench.case("a quarter of 1000 × 153", (chosen.len(), "bone"), bytes, contenders)
 }
 
-/// Two layers on all bones, the upper 0.3 s later and at half the weight.
+/// Two layers on all bones; the upper one is 0.3 s later and has half the weight.
 fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (gpu, count) = (bench.gpu, CROWDS[1]);
     let scene = Scene::new(gpu, count)?;
@@ -87,7 +87,7 @@ fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     crowd.cursors.write(gpu, &found)?;
     let pairs = crowd.pairs();
     let job = SamplePass::layered(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &crowd)?;
-    // Four keys of 10 words in, 10 words out.
+    // The kernel reads four keys of 10 words and writes 10 words.
     let copied = copy_of(gpu, 25 * pairs)?;
     let reference = || {
         let (set, base) = (&scene.set, &scene.instances);

@@ -1,4 +1,4 @@
-//! `kernels/animation/sample.wgsl`.
+//! The GPU pass of `kernels/animation/sample.wgsl`.
 
 use crate::animation::active::ActivePairs;
 use crate::animation::crowd::{ClipBuffers, Crowd};
@@ -11,14 +11,14 @@ use crate::{Error, InputError};
 /// Samples bones.
 #[derive(Debug, Clone)]
 pub struct SamplePass {
-    // For sets without splines, and with them.
+    // Kernels for sets without splines, and with them.
     all: [Kernel; 2],
     compacted: [Kernel; 2],
     is_layered: bool,
     path: RotationPath,
 }
 
-/// Prepared sampling of pairs that a kernel or the host chooses.
+/// The prepared sampling of pairs that a kernel or the host selects.
 pub type SampleActiveJob = IndirectJob;
 
 impl SamplePass {
@@ -30,8 +30,8 @@ impl SamplePass {
         Self::compile(gpu, path, false)
     }
 
-    /// Compiles the pipelines for crowds of any number of layers. `path` holds between keys; between layers rotations
-    /// always take the chord.
+    /// Compiles the pipelines for crowds with any number of layers. `path` applies between keys; between layers
+    /// rotations are always blended along the chord.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -48,11 +48,11 @@ impl SamplePass {
         Ok(Self { all: kernels(false)?, compacted: kernels(true)?, is_layered, path })
     }
 
-    /// Prepares sampling of every bone of every instance, at the crowd's places.
+    /// Prepares the sampling of every bone of every instance, at the crowd's cursors.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of several layers unless the pass is [`SamplePass::layered`], and for one of another
-    /// path ([`Crowd::path`]); [`GpuError`].
+    /// [`InputError`] for a crowd of several layers unless the pass is [`SamplePass::layered`], and for a crowd
+    /// with another rotation path ([`Crowd::path`]); [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         self.check(crowd)?;
         let pairs = Buffer::new(gpu, "no pairs", 0)?;
@@ -66,10 +66,10 @@ impl SamplePass {
         Ok(Job::new(gpu, "animation/sample", vec![step])?)
     }
 
-    /// Prepares sampling of the active pairs alone; the other local transforms stay.
+    /// Prepares the sampling of the active pairs; all other local transforms stay unchanged.
     ///
     /// # Errors
-    /// As [`SamplePass::prepare`]; [`InputError`] for pairs of another crowd.
+    /// As [`SamplePass::prepare`], and [`InputError`] for pairs of another crowd.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/sample.wgsl`.
+//! Parity cases of `kernels/animation/sample.wgsl`.
 
 use crate::Error;
 use crate::animation::active::{ActivePairs, PAIR_AHEAD};
@@ -19,8 +19,8 @@ use crate::harness::compare::LeftOut;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 
-/// Every interpolation, at the reference's places: every pair, and lists of some pairs, of none and of all. Pairs that are
-/// not listed stay untouched. Crowds of one layer and of several.
+/// The cases cover every interpolation, at the reference's cursors: every pair, and lists of some pairs, of
+/// none and of all; crowds of one layer and of several. Pairs that are not listed must stay unchanged.
 ///
 /// # Errors
 /// What the device reports.
@@ -48,7 +48,8 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     at_edges(cases)
 }
 
-/// Poses that are known without a reference; and the same under a layer of their like, with the keys of rotations negated.
+/// Compares poses that are known without a reference, and the same under a layer with equal poses whose
+/// rotation keys are negated.
 fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
     let edges = edges()?;
     let poses: Vec<Local> = edges.poses().iter().map(packed).collect();
@@ -62,7 +63,7 @@ fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// All pairs, and lists.
+/// Adds cases for all pairs, and for lists.
 fn add(
     cases: &mut Cases<'_>,
     name: String,
@@ -81,7 +82,7 @@ fn add(
     Ok(())
 }
 
-/// Layers whose weights and masks are nothing, everything, and all between; every second on all bones.
+/// Random layers with weights and masks of 0, of 1 and in between; every second layer has no mask.
 fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<Layer> {
     let mut draw = Draw::new(case ^ 0x1a7e);
     let mut weight = || match draw.word() % 4 {
@@ -97,7 +98,8 @@ fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<La
     (0..above).map(layer).collect()
 }
 
-/// Bones that a layer turns by half a turn, give or take `margin`: the nearer of q and −q is a matter of rounding.
+/// Bones that a layer rotates by half a turn within `margin`, where rounding decides which of q and −q is
+/// nearer.
 fn torn(
     set: &ClipSet,
     base: &[Instance],
@@ -123,7 +125,7 @@ fn torn(
     torn
 }
 
-/// Poses, but those that are left out, which are counted: one in 100 may be.
+/// Compares poses, except those that are left out, which are counted: one in 100 is allowed.
 fn compared(actual: &[Local], expected: &[Local], is_left_out: &[bool], bound: f32) -> compare::Comparison {
     let flat = |locals: &[Local]| {
         let kept = locals.iter().zip(is_left_out).filter(|(_, is_left_out)| !**is_left_out);
@@ -141,7 +143,7 @@ struct Bench<'a> {
     crowd: Crowd,
     output: Poisoned<Local>,
     expected: Vec<Local>,
-    /// Where the base stands ahead.
+    /// The expected poses of the base layer ahead.
     ahead: Vec<Local>,
     torn: Vec<bool>,
     bound: f32,
@@ -157,7 +159,7 @@ impl<'a> Bench<'a> {
     ) -> Result<Self, Error> {
         let cursors: Vec<KeyframeCursor> = cursors(set, &all_instances(base, layers), ELAPSED);
         let mut crowd = Crowd::layered(gpu, set, base, layers)?.with_path(path);
-        // Layers are sampled where they are.
+        // Layers are not sampled ahead.
         let later = self::cursors(set, base, ELAPSED + 0.3);
         let mut cursors_ahead = cursors.clone();
         cursors_ahead[..later.len()].copy_from_slice(&later);
@@ -171,7 +173,7 @@ impl<'a> Bench<'a> {
             sample_layers(set, base, layers, cursors, path).iter().map(packed).collect::<Vec<_>>()
         };
         let (clips, expected, ahead) = (ClipBuffers::new(gpu, set)?, poses(&cursors), poses(&cursors_ahead));
-        // Both quaternions are off by the bound at most.
+        // Each of the two quaternions is off by at most the bound.
         let [now, later] =
             [&cursors, &cursors_ahead].map(|cursors| torn(set, base, layers, cursors, path, 4.0 * bound));
         let torn = now.iter().zip(later).map(|(now, later)| *now || later).collect();
@@ -208,7 +210,7 @@ impl<'a> Bench<'a> {
             (0..self.expected.len()).map(|pair| written(pair).copied().unwrap_or(poison)).collect();
         let largest =
             self.expected.as_flattened().as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
-        // What is not listed stays untouched, torn or not.
+        // A pair that is not listed stays unchanged, whether it is left out or not.
         let is_left_out: Vec<bool> =
             self.torn.iter().enumerate().map(|(pair, torn)| *torn && written(pair).is_some()).collect();
         let comparison = self.output.check(self.gpu, |actual: &[Local]| {

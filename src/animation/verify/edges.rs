@@ -1,5 +1,6 @@
-//! A crowd at the edges of what clips may be, with poses that are known without a reference: a bone without tracks, tracks of
-//! one key, times that repeat, q and −q, keys that begin late and end early, and a clip that lasts no time.
+//! A crowd at the limits of what clips may contain, with poses that are known without a reference: a bone
+//! without tracks, tracks of one key, equal times, q and −q, keys that begin late and end early, and a clip of
+//! 0 seconds.
 
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
 
@@ -12,13 +13,13 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::skeleton::{Bone, Skeleton};
 use crate::asset::transform::Transform;
 
-/// The crowd, and for each instance its time in the first clip, or `None` where it plays the second.
+/// The crowd, with the time of each instance in the first clip, or `None` if it plays the second.
 pub struct Edges {
     /// The clips.
     pub set: ClipSet,
-    /// What is played.
+    /// The instances.
     pub instances: Vec<Instance>,
-    /// Where that is, in seconds, inside the clip.
+    /// Times inside the clip, in seconds.
     pub times: Vec<Option<f32>>,
 }
 
@@ -35,10 +36,11 @@ fn turning(last: [f32; 4]) -> Option<Keys> {
     Some(Keys { times: vec![0.0, 1.0], values, interpolation: Interpolation::Linear })
 }
 
-/// When the poses are what [`Edges::poses`] says: seconds since the instances' starts.
+/// The time at which the poses are those of [`Edges::poses`], in seconds since the starts of the instances.
 pub const ELAPSED: f32 = 0.25;
 
-/// Six bones for a second, and no time; and both again with all rotations' keys negated, which are the same rotations.
+/// A clip of six bones that lasts a second and one that lasts 0 seconds; then both again with the keys of all
+/// rotations negated, which are the same rotations.
 fn clips(skeleton: &Skeleton) -> Result<[Clip; 4], InputError> {
     let one = |values: Vec<[f32; 4]>, interpolation| Some(Keys { times: vec![0.25], values, interpolation });
     let tangent = [9.0; 4];
@@ -81,10 +83,10 @@ fn clips(skeleton: &Skeleton) -> Result<[Clip; 4], InputError> {
     ])
 }
 
-/// Every edge.
+/// The crowd of all these cases.
 ///
 /// # Errors
-/// None: it is checked like any other.
+/// None in practice: the clips are checked like any others.
 pub fn edges() -> Result<Edges, InputError> {
     let bone = |at: u32| Bone { name: format!("bone {at}"), parent: at.checked_sub(1), rest: REST };
     let skeleton = Skeleton::of_joints((0..6).map(bone).collect())?;
@@ -116,24 +118,25 @@ pub fn edges() -> Result<Edges, InputError> {
 }
 
 impl Edges {
-    /// Each instance's places, as far as its clip has timelines.
+    /// The cursors of each instance, one per timeline of its clip.
     pub fn cursors(&self) -> Vec<Vec<KeyframeCursor>> {
         let cursor = |key, fraction| KeyframeCursor { key, fraction };
         let of = |time: &Option<f32>| match *time {
-            // The quarters that all tracks' times are together; repeated, whole, and late times.
+            // The timelines: the quarters, which are all tracks' times together; repeated, whole, and late
+            // times.
             Some(t) => vec![
                 cursor((4.0 * t) as u32, (4.0 * t).fract()),
                 if t >= 1.0 { cursor(3, 0.0) } else { cursor(2 * u32::from(t >= 0.5), 2.0 * (t % 0.5)) },
                 if t >= 1.0 { cursor(1, 0.0) } else { cursor(0, t) },
                 if t >= 0.75 { cursor(1, 0.0) } else { cursor(0, 2.0 * (t - 0.25).max(0.0)) },
             ],
-            // The one time; the last of four, of two.
+            // The timelines of the clip of 0 seconds: the only time; the last of four; the last of two.
             None => vec![cursor(0, 0.0), cursor(3, 0.0), cursor(1, 0.0)],
         };
         self.times.iter().map(of).collect()
     }
 
-    /// Each instance's bones.
+    /// The bones of each instance.
     pub fn poses(&self) -> Vec<Transform> {
         let at = |x: f32| Transform { translation: [x, 0.0, 0.0], ..REST };
         let turned =

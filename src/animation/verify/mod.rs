@@ -1,4 +1,4 @@
-//! Parity of `kernels/animation/`.
+//! What the parity cases of `kernels/animation/` share.
 
 pub mod edges;
 
@@ -15,12 +15,12 @@ use crate::terrain::verify::random_words;
 pub struct Draw(std::vec::IntoIter<u32>, u32);
 
 impl Draw {
-    /// The draw of a test case.
+    /// The random numbers of a test case.
     pub fn new(case: u32) -> Self {
         Self(Vec::new().into_iter(), case << 16)
     }
 
-    /// A word.
+    /// A random word.
     pub fn word(&mut self) -> u32 {
         loop {
             if let Some(word) = self.0.next() {
@@ -31,12 +31,12 @@ impl Draw {
         }
     }
 
-    /// From −1 to 1, in steps that `f32` holds exactly.
+    /// A number from −1 to 1, in steps that `f32` represents exactly.
     pub fn signed(&mut self) -> f32 {
         (self.word() >> 8) as f32 / 8_388_608.0 - 1.0
     }
 
-    /// A quaternion.
+    /// A random quaternion.
     pub fn rotation(&mut self) -> [f32; 4] {
         loop {
             let q = [0; 4].map(|_| self.signed());
@@ -47,10 +47,10 @@ impl Draw {
     }
 }
 
-/// A random skeleton: some bones in a row, some at any bone before them.
+/// A random skeleton: some bones form a chain, others have any bone before them as their parent.
 ///
 /// # Errors
-/// None: it is checked like any other.
+/// None in practice: the skeleton is checked like any other.
 pub fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> {
     let mut draw = Draw::new(case);
     let bone = |index: usize| {
@@ -67,11 +67,11 @@ pub fn random_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> 
     Skeleton::of_joints((0..bones).map(bone).collect())
 }
 
-/// Random clips: every interpolation, one key or many, shared times and own ones, even and uneven and repeated,
-/// parts without keys. The last one lasts no time.
+/// Random clips with every interpolation; one key or many; shared times and own ones; even, uneven and repeated
+/// times; parts without keys. The last clip lasts 0 seconds.
 ///
 /// # Errors
-/// None: they are checked like any others.
+/// None in practice: the clips are checked like any others.
 pub fn random_clips(case: u32, skeleton: &Skeleton, clips: usize) -> Result<Vec<Clip>, InputError> {
     let mut draw = Draw::new(case ^ 0x0a11);
     let clip = |index: usize| {
@@ -88,7 +88,7 @@ pub fn random_clips(case: u32, skeleton: &Skeleton, clips: usize) -> Result<Vec<
     (0..clips).map(clip).collect()
 }
 
-/// Key times, in 1/64 s.
+/// Random key times, in steps of 1/64 s.
 pub(crate) fn times(draw: &mut Draw, kind: u32, at_once: bool) -> Vec<f32> {
     let count = [2, 3, 17, 60][draw.word() as usize % 4];
     let mut time = 0;
@@ -122,14 +122,14 @@ pub(crate) fn keys(draw: &mut Draw, shared: &[f32], is_rotation: bool) -> Option
     Some(Keys { times, values, interpolation })
 }
 
-/// Random instances, forwards and backwards, at times from −64 to 64 s in steps of 2⁻²⁰ s: 26 bits, so not all are
-/// exact.
+/// Random instances, forwards and backwards, at times from −64 to 64 s in steps of 2⁻²⁰ s. These take 26 bits,
+/// so that not all are exact.
 pub fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance> {
     let mut draw = Draw::new(case ^ 0x1257);
     let instance = |_| {
         let clip = draw.word() % set.clips().len() as u32;
         let wrap = if draw.word().is_multiple_of(2) { Wrap::Loop } else { Wrap::Clamp };
-        // Half of them near the clip.
+        // Half of them start close to the clip.
         let bone_radius = if draw.word().is_multiple_of(2) { 60.0 } else { 2.0 };
         let rate = [1.0, -1.0, 0.5, 1.75][draw.word() as usize % 4];
         Instance::new(clip, wrap, draw.signed() * bone_radius, rate)
@@ -140,7 +140,7 @@ pub fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance>
 /// A random skeleton, a set of three random clips, and instances that play them.
 ///
 /// # Errors
-/// None: they are checked like any others.
+/// None in practice: they are checked like any others.
 pub fn random_crowd(
     case: u32,
     bones: usize,
@@ -153,7 +153,7 @@ pub fn random_crowd(
     Ok((skeleton, set, instances))
 }
 
-/// Bones and instances around every workgroup boundary.
+/// Numbers of bones and instances around every workgroup boundary.
 pub const SIZES: [[usize; 2]; 16] = [
     [1, 1],
     [1, 64],

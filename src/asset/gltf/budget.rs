@@ -110,7 +110,7 @@ mod tests {
             let most: usize = error.bound.split(' ').find_map(|word| word.parse().ok()).expect("a number");
             assert_eq!(budget.spend("a", most - 1), Ok(()));
             assert_eq!(budget.spend("a", 1), Ok(()));
-            assert_eq!(budget.spend("a.count", 1).expect_err("one too many").field, "a.count");
+            assert_eq!(budget.spend("a.count", 1).expect_err("one too many").path, "a.count");
             most
         };
         assert_eq!(

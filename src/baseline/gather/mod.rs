@@ -16,14 +16,14 @@ use crate::{Error, InputError};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reads {
     /// Everything that sampling reads: 20 words of keys per bone, and the 9 words that locate them (the
-    /// instance's clip, three tracks, a place).
+    /// instance's clip, three tracks, a cursor).
     Everything,
-    /// The keys and the place only: tracks are evenly spaced, with this many values each.
+    /// The keys and the cursor only: tracks are evenly spaced, with this many values each.
     Keys(u32),
 }
 
 /// Moves the bytes of sampling: for each bone of each instance it reads the two keys of three tracks around the
-/// instance's place, where instances share the tracks of a clip, and writes a local transform (12 words).
+/// instance's cursor, where instances share the tracks of a clip, and writes a local transform (12 words).
 #[derive(Debug, Clone)]
 pub struct GatherPass {
     kernel: Kernel,
@@ -40,7 +40,7 @@ impl GatherPass {
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, reads })
     }
 
-    /// Prepares a crowd whose instances have places before their last keys. The kernel overwrites the crowd's
+    /// Prepares a crowd whose instances have cursors before their last keys. The kernel overwrites the crowd's
     /// local transforms.
     ///
     /// # Errors

@@ -4,12 +4,12 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::asset::keyframe::KeyframeCursor;
 
-/// For each instance and bone of its clip, writes the exclusive or of the two keys around the instance's place
-/// on three tracks, as the bits of a local transform; the other words of the track table and of the place are
+/// For each instance and bone of its clip, writes the exclusive or of the two keys around the instance's cursor
+/// on three tracks, as the bits of a local transform; the other words of the track table and of the cursor are
 /// combined into it too.
 ///
 /// # Panics
-/// If there are fewer values than the tracks have, and for a place at the last key.
+/// If there are fewer values than the tracks have, and for a cursor at the last key.
 pub fn gather(
     set: &ClipSet,
     instances: &[Instance],

@@ -179,9 +179,9 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_is_refused_and_nothing_is_drawn_as_nothing() {
-        assert_eq!(Chart::default().draw((100, 900)).expect_err("refused").field, "size");
-        assert_eq!(Chart::default().draw((1200, 1 << 20)).expect_err("refused").field, "size");
-        assert_eq!(grid("", &[], 0, (800, 600)).expect_err("refused").field, "columns");
+        assert_eq!(Chart::default().draw((100, 900)).expect_err("refused").path, "size");
+        assert_eq!(Chart::default().draw((1200, 1 << 20)).expect_err("refused").path, "size");
+        assert_eq!(grid("", &[], 0, (800, 600)).expect_err("refused").path, "columns");
         let odd = series("odd", &[(f64::NAN, 1.0), (1.0, f64::INFINITY), (-1.0, 2.0)]);
         for series in [vec![], vec![odd]] {
             let chart = Chart { log_x: true, series, ..Chart::default() };

@@ -275,8 +275,8 @@ impl Relief {
     fn maps(&self) -> Result<(HeightMap, RgbaImage), Error> {
         if let Some(name) = &self.builtin {
             let kind: BuiltInMap =
-                name.parse().map_err(|error| InputError { field: "builtin".into(), ..error })?;
-            let refused = |error: InputError| InputError { field: "texels".into(), ..error };
+                name.parse().map_err(|error| InputError { path: "builtin".into(), ..error })?;
+            let refused = |error: InputError| InputError { path: "texels".into(), ..error };
             let map = kind.height_map(self.texels).map_err(refused)?;
             return Ok((map, kind.albedo(self.texels).map_err(refused)?));
         }

@@ -154,7 +154,7 @@ struct Made {
 fn instance_lod(text: &str) -> Result<InstanceLod, InputError> {
     let refused = || InputError::new("influences", text, "must be full, truncate:K or fade:LAMBDA");
     let named =
-        |error: InputError| InputError::new("influences", text, format!("{} {}", error.field, error.bound));
+        |error: InputError| InputError::new("influences", text, format!("{} {}", error.path, error.bound));
     match text.split_once(':') {
         None if text == "full" => Ok(InstanceLod::FULL),
         Some(("truncate", most)) => {

@@ -91,8 +91,8 @@ impl Look {
         instance_lods: &[InstanceLod],
     ) -> Result<(), Error> {
         let skin = &self.meshes[mesh].skin;
-        let seen = instance_lods.iter().filter(|instance_lod| instance_lod.most > 0);
-        let levels = seen.map(|instance_lod| skin.clusters.level(instance_lod.level));
+        let seen = instance_lods.iter().filter(|instance_lod| instance_lod.max_influences > 0);
+        let levels = seen.map(|instance_lod| skin.clusters.level(instance_lod.mesh_lod));
         let clusters = match self.variant.animation {
             Animation::Full => levels.clone().map(|level| level.clusters).sum(),
             Animation::Gated => skin.active.dispatched.read_blocking(gpu)?[3],

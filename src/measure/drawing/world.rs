@@ -133,19 +133,19 @@ impl<'a> World<'a> {
         (skin, drawn, scene): (&SkinFrame, &Buffer<u32>, &SkinnedScene),
     ) -> Result<LodJob, Error> {
         let Self { gpu, stage, placements, .. } = self;
-        let [near, far] = stage.fade(skinning, index).unwrap_or(NO_FADE);
+        let [fade_start, fade_end] = stage.fade(skinning, index).unwrap_or(NO_FADE);
         let Extent { center, radius, .. } = stage.extents[index];
-        let most = match skinning {
+        let max_influences = match skinning {
             SkinningDetail::Truncate { max_influences } => max_influences,
-            _ => InstanceLod::FULL.most,
+            _ => InstanceLod::FULL.max_influences,
         };
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
-            near,
-            far,
+            fade_start,
+            fade_end,
             steps: STEPS,
-            most,
+            max_influences,
             center,
             radius,
             levels,

@@ -241,7 +241,7 @@ mod tests {
         let (poses, indices) = sheet();
         let surface = Surface { poses: &poses, indices: &indices, attributes: &[], stride: 0 };
         let refused = |distances: &[f32]| {
-            simplify_within(&surface, &Options::default(), distances).expect_err("refused").field
+            simplify_within(&surface, &Options::default(), distances).expect_err("refused").path
         };
         assert_eq!(refused(&[-1.0]), "distances[0]");
         assert_eq!(refused(&[0.5, 0.25]), "distances[1]");

@@ -169,7 +169,7 @@ mod tests {
         }
         for wrong in ["", "Bricks", "brick", "rock"] {
             let error = wrong.parse::<BuiltInMap>().expect_err("refused");
-            assert_eq!((error.field.as_str(), error.value.as_str()), ("map", wrong));
+            assert_eq!((error.path.as_str(), error.value.as_str()), ("map", wrong));
             assert!(error.bound.contains("bricks, cobbles, text, posts"), "{error}");
         }
     }
@@ -180,7 +180,7 @@ mod tests {
             let heights = BuiltInMap::Posts.height_map(size).expect_err("refused");
             let albedo = BuiltInMap::Posts.albedo(size).expect_err("refused");
             assert_eq!(heights, albedo);
-            assert_eq!((heights.field, heights.value), ("size".to_owned(), size.to_string()));
+            assert_eq!((heights.path, heights.value), ("size".to_owned(), size.to_string()));
         }
     }
 

@@ -23,10 +23,10 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let view = LodView {
         clip_from_world,
         eye: Vec3::Y,
-        near: 10.0,
-        far: 100.0,
+        fade_start: 10.0,
+        fade_end: 100.0,
         steps: 64,
-        most: 8,
+        max_influences: 8,
         center: Vec3::Y,
         radius: 1.0,
         levels: LevelRanges::NONE,

@@ -35,13 +35,13 @@ pub struct LodView {
     pub eye: Vec3,
     /// The distance up to which every influence counts, in world units as [`LodView::projected_distance`]
     /// measures them.
-    pub near: f32,
+    pub fade_start: f32,
     /// The distance from which on vertices follow one bone, measured likewise.
-    pub far: f32,
+    pub fade_end: f32,
     /// Number of steps of the fade; 64 is a good number.
     pub steps: u32,
     /// The largest number of influences of instances that are seen, 1 to 8.
-    pub most: u32,
+    pub max_influences: u32,
     /// The centre of a sphere around the model in all of its clips.
     pub center: Vec3,
     /// The radius of the sphere.
@@ -109,7 +109,7 @@ pub fn list_words(instances: usize, levels: usize) -> usize {
     if levels == 1 { instances } else { levels * list_stride(instances) }
 }
 
-/// [`LodView::near`] and [`LodView::far`] for crowds that do not fade.
+/// [`LodView::fade_start`] and [`LodView::fade_end`] for crowds that do not fade.
 pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
 
 impl LodView {
@@ -128,12 +128,16 @@ impl LodView {
         if self.steps == 0 || self.steps > 1 << 16 {
             return Err(InputError::new("view.steps", self.steps, "must be in 1..=65536"));
         }
-        if !(1..=MAX_INFLUENCES as u32).contains(&self.most) {
-            return Err(InputError::new("view.most", self.most, format!("must be in 1..={MAX_INFLUENCES}")));
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
+            return Err(InputError::new(
+                "view.max_influences",
+                self.max_influences,
+                format!("must be in 1..={MAX_INFLUENCES}"),
+            ));
         }
-        InstanceLod::at_distance(0.0, [self.near, self.far])
+        InstanceLod::at_distance(0.0, [self.fade_start, self.fade_end])
             .map(|_| ())
-            .map_err(|error| InputError::new(format!("view.{}", error.field), error.value, error.bound))
+            .map_err(|error| InputError::new(format!("view.{}", error.path), error.value, error.bound))
     }
 
     /// The distance at which a point counts. It equals the distance from the eye straight ahead, is less to the
@@ -169,22 +173,6 @@ impl LodView {
     }
 }
 
-/// A sphere around these positions of a model's vertices, with a margin for what lies between them. For a model
-/// in its clips see [`Extent`](super::extent::Extent).
-pub fn bounding_sphere(places: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
-    let (low, high) = places.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    let center = middle_of(low, high);
-    (center, MARGIN * places.map(|place| place.distance(center)).fold(0.0, f32::max))
-}
-
-/// The factor by which a sphere's radius is enlarged.
-pub(crate) const MARGIN: f32 = 1.05;
-
-/// The centre of a box, if the box is not empty.
-pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
-    if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
-}
-
 /// The placement of an instance of uniform scale: rotated about +Y by `turn` radians, then translated.
 pub fn placed(at: Vec3, turn: f32, scale: f32) -> Affine {
     let (sine, cosine) = (scale * libm::sinf(turn), scale * libm::cosf(turn));
@@ -200,10 +188,10 @@ mod tests {
         LodView {
             clip_from_world: Mat4::IDENTITY,
             eye: Vec3::ZERO,
-            near: 10.0,
-            far: 30.0,
+            fade_start: 10.0,
+            fade_end: 30.0,
             steps: 64,
-            most: 8,
+            max_influences: 8,
             center: Vec3::ZERO,
             radius: 1.0,
             levels: LevelRanges::NONE,
@@ -213,14 +201,14 @@ mod tests {
     #[test]
     fn views_are_checked_field_by_field() {
         assert_eq!(view().validate(), Ok(()));
-        let refused = |view: LodView| view.validate().expect_err("refused").field;
+        let refused = |view: LodView| view.validate().expect_err("refused").path;
         assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
         assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
         assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
-        assert_eq!(refused(LodView { most: 0, ..view() }), "view.most");
-        assert_eq!(refused(LodView { most: 9, ..view() }), "view.most");
-        assert_eq!(refused(LodView { near: 30.0, ..view() }), "view.near");
-        assert_eq!(refused(LodView { far: f32::INFINITY, ..view() }), "view.far");
+        assert_eq!(refused(LodView { max_influences: 0, ..view() }), "view.max_influences");
+        assert_eq!(refused(LodView { max_influences: 9, ..view() }), "view.max_influences");
+        assert_eq!(refused(LodView { fade_start: 30.0, ..view() }), "view.fade_start");
+        assert_eq!(refused(LodView { fade_end: f32::INFINITY, ..view() }), "view.far");
     }
 
     #[test]
@@ -233,7 +221,7 @@ mod tests {
         assert_eq!(ranges.distances(), [-1.0, 5.0, 5.0, 9.0]);
         assert_eq!(LevelRanges::new(&[]), Ok(LevelRanges::NONE));
         assert_eq!(LevelRanges::NONE.at(f32::MAX), 0);
-        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").field;
+        let refused = |distances: &[f32]| LevelRanges::new(distances).expect_err("refused").path;
         assert_eq!(refused(&[2.0, 1.0]), "levels[1]");
         assert_eq!(refused(&[1.0, f32::NAN]), "levels[1]");
         assert_eq!(refused(&[f32::INFINITY]), "levels[0]");
@@ -286,13 +274,5 @@ mod tests {
         ] {
             assert!(!inside(outside), "{outside}");
         }
-    }
-
-    #[test]
-    fn balls_hold_their_places() {
-        let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, -1.0)];
-        let (center, radius) = bounding_sphere(places.into_iter());
-        assert!(places.iter().all(|place| place.distance(center) <= radius) && radius < 1.5);
-        assert_eq!(bounding_sphere(std::iter::empty()), (Vec3::ZERO, 0.0));
     }
 }

@@ -18,10 +18,10 @@ pub(crate) struct LodParams {
     pub eye: Vec4,
     pub ahead: Vec4,
     pub bounding_sphere: Vec4,
-    pub far: f32,
+    pub fade_end: f32,
     pub steps: f32,
     pub instances: u32,
-    pub most: u32,
+    pub max_influences: u32,
     pub distances: [Vec4; MAX_LEVELS / 4],
     pub coarser: u32,
     pub stride: u32,
@@ -34,13 +34,13 @@ impl LodParams {
         let begin = |at: usize| begins.get(at).copied().unwrap_or(f32::MAX);
         Self {
             planes: view.planes(),
-            eye: view.eye.extend(view.near),
+            eye: view.eye.extend(view.fade_start),
             ahead: view.ahead().map_or(Vec4::ZERO, |ahead| ahead.extend(1.0)),
             bounding_sphere: view.center.extend(view.radius),
-            far: view.far,
+            fade_end: view.fade_end,
             steps: view.steps as f32,
             instances: instances as u32,
-            most: view.most,
+            max_influences: view.max_influences,
             distances: std::array::from_fn(|at| {
                 Vec4::from_array(std::array::from_fn(|lane| begin(4 * at + lane)))
             }),
@@ -187,10 +187,10 @@ mod tests {
         let view = |distances: &[f32]| LodView {
             clip_from_world: Mat4::IDENTITY,
             eye: Vec3::ZERO,
-            near,
-            far,
+            fade_start: near,
+            fade_end: far,
             steps: 1,
-            most: 8,
+            max_influences: 8,
             center: Vec3::ZERO,
             radius: 10.0,
             levels: LevelRanges::new(distances).expect("ascending"),

@@ -34,7 +34,7 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
     let projected_distance = view.projected_distance(center);
-    let fade_fraction = (projected_distance - view.near) / (view.far - view.near);
+    let fade_fraction = (projected_distance - view.fade_start) / (view.fade_end - view.fade_start);
     Seen {
         depth: depths.into_iter().fold(f32::INFINITY, f32::min),
         projected_distance,
@@ -58,9 +58,9 @@ pub fn lod(view: &LodView, placement: &Affine) -> InstanceLod {
         return InstanceLod::UNSEEN;
     }
     InstanceLod {
-        fade: (fade_fraction * steps).floor() / steps,
-        most: view.most,
-        level: view.levels.at(projected_distance),
+        influence_fade: (fade_fraction * steps).floor() / steps,
+        max_influences: view.max_influences,
+        mesh_lod: view.levels.at(projected_distance),
     }
 }
 

@@ -99,10 +99,10 @@ fn view(towards: Vec3) -> LodView {
     LodView {
         clip_from_world,
         eye,
-        near: 10.0,
-        far: 70.0,
+        fade_start: 10.0,
+        fade_end: 70.0,
         steps: 16,
-        most: 5,
+        max_influences: 5,
         center: Vec3::new(0.0, 0.9, 0.1),
         radius: 1.2,
         levels: LevelRanges::NONE,
@@ -153,8 +153,8 @@ fn compared(
     let mut at_edges = 0;
     for (instance, (found, placement)) in instance_lods.iter().zip(placements).enumerate() {
         let all: u32 = times.iter().map(|times| times[instance]).sum();
-        let own = times.get(found.level as usize).map_or(0, |times| times[instance]);
-        let is_seen = f32::from(found.most > 0);
+        let own = times.get(found.mesh_lod as usize).map_or(0, |times| times[instance]);
+        let is_seen = f32::from(found.max_influences > 0);
         actual.extend([all as f32, own as f32]);
         expected.extend([is_seen, is_seen]);
         if is_at_an_edge(view, placement) {
@@ -162,8 +162,8 @@ fn compared(
             continue;
         }
         let wanted = lod(view, placement);
-        actual.extend([found.fade, found.most as f32, found.level as f32]);
-        expected.extend([wanted.fade, wanted.most as f32, wanted.level as f32]);
+        actual.extend([found.influence_fade, found.max_influences as f32, found.mesh_lod as f32]);
+        expected.extend([wanted.influence_fade, wanted.max_influences as f32, wanted.mesh_lod as f32]);
     }
     let left_out = LeftOut { count: at_edges, of: count, most: count / 200 };
     compare::absolute(&actual, &expected, FADE_BOUND).leaving_out(left_out)
@@ -207,9 +207,9 @@ mod tests {
             let instance_lods: Vec<_> = placements.iter().map(|placement| lod(&view, placement)).collect();
             let mut lists = vec![vec![]; 3];
             for (instance, instance_lod) in
-                (0..).zip(&instance_lods).filter(|(_, instance_lod)| instance_lod.most > 0)
+                (0..).zip(&instance_lods).filter(|(_, instance_lod)| instance_lod.max_influences > 0)
             {
-                lists[instance_lod.level as usize].push(instance);
+                lists[instance_lod.mesh_lod as usize].push(instance);
             }
             Self { view, placements, instance_lods, lists }
         }
@@ -230,15 +230,18 @@ mod tests {
         let right = Right::new((0..400).map(|at| 3.03 + 0.25 * at as f32));
         let left_out = right.compared().left_out.expect("says so");
         assert!(right.compared().holds && left_out.count == 0, "{:?}", right.compared());
-        let unseen =
-            right.instance_lods.iter().position(|instance_lod| instance_lod.most == 0).expect("some");
+        let unseen = right
+            .instance_lods
+            .iter()
+            .position(|instance_lod| instance_lod.max_influences == 0)
+            .expect("some");
         assert!(right.lists.iter().all(|list| list.len() > 20));
         type Change = fn(&mut Vec<InstanceLod>, &mut Vec<Vec<u32>>);
         let faults: [Change; 8] = [
-            |instance_lods, _| instance_lods[100].fade += 1.0 / 16.0,
-            |instance_lods, _| instance_lods[100].fade = f32::NAN,
-            |instance_lods, _| instance_lods[100].most -= 1,
-            |instance_lods, _| instance_lods[100].level += 1,
+            |instance_lods, _| instance_lods[100].influence_fade += 1.0 / 16.0,
+            |instance_lods, _| instance_lods[100].influence_fade = f32::NAN,
+            |instance_lods, _| instance_lods[100].max_influences -= 1,
+            |instance_lods, _| instance_lods[100].mesh_lod += 1,
             |_, lists| lists[1].truncate(3),
             |_, lists| lists[1].push(0),
             |_, lists| lists[0].push(7777),
@@ -251,7 +254,7 @@ mod tests {
             assert!(!right.with(fault).holds, "fault {number}");
         }
         assert!(!right.with(|_, lists| lists[0].push(unseen as u32)).holds);
-        assert!(!right.with(|instance_lods, _| instance_lods[unseen].most = 5).holds);
+        assert!(!right.with(|instance_lods, _| instance_lods[unseen].max_influences = 5).holds);
     }
 
     /// Level 1 begins at 20. One instance of 400 at this edge must hide neither an error in the others nor its
@@ -264,14 +267,16 @@ mod tests {
         assert!(one.compared().holds);
         assert_eq!(one.compared().left_out, Some(LeftOut { count: 1, of: 400, most: 2 }));
         let other_side = |instance_lods: &mut Vec<InstanceLod>, lists: &mut Vec<Vec<u32>>| {
-            let level = instance_lods[0].level as usize;
+            let level = instance_lods[0].mesh_lod as usize;
             lists[level].retain(|instance| *instance != 0);
             lists[1 - level].push(0);
-            instance_lods[0].level = 1 - level as u32;
+            instance_lods[0].mesh_lod = 1 - level as u32;
         };
         assert!(one.with(other_side).holds);
-        assert!(!one.with(|instance_lods, _| instance_lods[0].level = 1 - instance_lods[0].level).holds);
-        assert!(!one.with(|instance_lods, _| instance_lods[1].most -= 1).holds);
+        assert!(
+            !one.with(|instance_lods, _| instance_lods[0].mesh_lod = 1 - instance_lods[0].mesh_lod).holds
+        );
+        assert!(!one.with(|instance_lods, _| instance_lods[1].max_influences -= 1).holds);
         assert!(right(2).compared().holds);
         let three = right(3).compared();
         assert!(!three.holds && three.fault.expect("a fault").contains("3 of 400 are left out"));

@@ -108,6 +108,6 @@ mod tests {
         assert_eq!(found, [(0, 1, 0, 0, walk), (1, 2, 2, 2, wave)]);
         assert_eq!((&weights.times[..], weights.values.len()), (&[0.0, 0.0, 1.0][..], 14));
         let refused = WeightSet::new(&model.meshes[0], &set, &[0]).expect_err("refused");
-        assert_eq!((&*refused.field, &*refused.bound), ("clips.len", "must be 2, one a clip of the set"));
+        assert_eq!((&*refused.path, &*refused.bound), ("clips.len", "must be 2, one a clip of the set"));
     }
 }

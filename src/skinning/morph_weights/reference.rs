@@ -21,7 +21,7 @@ pub fn morph_weights(
 ) {
     let targets = mesh.targets.len().max(1);
     let rooms = weights.chunks_exact_mut(targets).zip(instances).zip(instance_lods);
-    for ((weights, instance), _) in rooms.filter(|(_, instance_lod)| instance_lod.most > 0) {
+    for ((weights, instance), _) in rooms.filter(|(_, instance_lod)| instance_lod.max_influences > 0) {
         let duration = set.clips()[instance.clip as usize].duration;
         let time = inside_clip(instance.wrap(), duration, instance.start + instance.rate * elapsed);
         weights.copy_from_slice(&mesh.weights_at(clips[instance.clip as usize], time));

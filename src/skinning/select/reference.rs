@@ -35,7 +35,7 @@ impl Skinned {
 
 /// The bits of what determines the influences.
 fn bits(instance_lod: &InstanceLod) -> [u32; 2] {
-    [instance_lod.fade.to_bits(), instance_lod.most]
+    [instance_lod.influence_fade.to_bits(), instance_lod.max_influences]
 }
 
 /// The pairs `cluster · instances + instance` to be skinned, ascending, among instances that are seen, at their
@@ -51,7 +51,7 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
         let (cluster, instance) = (*pair as usize / last.len(), *pair as usize % last.len());
         let (instance_lod, last) = (&now.instance_lods[instance], &last[instance]);
         let is_beyond = |level| cluster >= clusters.level(level).clusters as usize;
-        if instance_lod.most == 0 || is_beyond(instance_lod.level) {
+        if instance_lod.max_influences == 0 || is_beyond(instance_lod.mesh_lod) {
             return false;
         }
         let mask = &clusters.masks[cluster * words..][..words];
@@ -59,7 +59,7 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
         let targets = last.weights.len();
         let weights = now.weights[instance * targets..][..targets].iter().zip(&last.weights);
         bits(instance_lod) != bits(&last.instance_lod)
-            || is_beyond(last.instance_lod.level)
+            || is_beyond(last.instance_lod.mesh_lod)
             || mask.iter().zip(updated_bones).any(|(a, b)| a & b != 0)
             || clusters.morphs[cluster] && weights.clone().any(|(a, b)| a.to_bits() != b.to_bits())
     };
@@ -70,7 +70,7 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
 pub fn remember(now: &Now<'_>, last: &mut [Skinned]) {
     for (instance, last) in last.iter_mut().enumerate() {
         last.instance_lod = now.instance_lods[instance];
-        last.seen = if last.instance_lod.most == 0 { 0 } else { (last.seen + 1).min(2) };
+        last.seen = if last.instance_lod.max_influences == 0 { 0 } else { (last.seen + 1).min(2) };
         let targets = last.weights.len();
         last.weights.copy_from_slice(&now.weights[instance * targets..][..targets]);
     }

@@ -53,7 +53,7 @@ impl Frame {
             "all unseen" => vec![InstanceLod::UNSEEN; instances],
             "all back" | "all whole" => vec![InstanceLod::FULL; instances],
             "other levels" | "other levels again" => {
-                let level = |old: &InstanceLod| InstanceLod { level: draw.word() % 5, ..*old };
+                let level = |old: &InstanceLod| InstanceLod { mesh_lod: draw.word() % 5, ..*old };
                 self.instance_lods.iter().map(level).collect()
             }
             _ if is_other => random_instance_lods(case + fraction, instances),
@@ -133,7 +133,7 @@ fn listed(actual: &[u32], dispatched: &[u32], expected: &[u32]) -> Comparison {
 
 fn words_of(last: &[Skinned]) -> Vec<u32> {
     let words = |last: &Skinned| {
-        let InstanceLod { fade, most, level } = last.instance_lod;
+        let InstanceLod { influence_fade: fade, max_influences: most, mesh_lod: level } = last.instance_lod;
         let weights = last.weights.iter().map(|weight| weight.to_bits());
         [fade.to_bits(), most, level, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
     };

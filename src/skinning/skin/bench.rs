@@ -164,7 +164,7 @@ fn crowd(
 fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
     let gpu = bench.gpu;
     let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    let rigid = InstanceLod { fade: 1.0, ..InstanceLod::FULL };
+    let rigid = InstanceLod { influence_fade: 1.0, ..InstanceLod::FULL };
     scene.crowd.instance_lods.write(gpu, &[rigid; CROWDS[1]])?;
     // The kernel reads a vertex, a bone, a weight and the bone's rows, and writes a vertex.
     let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, instance_lod: rigid };

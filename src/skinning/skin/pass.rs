@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(kept, Ok(()));
         assert_eq!(last.read_blocking(&gpu).expect("read"), now);
         let refused = keep_last(&mut gpu.encoder("refused"), &skinned, &other).expect_err("refused");
-        assert_eq!((&*refused.field, &*refused.value), ("last.len", "4"));
+        assert_eq!((&*refused.path, &*refused.value), ("last.len", "4"));
     }
 
     layout_test!(skin_params_layout: SkinParams = SKINNING_SKIN "SkinParams");

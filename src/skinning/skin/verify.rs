@@ -169,7 +169,7 @@ fn expect(
         }
         let matrix = blended(palette, &reduced(influences.of(at), instance_lod));
         let old = &vertices[at];
-        let is_truncated = (instance_lod.most as usize) < influences.of(at).len();
+        let is_truncated = (instance_lod.max_influences as usize) < influences.of(at).len();
         let bound = SKIN_BOUND * if is_truncated { TRUNCATED } else { 1.0 } * largest;
         let sum = |vector: &[f32]| vector.iter().map(|x| x.abs()).sum::<f32>();
         let [normal, tangent] = lengths(&matrix, old);

@@ -227,16 +227,16 @@ mod tests {
             assert_eq!(method.code() as usize, number);
             assert_eq!(method.name().parse(), Ok(method));
         }
-        assert_eq!("bump".parse::<Method>().expect_err("no such method").field, "method");
+        assert_eq!("bump".parse::<Method>().expect_err("no such method").path, "method");
     }
 
     #[test]
     fn steps_out_of_bounds_are_refused() {
         for steps in [[0, 4], [8, 4], [1, MAX_STEPS + 1]] {
-            assert_eq!(March { steps, ..March::default() }.validate().expect_err("refused").field, "steps");
+            assert_eq!(March { steps, ..March::default() }.validate().expect_err("refused").path, "steps");
         }
         let march = March { binary_steps: MAX_BINARY + 1, ..March::default() };
-        assert_eq!(march.validate().expect_err("refused").field, "binary_steps");
+        assert_eq!(march.validate().expect_err("refused").path, "binary_steps");
         assert!(March { steps: [1, MAX_STEPS], binary_steps: 0, ..March::default() }.validate().is_ok());
     }
 

@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn views_out_of_bounds_are_refused() {
         let good = ShadeView::default();
-        let field = |view: ShadeView| view.validate().expect_err("refused").field;
+        let field = |view: ShadeView| view.validate().expect_err("refused").path;
         assert_eq!(field(ShadeView { clip_from_world: Mat4::NAN, ..good }), "clip_from_world");
         assert_eq!(field(ShadeView { eye: Vec4::INFINITY, ..good }), "eye");
         for shadow_steps in [0, MAX_STEPS + 1] {

@@ -98,6 +98,6 @@ mod tests {
         assert_eq!(split, Ok(expected));
         let whole = split_mirrored(&uv, &[1, 0, 2]);
         assert_eq!(whole, Ok(Split { copies: vec![], indices: vec![1, 0, 2] }));
-        assert_eq!(split_mirrored(&uv, &[0, 1, 4]).expect_err("refused").field, "indices[2]");
+        assert_eq!(split_mirrored(&uv, &[0, 1, 4]).expect_err("refused").path, "indices[2]");
     }
 }

@@ -105,7 +105,7 @@ impl HeightPass {
     /// a point counts once for every window that sees it.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, a reach out of bounds, or
+    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, an apron out of bounds, or
     /// buffers that are too short; [`GpuError`].
     pub fn prepare(
         &self,
@@ -402,7 +402,7 @@ mod tests {
             features,
             Blocks { cell_rows, levels },
         ) {
-            Err(Error::Input(error)) => (error.field.to_string(), error.value.to_string()),
+            Err(Error::Input(error)) => (error.path.to_string(), error.value.to_string()),
             other => panic!("{other:?}"),
         };
         let [levels, rows] = ["blocks.levels", "blocks.cell_rows"].map(str::to_owned);

@@ -43,7 +43,7 @@ pub fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     block_sizes(cases)
 }
 
-/// Compares large patches under everything that small ones are tested with: coarse levels, reach, neighbours,
+/// Compares large patches under everything that small ones are tested with: coarse levels, aprons, neighbours,
 /// features.
 fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (size, coarse_levels, apron, offset, mode) in [

@@ -26,7 +26,7 @@ impl PadPass {
     /// `parts`, which hold the patches one after the other, and writes `windows`. Surroundings are counted
     /// through all parts.
     /// # Errors
-    /// [`InputError`] when the reach is the size of a patch or more, when a surrounding lacks its own patch or
+    /// [`InputError`] when the apron is the size of a patch or more, when a surrounding lacks its own patch or
     /// names one beyond `parts`, when parts have different widths or heights that are too short, or when
     /// `windows` is too short; [`GpuError`].
     pub fn prepare(

@@ -12,7 +12,7 @@ use crate::terrain::pad::reference::pad;
 use crate::terrain::pad::{PadPass, surrounds};
 use crate::terrain::verify::{LIMIT, config, random_heights};
 
-/// The cases cover wrapping patches, whole grids and grids with holes, every reach up to the patch's edge, and
+/// The cases cover wrapping patches, whole grids and grids with holes, every apron up to the patch's edge, and
 /// patches in one buffer and in several.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
 import package::wgsl::animation::gate_state::ClipClock;
 
-// One an instance.
+// One per instance.
 @group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;

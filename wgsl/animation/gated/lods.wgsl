@@ -1,4 +1,4 @@
 import package::wgsl::animation::gate_state::Lod;
 
-// One an instance.
+// One per instance.
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;

@@ -1,13 +1,13 @@
-//! Slerps of several bones at once: component by component, so that compilers use vectors. Each comes out as
-//! [`super::slerp`] computes it, to the bit.
+//! Slerps of several bones at once, component by component, so that compilers vectorize them. Each result
+//! equals that of [`super::slerp`] to the bit.
 
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::transform::Transform;
 
-/// Slerps that are computed together.
+/// Number of slerps that are computed together.
 const LANES: usize = 8;
 
-/// Slerps that wait until there are enough of them.
+/// Slerps that are collected until they fill all lanes.
 pub struct Arcs {
     bones: [usize; LANES],
     from: [[f32; LANES]; 4],
@@ -18,14 +18,15 @@ pub struct Arcs {
 
 impl Default for Arcs {
     fn default() -> Self {
-        // Lanes that nothing waits in compute between identities.
+        // Unused lanes interpolate between identities.
         let still = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]];
         Self { bones: [0; LANES], from: still, to: still, fractions: [0.0; LANES], waiting: 0 }
     }
 }
 
 impl Arcs {
-    /// Adds a bone's keys and the way between them; sets the rotations of bones that waited, once they are enough.
+    /// Adds a bone's keys and the fraction between them; once all lanes are filled, sets the rotations of the
+    /// collected bones.
     pub fn push(
         &mut self,
         bone: usize,
@@ -45,7 +46,7 @@ impl Arcs {
         }
     }
 
-    /// Sets the rotations of all bones that wait.
+    /// Sets the rotations of all remaining bones.
     pub fn finish(&mut self, transforms: &mut [Transform]) {
         if self.waiting == 0 {
             return;
@@ -58,7 +59,7 @@ impl Arcs {
     }
 }
 
-/// [`super::slerp`] in each lane.
+/// Computes [`super::slerp`] in each lane.
 fn slerps(a: &[[f32; LANES]; 4], b: &[[f32; LANES]; 4], t: &[f32; LANES]) -> [[f32; LANES]; 4] {
     let each = |value: &dyn Fn(usize) -> f32| -> [f32; LANES] { std::array::from_fn(value) };
     let cosine = each(&|l| a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l] + a[3][l] * b[3][l]);

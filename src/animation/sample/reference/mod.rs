@@ -1,4 +1,4 @@
-//! Sampling of clips: reference of `kernels/animation/sample.wgsl`.
+//! Sampling of clips: the CPU reference of `kernels/animation/sample.wgsl`.
 
 use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
 use crate::animation::instance::Instance;
@@ -14,15 +14,16 @@ mod arcs;
 
 use arcs::Arcs;
 
-/// A spline of rotations that passes this close to zero keeps the key before: nothing has a direction there.
+/// A spline of rotations that comes this close to zero has no direction there and keeps the previous key's
+/// value.
 const VANISHING: f32 = 1e-12;
 
-/// Every bone's transform, in its parent's space, at a time inside the clip.
+/// Every bone's local transform at a time inside the clip, in seconds.
 pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
     (0..clip.bones()).map(|bone| sample_bone(clip, bone, time, path)).collect()
 }
 
-/// One bone's transform.
+/// One bone's local transform.
 pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> Transform {
     let of = |part| {
         let track: &Track = clip.track(bone, part);
@@ -72,7 +73,7 @@ pub(crate) fn rotation_at(
     }
 }
 
-/// glTF's spline: values and tangents, three a key.
+/// The cubic spline of glTF; values and tangents, three per key.
 fn spline(values: &[[f32; 4]], cursor: KeyframeCursor) -> [f32; 4] {
     let (at, t) = (3 * cursor.key as usize, cursor.fraction);
     let start = values[at + 1];
@@ -103,10 +104,11 @@ fn normalized(q: [f32; 4]) -> [f32; 4] {
     q.map(|component| component * scale)
 }
 
-/// The rotation `t` of the way from `a` to `b`, both unit, with `dot(a, b) ≥ 0` as clips store them.
+/// The rotation at the fraction `t` of the way from `a` to `b`, both unit, with `dot(a, b) ≥ 0` as clips store
+/// them.
 pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
     let cosine = dot(a, b);
-    // Halved: from the nearer end towards the unit quaternion in the middle, (a + b)·inverse.
+    // The arc is halved: from the nearer end towards the unit quaternion in the middle, (a + b)·inverse.
     let inverse = 1.0 / (2.0 + 2.0 * cosine).sqrt();
     let less_one = (1.0 + cosine) * inverse - 1.0;
     let (nearer, farther) = if t < 0.5 { (a, b) } else { (b, a) };
@@ -123,10 +125,10 @@ fn slerp_weight(t: f32, less_one: f32) -> f32 {
     t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * square - v) * less_one * sum)
 }
 
-/// Every bone's transform of every instance, at their places: what the kernel computes of a whole crowd.
+/// Every bone's local transform of every instance, at their cursors, as the kernel computes it.
 ///
 /// # Panics
-/// With fewer places than the set needs.
+/// If there are fewer cursors than the set needs.
 pub fn sample_set(
     set: &ClipSet,
     instances: &[Instance],
@@ -138,10 +140,10 @@ pub fn sample_set(
     transforms
 }
 
-/// [`sample_set`] without allocation, for one frame after another.
+/// As [`sample_set`], without allocation.
 ///
 /// # Panics
-/// With fewer places or transforms than the instances need.
+/// If there are fewer cursors or transforms than the instances need.
 pub fn sample_set_into(
     set: &ClipSet,
     instances: &[Instance],
@@ -176,10 +178,10 @@ pub fn sample_set_into(
     }
 }
 
-/// One bone's transform of one instance, at the instance's places.
+/// One bone's local transform of one instance, at the instance's cursors.
 ///
 /// # Panics
-/// With fewer places than the clip needs.
+/// If there are fewer cursors than the clip needs.
 pub fn sample_pair(
     set: &ClipSet,
     instance: &Instance,
@@ -197,11 +199,11 @@ pub fn sample_pair(
     Transform { translation, rotation: rotation_at(values, interpolation, cursor, path), scale }
 }
 
-/// Every bone's transform of every instance with its layers, at the places of [`all_instances`]: what the kernel
-/// computes of a layered crowd.
+/// Every bone's local transform of every instance with its layers, at the cursors of [`all_instances`], as the
+/// kernel computes it for a layered crowd.
 ///
 /// # Panics
-/// With fewer places than the set needs, and with layers that do not fit.
+/// If there are fewer cursors than the set needs, and for layers that do not match.
 pub fn sample_layers(
     set: &ClipSet,
     base: &[Instance],
@@ -223,7 +225,8 @@ pub fn sample_layers(
     poses
 }
 
-/// The pose `weight` of the way from one to another; rotations on the chord to the nearer of q and −q.
+/// The pose at the fraction `weight` of the way from one pose to another; rotations along the chord to the
+/// nearer of q and −q.
 pub fn blend(below: &Transform, over: &Transform, weight: f32) -> Transform {
     let rest = 1.0 - weight;
     let vector =
@@ -237,7 +240,7 @@ pub fn blend(below: &Transform, over: &Transform, weight: f32) -> Transform {
     }
 }
 
-/// A track's values from its first on, how they are interpolated, and where.
+/// A track's values from its first on, their interpolation, and the cursor.
 fn find<'a>(
     set: &'a ClipSet,
     track: SetTrack,
@@ -246,7 +249,7 @@ fn find<'a>(
     let first = track.first_value as usize;
     let code = track.timeline_and_code >> 30;
     match (track.timeline_and_code & CONSTANT, code) {
-        // The middle of three.
+        // The middle one of three.
         (CONSTANT, 2) => (&set.values()[first - 1..], Interpolation::CubicSpline, KeyframeCursor::default()),
         (CONSTANT, _) => (&set.values()[first..], Interpolation::Step, KeyframeCursor::default()),
         (timeline, _) => (&set.values()[first..], Interpolation::of_code(code), cursors[timeline as usize]),

@@ -16,9 +16,9 @@ pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
         Some(("truncate", most)) => {
             let instance_lod =
                 InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(|error| {
-                    InputError::new("skinning", text, format!("{} {}", error.field, error.bound))
+                    InputError::new("skinning", text, format!("{} {}", error.path, error.bound))
                 })?;
-            let max_influences = instance_lod.most;
+            let max_influences = instance_lod.max_influences;
             let is_full = instance_lod == InstanceLod::FULL;
             Ok(if is_full { SkinningDetail::Full } else { SkinningDetail::Truncate { max_influences } })
         }
@@ -55,11 +55,11 @@ mod tests {
             assert_eq!(mesh(name).expect("valid").to_string(), name);
         }
         for name in ["", "truncate", "truncate:0", "truncate:x", "fade:1", "half"] {
-            assert_eq!(skinning(name).expect_err("refused").field, "skinning", "{name}");
+            assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");
         }
         for name in ["", "bounded", "bounded:-1", "bounded:NaN", "bounded:x", "half", "full:1"] {
-            assert_eq!(skinning(name).expect_err("refused").field, "skinning", "{name}");
-            assert_eq!(mesh(name).expect_err("refused").field, "mesh", "{name}");
+            assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");
+            assert_eq!(mesh(name).expect_err("refused").path, "mesh", "{name}");
         }
     }
 }

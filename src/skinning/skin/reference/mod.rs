@@ -39,9 +39,9 @@ pub fn skin_seen(
     palette: &Palette,
     instance_lod: InstanceLod,
 ) {
-    if instance_lod.most > 0 {
+    if instance_lod.max_influences > 0 {
         let all = skin(vertices, influences, palette, instance_lod);
-        let places = CLUSTER * clusters.level(instance_lod.level).clusters as usize;
+        let places = CLUSTER * clusters.level(instance_lod.mesh_lod).clusters as usize;
         for vertex in clusters.order.iter().take(places).map(|vertex| *vertex as usize) {
             skinned[vertex] = all[vertex];
         }

@@ -10,11 +10,11 @@ use crate::skinning::instance_lod::InstanceLod;
 /// # Panics
 /// For an InstanceLod of 0 influences, which belongs to an instance without vertices.
 pub fn reduced(influences: &[Influence], instance_lod: InstanceLod) -> Vec<Influence> {
-    assert!(instance_lod.most > 0, "not seen");
-    let most = influences.len().min(instance_lod.most as usize);
+    assert!(instance_lod.max_influences > 0, "not seen");
+    let most = influences.len().min(instance_lod.max_influences as usize);
     let lost = influences[most..].iter().fold(0.0, |sum, influence| sum + influence.weight);
     let scale = 1.0 / (1.0 - lost);
-    let taken = instance_lod.fade * influences.get(1).map_or(0.0, |second| second.weight);
+    let taken = instance_lod.influence_fade * influences.get(1).map_or(0.0, |second| second.weight);
     let mut left = vec![influences[0]];
     let mut sum = 0.0;
     for influence in &influences[1..most] {
@@ -113,15 +113,16 @@ mod tests {
 
     #[test]
     fn reductions_are_checked() {
-        let field = |result: Result<InstanceLod, crate::InputError>| result.expect_err("refused").field;
-        assert_eq!(field(InstanceLod::fade(1.5)), "fade");
-        assert_eq!(field(InstanceLod::fade(f32::NAN)), "fade");
-        assert_eq!(field(InstanceLod::truncate(0)), "truncate");
-        assert_eq!(field(InstanceLod::truncate(9)), "truncate");
-        assert_eq!(field(InstanceLod::level(16)), "level");
-        assert_eq!(InstanceLod::level(15), Ok(InstanceLod { level: 15, ..InstanceLod::FULL }));
-        assert_eq!(field(InstanceLod::at_distance(1.0, [5.0, 5.0])), "near");
-        let fade = |distance| InstanceLod::at_distance(distance, [10.0, 30.0]).expect("in range").fade;
+        let field = |result: Result<InstanceLod, crate::InputError>| result.expect_err("refused").path;
+        assert_eq!(field(InstanceLod::fade(1.5)), "influence_fade");
+        assert_eq!(field(InstanceLod::fade(f32::NAN)), "influence_fade");
+        assert_eq!(field(InstanceLod::truncate(0)), "max_influences");
+        assert_eq!(field(InstanceLod::truncate(9)), "max_influences");
+        assert_eq!(field(InstanceLod::level(16)), "mesh_lod");
+        assert_eq!(InstanceLod::level(15), Ok(InstanceLod { mesh_lod: 15, ..InstanceLod::FULL }));
+        assert_eq!(field(InstanceLod::at_distance(1.0, [5.0, 5.0])), "fade_start");
+        let fade =
+            |distance| InstanceLod::at_distance(distance, [10.0, 30.0]).expect("in range").influence_fade;
         assert_eq!([fade(0.0), fade(10.0), fade(15.0), fade(30.0), fade(99.0)], [0.0, 0.0, 0.25, 1.0, 1.0]);
     }
 }
