@@ -10,6 +10,10 @@ mod modules;
 
 #[path = "build/bindings.rs"]
 mod bindings;
+#[path = "build/sources.rs"]
+mod sources;
+#[path = "build/types.rs"]
+mod types;
 
 fn main() {
     shaders::build();
@@ -44,6 +48,8 @@ mod shaders {
                 shader.describe(&mut manifest, &path);
                 if folder == "kernels" {
                     bindings.add(&root, &file, &shader);
+                } else {
+                    bindings.add_drawing(&root, &file, &shader);
                 }
                 all.push(shader);
             }

@@ -95,7 +95,7 @@ fn hits_sees_one_ray_a_twentieth_of_a_texel_off() {
                 Hit { height: hit.height + 2.0 * judged[index].height as f32, ..hit },
                 Hit { parameter: hit.parameter + 2.0 * judged[index].parameter as f32, ..hit },
                 Hit { samples: hit.samples + 1, ..hit },
-                Hit { code: hit.code + 1, ..hit },
+                Hit { outcome_code: hit.outcome_code + 1, ..hit },
             ];
             for fault in faults {
                 let mut actual = expected.clone();

@@ -18,11 +18,12 @@ struct BoundsParams {
 @group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
 
 const THREADS = 64u;
-// BOUNDS_GROWTH of the host.
-const GROWTH = 1.0 + 1.0 / 524288.0;
-const OF_CENTRE = 1.0 / 2097152.0;
-// 2^-62
-const LEAST = 2.16840434e-19;
+// The factor by which extents are enlarged.
+const GROWTH: f32 = 1.0 + 1.0 / 524288.0;
+// The fraction of the centre's distance that is added to extents.
+const OF_CENTRE: f32 = 1.0 / 2097152.0;
+// The length that is added to a row, 2⁻⁶², for squares that are flushed to 0.
+const LEAST: f32 = 2.16840434e-19;
 // The largest f32, with exactly these digits: some compilers refuse larger literals.
 const LARGEST = 3.4028234663852886e38;
 

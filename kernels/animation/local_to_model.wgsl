@@ -2,6 +2,7 @@
 // parent's matrix in registers; a dispatch handles the chains of one level, whose parents are done. With WHOLE,
 // a thread walks all chains of its instance. With COMPACTED, only listed instances are walked, and of them only
 // updated slots, which always include all bones below an updated one.
+import package::wgsl::animation::order::{CONTINUES, NO_PARENT};
 
 override WHOLE: bool = false;
 override COMPACTED: bool = false;
@@ -29,9 +30,6 @@ struct LocalToModelParams {
 @group(0) @binding(6) var<storage, read> locals: array<vec4<f32>>;
 // Three rows per bone.
 @group(0) @binding(7) var<storage, read_write> model_matrices: array<vec4<f32>>;
-
-const NO_PARENT = 0xffffffffu;
-const CONTINUES = 0xfffffffeu;
 
 struct Rows {
     x: vec4<f32>,

@@ -3,6 +3,7 @@
 // blends the clips of further layers over the base, by weight and mask.
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_STEP};
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 
 override COMPACTED: bool = false;
@@ -40,13 +41,14 @@ struct SampleParams {
 // per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
-const CONSTANT = 0x3fffffffu;
-const STEP = 0u;
-const LINEAR = 1u;
-const VANISHING = 1e-12;
+// A track's timeline when its value never changes.
+const CONSTANT: u32 = 0x3fffffffu;
+// A spline of rotations that passes this close to zero, as a squared length, keeps the key before: nothing has a
+// direction there.
+const VANISHING: f32 = 1e-12;
 
 struct Between {
-    // Index of the value, and the interpolation to the next: STEP where nothing is interpolated.
+    // Index of the value, and the interpolation to the next: INTERPOLATION_STEP where nothing is interpolated.
     value: u32,
     code: u32,
     fraction: f32,
@@ -69,15 +71,15 @@ fn is_elsewhere(track: vec2<u32>, before: vec2<u32>) -> bool {
 fn between(track: vec2<u32>, cursor: vec2<u32>) -> Between {
     let timeline = track.x & CONSTANT;
     if timeline == CONSTANT {
-        return Between(track.y, STEP, 0.0);
+        return Between(track.y, INTERPOLATION_STEP, 0.0);
     }
     let fraction = bitcast<f32>(cursor.y);
     let code = track.x >> 30u;
-    if SPLINES && code > LINEAR {
+    if SPLINES && code > INTERPOLATION_LINEAR {
         // Splines have three values per key.
-        return Between(track.y + 3u * cursor.x + 1u, select(STEP, code, fraction > 0.0), fraction);
+        return Between(track.y + 3u * cursor.x + 1u, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
     }
-    return Between(track.y + cursor.x, select(STEP, code, fraction > 0.0), fraction);
+    return Between(track.y + cursor.x, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
 }
 
 fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
@@ -92,10 +94,10 @@ fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
 
 fn vector(at: Between) -> vec3<f32> {
     let start = values[at.value];
-    if at.code == STEP {
+    if at.code == INTERPOLATION_STEP {
         return start.xyz;
     }
-    if !SPLINES || at.code == LINEAR {
+    if !SPLINES || at.code == INTERPOLATION_LINEAR {
         return start.xyz + (values[at.value + 1u].xyz - start.xyz) * at.fraction;
     }
     return spline(start, at.value, at.fraction).xyz;
@@ -105,13 +107,13 @@ fn rotation(at: Between, is_spline: bool) -> vec4<f32> {
     let start = values[at.value];
     if SPLINES && is_spline {
         var q = start;
-        if at.code != STEP {
+        if at.code != INTERPOLATION_STEP {
             q = spline(start, at.value, at.fraction);
             q = select(q, start, dot(q, q) < VANISHING);
         }
         return unit_quaternion(q);
     }
-    if at.code == STEP {
+    if at.code == INTERPOLATION_STEP {
         return start;
     }
     let end = values[at.value + 1u];
@@ -140,7 +142,7 @@ fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     if is_elsewhere(turning, moving) {
         cursor = cursor_of(turning, first_cursor);
     }
-    let turned = rotation(between(turning, cursor), turning.x >> 30u > LINEAR);
+    let turned = rotation(between(turning, cursor), turning.x >> 30u > INTERPOLATION_LINEAR);
     if is_elsewhere(scaling, turning) {
         cursor = cursor_of(scaling, first_cursor);
     }

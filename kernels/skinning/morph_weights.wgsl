@@ -3,6 +3,7 @@
 // their weights.
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_SPLINE};
 import package::wgsl::animation::timeline::{keyframe_cursor, times};
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
@@ -14,13 +15,17 @@ struct MorphWeightsParams {
     elapsed: f32,
 }
 
-// The keys of a clip.
+// The keys of a clip in a set.
 struct WeightEntry {
+    // The clip's duration in seconds.
     duration: f32,
+    // Index of its first key time.
     first_time: u32,
+    // Number of keys, at least 1.
     keys: u32,
+    // Index of its first value.
     first_value: u32,
-    // 0 for step, 1 for linear, 2 for cubic spline, which has in-tangents, values and out-tangents.
+    // INTERPOLATION_STEP, INTERPOLATION_LINEAR, or INTERPOLATION_SPLINE, which has in-tangents, values and out-tangents.
     interpolation: u32,
 }
 
@@ -33,9 +38,6 @@ struct WeightEntry {
 // Binding 4 holds the key times. Values lie key by key, one per target.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
 @group(0) @binding(6) var<storage, read_write> weights: array<f32>;
-
-const LINEAR = 1u;
-const SPLINE = 2u;
 
 fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
     // The in-tangents, values and out-tangents of a key, followed by those of the next.
@@ -74,7 +76,7 @@ fn main(
     // At the last key the fraction is 0.
     let is_between = t > 0.0;
     var weight = 0.0;
-    if entry.interpolation == SPLINE {
+    if entry.interpolation == INTERPOLATION_SPLINE {
         weight = values[first + (3u * found.x + 1u) * params.targets];
         if is_between {
             let at = entry.first_time + found.x;
@@ -82,7 +84,7 @@ fn main(
         }
     } else {
         weight = values[first + found.x * params.targets];
-        if is_between && entry.interpolation == LINEAR {
+        if is_between && entry.interpolation == INTERPOLATION_LINEAR {
             weight += (values[first + (found.x + 1u) * params.targets] - weight) * t;
         }
     }

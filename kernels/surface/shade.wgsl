@@ -7,31 +7,43 @@ import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surfa
 
 override METHOD: u32 = 0u;
 
+// The view and shadow parameters that all points of a list share.
 struct ShadeView {
+    // The matrix from world space to clip space, depth 0 to 1.
     clip_from_world: mat4x4<f32>,
-    // The position of the eye (w = 1), or the direction towards it (w = 0).
+    // The position of the eye with w = 1, or for a parallel projection the direction towards it with w = 0; world
+    // space.
     eye: vec4<f32>,
-    // For soft shadow: number of steps, and the ratio of excess height to distance at which shadow is full.
+    // Number of heights that a soft shadow samples on the way to the light, 1 to `MAX_STEPS`.
     shadow_steps: u32,
+    // The ratio of the surface's height above the way to the light to its distance at which a soft shadow is full;
+    // 0.001 to 1000.
     softness: f32,
 }
 
+// A point of a relief where an eye's ray met it.
 struct ShadePoint {
-    // Unit vector towards the light in tangent space; w: depth of the relief in uv units.
-    light: vec4<f32>,
-    // The point where the eye's ray meets the polygon, in world space; w: world units per uv unit.
-    position: vec4<f32>,
-    // The eye's ray, and its hit.
+    // Unit vector towards the light, in tangent space.
+    light: vec3<f32>,
+    // Depth of the relief in uv units.
+    scale: f32,
+    // The point where the eye's ray meets the polygon, in world space.
+    position: vec3<f32>,
+    // World units per uv unit.
+    world: f32,
+    // The eye's ray.
     ray: SurfaceRay,
+    // The hit of that ray.
     hit: SurfaceHit,
 }
 
+// The shading of a point.
 struct Shade {
     // 1 if the light's ray ends in the point, else 0.
     hard: f32,
-    // Light, 0 in full shadow to 1 in full light.
+    // Light with penumbras, 0 in full shadow to 1 in full light.
     soft: f32,
-    // Depth, 0 (near) to 1 (far).
+    // Depth of the relief at the point, 0 (near) to 1 (far).
     depth: f32,
 }
 
@@ -49,14 +61,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         return;
     }
     let point = points[index];
-    let light = point.light.xyz;
-    let scale = point.light.w;
+    let light = point.light;
+    let scale = point.scale;
     let first = surface_trace(METHOD, heights, acceleration, surface_light_ray(point.hit, light, scale), march);
     let soft = surface_soft_shadow(
         heights, point.hit, light, scale, march, view.shadow_steps, view.softness);
-    let towards = surface_towards(view.eye, point.position.xyz);
-    let distance = surface_distance(point.ray, point.hit, scale) * point.position.w;
-    let depth = surface_depth(view.clip_from_world, point.position.xyz, towards, distance);
+    let towards = surface_towards(view.eye, point.position);
+    let distance = surface_distance(point.ray, point.hit, scale) * point.world;
+    let depth = surface_depth(view.clip_from_world, point.position, towards, distance);
     let hard = select(1.0, 0.0, surface_shaded(first, point.hit));
     shades[index] = Shade(hard, soft, depth);
 }

@@ -16,12 +16,19 @@ struct TangentParams {
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
 @group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
-// 2^-100, below which a vector has no direction; also as bits, with those of 2^100.
-const LEAST = 7.888609052210118e-31;
-const LEAST_BITS = 0x0d800000u;
-const LARGEST_BITS = 0x71800000u;
-const DEGENERATE = 1.0 / 16384.0;
-const VANISHING = 1.0 / 64.0;
+// 2^-100, below which a vector has no direction.
+const LEAST: f32 = 7.888609052210118e-31;
+// Its bits.
+const LEAST_BITS: u32 = 0x0d800000u;
+// The bits of 2^100.
+const LARGEST_BITS: u32 = 0x71800000u;
+// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three are
+// measured after scaling the triangle to a box of edge 1, and in uv each direction separately. The errors of f32 are at
+// most a sixteenth of it: they rotate a tangent of this length by less than four degrees.
+const DEGENERATE: f32 = 1.0 / 16384.0;
+// A sum of tangents counts as 0 if its part orthogonal to the normal is no more than this fraction of the weights. The
+// handedness is negative if its sum is below minus this fraction.
+const VANISHING: f32 = 1.0 / 64.0;
 
 struct Contribution {
     tangent: vec3<f32>,

@@ -12,10 +12,14 @@ struct MapParams {
     additive: u32,
 }
 
+// A height zone as the colour map uses it.
 struct MapZone {
     // Mean linear colour of the zone's texture.
-    color: vec3<f32>,
-    zone: Zone,
+    color: array<f32, 3>,
+    // Lower end of the range, in height units.
+    min: f32,
+    // Upper end of the range, in height units.
+    max: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: MapParams;
@@ -40,14 +44,19 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     pixels[(id.z * width + id.y) * width + id.x] = pack4x8unorm(vec4<f32>(color, 1.0));
 }
 
+fn range_of(z: u32) -> Zone {
+    return Zone(zones[z].min, zones[z].max);
+}
+
 fn zone_color(height: f32) -> vec3<f32> {
     var fold = zone_fold();
     for (var z = 0u; z < params.zone_count; z++) {
-        fold = zone_folded(fold, z, zones[z].zone, height);
+        fold = zone_folded(fold, z, range_of(z), height);
     }
     var color = vec3<f32>(0.0);
     for (var z = 0u; z < params.zone_count; z++) {
-        color += zone_fraction(fold, z, zones[z].zone, height, params.additive != 0u) * zones[z].color;
+        let share = zone_fraction(fold, z, range_of(z), height, params.additive != 0u);
+        color += share * vec3<f32>(zones[z].color[0], zones[z].color[1], zones[z].color[2]);
     }
     return color;
 }

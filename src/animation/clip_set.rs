@@ -7,9 +7,7 @@ use crate::InputError;
 use crate::asset::Track;
 use crate::asset::clip::Clip;
 pub use crate::shared::animation::clip::ClipEntry;
-
-/// The timeline of a track whose value never changes.
-pub const CONSTANT: u32 = (1 << 30) - 1;
+pub use crate::shared::animation::sample::CONSTANT;
 
 /// A list of key times that tracks share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -11,12 +11,11 @@ use crate::animation::order::{NO_PARENT, Order};
 use crate::asset::clip::{Clip, Interpolation, Part};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
+use crate::shared::animation::gate;
+pub(crate) use crate::shared::animation::gate::EVERYTHING;
 
 /// The largest sum of motion over a whole clip, in units of the table.
-const MAX_MOTION: f64 = (1 << 30) as f64;
-
-/// More than is ever permitted.
-pub(crate) const EVERYTHING: u32 = 1 << 30;
+const MAX_MOTION: f64 = EVERYTHING as f64;
 
 /// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
 /// needed if fractions alone decide; with 0, all moving bones get equal fractions.
@@ -389,9 +388,9 @@ pub struct ErrorBudget(pub u32);
 
 impl ErrorBudget {
     /// Set if the bone above is not the previous one in the order.
-    const STARTS: u32 = 1 << 5;
+    const STARTS: u32 = gate::STARTS;
     /// Set if what the bone leaves is needed later.
-    const REMAINING: u32 = 1 << 6;
+    const REMAINING: u32 = gate::REMAINING;
 
     /// `quantization_slack` is a power of two, or 0.
     fn new(fraction: f64, quantization_slack: u32) -> Self {

@@ -1,6 +1,7 @@
 //! What a character plays: a clip, with a start time and a rate.
 
 use crate::InputError;
+use crate::shared::animation::clock;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
 /// The largest absolute value of a start, of elapsed seconds, and of a rate: products and sums stay finite. It
@@ -15,7 +16,7 @@ pub enum Wrap {
     #[default]
     Loop = 0,
     /// The first or the last pose is kept.
-    Clamp = 1,
+    Clamp = clock::WRAP_CLAMP,
 }
 
 impl Wrap {

@@ -3,16 +3,14 @@
 //! alike.
 
 use crate::InputError;
-pub use crate::shared::animation::gate_state::Lod;
-
-/// The value of [`Lod::omega`] at full detail.
-pub const OMEGA_ONE: u32 = 1 << 16;
+use crate::shared::animation::gate_state;
+pub use crate::shared::animation::gate_state::{Lod, OMEGA_ONE};
 
 impl Lod {
     /// The instance is not in view: it costs nothing, and is sampled in full when it comes back.
-    pub const HIDDEN: u32 = 1;
+    pub const HIDDEN: u32 = gate_state::LOD_HIDDEN;
     /// The instance is sampled in full this frame, whatever the gate says.
-    pub const REFRESH: u32 = 2;
+    pub const REFRESH: u32 = gate_state::LOD_REFRESH;
     /// Full detail.
     pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };
 }

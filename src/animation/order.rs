@@ -1,12 +1,7 @@
 //! The order in which bones are walked: parents first, split into chains.
 
 use crate::asset::skeleton::Skeleton;
-
-/// The parent of a root.
-pub const NO_PARENT: u32 = u32::MAX;
-
-/// The parent is the bone of the previous slot.
-pub const CONTINUES: u32 = u32::MAX - 1;
+pub use crate::shared::animation::order::{CONTINUES, NO_PARENT};
 
 /// The entry of a bone in an [`Order`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

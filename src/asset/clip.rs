@@ -29,6 +29,7 @@ mod replaced;
 use super::skeleton::Skeleton;
 use super::transform::{finite, unit};
 use crate::InputError;
+use crate::shared::animation::interpolation;
 
 /// The largest key time, in seconds: about 12 days.
 pub const LONGEST: f32 = 1_048_576.0;
@@ -41,20 +42,20 @@ const LEAST_TIME: f32 = 7.888_609e-31;
 #[repr(u32)]
 pub enum Interpolation {
     /// The value of the previous key.
-    Step = 0,
+    Step = interpolation::INTERPOLATION_STEP,
     /// Linear interpolation; for rotations, along the shortest arc.
-    Linear = 1,
+    Linear = interpolation::INTERPOLATION_LINEAR,
     /// A cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized
     /// afterwards.
-    CubicSpline = 2,
+    CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 
 impl Interpolation {
     /// The interpolation that a track's `code` stands for.
     pub fn of_code(code: u32) -> Self {
         match code {
-            0 => Self::Step,
-            1 => Self::Linear,
+            interpolation::INTERPOLATION_STEP => Self::Step,
+            interpolation::INTERPOLATION_LINEAR => Self::Linear,
             _ => Self::CubicSpline,
         }
     }

@@ -5,18 +5,11 @@ use glam::{DVec2, DVec3};
 
 use super::indices::check_triangles;
 use crate::InputError;
+use crate::shared::surface::tangent::{self, LARGEST_BITS, LEAST_BITS};
+pub use crate::shared::surface::tangent::{DEGENERATE, VANISHING};
 
 /// The largest absolute value of a coordinate, for positions and uv.
 pub const COORDINATE_LIMIT: f32 = 1e18;
-
-/// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three
-/// are measured after scaling the triangle to a box of edge 1, and in uv each direction separately. The errors
-/// of f32 are at most a sixteenth of it: they rotate a tangent of this length by less than four degrees.
-pub const DEGENERATE: f32 = 1.0 / 16_384.0;
-
-/// A sum of tangents counts as 0 if its part orthogonal to the normal is no more than this fraction of the
-/// weights. The handedness is negative if its sum is below minus this fraction.
-pub const VANISHING: f32 = 1.0 / 64.0;
 
 /// The largest difference allowed between a component of a tangent and the reference, on any device, for a
 /// vertex of sensitivity 1 ([`Frame`]).
@@ -109,10 +102,8 @@ impl Adjacency {
     }
 }
 
-/// 2⁻¹⁰⁰, and its bits and those of 2¹⁰⁰.
-const LEAST: f64 = 7.888_609_052_210_118e-31;
-const LEAST_BITS: u32 = 0x0d80_0000;
-const LARGEST_BITS: u32 = 0x7180_0000;
+/// 2⁻¹⁰⁰.
+const LEAST: f64 = tangent::LEAST as f64;
 
 /// A unit of the last place of numbers around 1.
 const EPSILON: f64 = f32::EPSILON as f64;

@@ -31,9 +31,12 @@ impl<'a, T> Slice<'a, T> {
         self.raw.as_entire_binding()
     }
 
-    /// The same bytes as elements of another type, for example the rows of a matrix. The size of one type must
-    /// be a multiple of the other's.
-    pub(crate) fn cast<U>(self) -> Slice<'a, U> {
+    /// The same bytes as elements of the type that a shader sees. The size of one type must be a multiple of the
+    /// other's.
+    pub(crate) fn cast<U>(self) -> Slice<'a, U>
+    where
+        T: SeenAs<U>,
+    {
         const {
             let (from, to) = (size_of::<T>(), size_of::<U>());
             assert!(from.is_multiple_of(to) || to.is_multiple_of(from), "elements do not fit each other");
@@ -41,6 +44,23 @@ impl<'a, T> Slice<'a, T> {
         Slice { raw: self.raw, element: PhantomData }
     }
 }
+
+/// What a shader may see as elements of `U`, which have the same bytes: rows of a matrix, say.
+pub(crate) trait SeenAs<U> {}
+
+// Rows.
+impl<const N: usize> SeenAs<[f32; 4]> for [[f32; 4]; N] {}
+// Components.
+impl<const N: usize> SeenAs<f32> for [f32; N] {}
+// Vectors of what lies one after another.
+impl SeenAs<[u32; 4]> for u32 {}
+impl SeenAs<[f32; 4]> for f32 {}
+// Bits.
+impl SeenAs<[u32; 4]> for [f32; 4] {}
+impl<const N: usize> SeenAs<[u32; 4]> for [[f32; 4]; N] {}
+impl SeenAs<u32> for f32 {}
+impl SeenAs<i32> for u32 {}
+impl<const N: usize> SeenAs<u32> for [f32; N] {}
 
 impl<T> Buffer<T> {
     /// The buffer as a resource to bind.

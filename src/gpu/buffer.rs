@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 use encase::internal::WriteInto;
-use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
+use encase::{ShaderSize, UniformBuffer};
 
 use super::memory::Held;
 use super::readback::Readback;
@@ -179,28 +179,6 @@ impl<T: ShaderSize + WriteInto> Uniform<T> {
     pub fn raw(&self) -> &wgpu::Buffer {
         &self.raw
     }
-}
-
-/// A storage buffer with WGSL's layout of `value`, for structs and arrays of them.
-///
-/// # Errors
-/// As [`Buffer::new`].
-pub fn storage<T: ShaderType + WriteInto>(
-    gpu: &Gpu,
-    label: &'static str,
-    value: &T,
-) -> Result<Buffer<u8>, GpuError> {
-    Buffer::from_slice(gpu, label, &storage_bytes(value)?)
-}
-
-/// The bytes of `value` in WGSL's storage layout.
-///
-/// # Errors
-/// [`GpuError::Internal`] when encase cannot write them.
-pub(crate) fn storage_bytes<T: ShaderType + WriteInto>(value: &T) -> Result<Vec<u8>, GpuError> {
-    let mut writer = StorageBuffer::new(Vec::new());
-    writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;
-    Ok(writer.into_inner())
 }
 
 /// The bytes of `value` in WGSL's uniform layout.

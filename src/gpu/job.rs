@@ -7,9 +7,9 @@ use super::{Gpu, GpuError};
 #[derive(Debug, Clone)]
 pub struct Step {
     /// The pipeline.
-    pub kernel: Kernel,
+    pub(crate) kernel: Kernel,
     /// Its bind groups, in order.
-    pub groups: Vec<Group>,
+    pub(crate) groups: Vec<Group>,
     /// Workgroups along x, y and z.
     pub workgroups: [u32; 3],
 }
@@ -47,7 +47,7 @@ impl Job {
     ///
     /// # Errors
     /// [`GpuError::Limit`] when a dispatch is too large.
-    pub fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
         let available = gpu.device().limits().max_compute_workgroups_per_dimension;
         let needed = steps.iter().flat_map(|step| step.workgroups).max().unwrap_or(0);
         if needed > available {
@@ -116,7 +116,7 @@ pub struct IndirectJob {
 impl IndirectJob {
     /// Prepares one dispatch for each bind group, each with the byte offset in `arguments` at which its
     /// workgroups along x, y and z begin.
-    pub fn new(
+    pub(crate) fn new(
         label: &'static str,
         kernel: &Kernel,
         arguments: &wgpu::Buffer,

@@ -1,34 +1,38 @@
 //! Compute pipelines and bind groups, with the layouts of the manifest that `build.rs` writes.
 
 use super::shaders::{Binding, BindingKind, Shader, Stage};
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, Program};
 
 /// A compute pipeline of one shader, with its override constants set.
 #[derive(Debug, Clone)]
-pub struct Kernel {
+pub(crate) struct Kernel {
     shader: &'static Shader,
     pub(super) pipeline: wgpu::ComputePipeline,
     layouts: Vec<wgpu::BindGroupLayout>,
 }
 
-/// A resource to bind.
-pub type Resource<'a> = wgpu::BindingResource<'a>;
-
-/// Bind groups of one kernel, in order.
-pub type Group = wgpu::BindGroup;
+/// A bind group of a kernel.
+pub(crate) type Group = wgpu::BindGroup;
 
 impl Kernel {
-    /// Compiles the pipeline, or returns the same one if it was compiled on this device before. `overrides`
-    /// sets override constants by name.
+    /// Compiles the pipeline, or returns the same one if it was compiled on this device before. `constants` sets
+    /// all override constants, as `gpu::bindings` lists them.
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
-        let key = format!("{} {overrides:?}", shader.name);
-        gpu.kernels.get(key, || Self::compile(gpu, shader, overrides))
+    pub(crate) fn new(
+        gpu: &Gpu,
+        shader: &'static Shader,
+        constants: &[(&'static str, f64)],
+    ) -> Result<Self, GpuError> {
+        gpu.kernels.get(Program::new(shader, constants), || Self::compile(gpu, shader, constants))
     }
 
-    fn compile(gpu: &Gpu, shader: &'static Shader, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
+    fn compile(
+        gpu: &Gpu,
+        shader: &'static Shader,
+        constants: &[(&'static str, f64)],
+    ) -> Result<Self, GpuError> {
         let layouts = layouts(gpu, shader)?;
         let pipeline = gpu.scoped(|| {
             gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -37,7 +41,7 @@ impl Kernel {
                 module: &module(gpu, shader),
                 entry_point: None,
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: overrides,
+                    constants,
                     // Every kernel writes workgroup memory before it reads it.
                     zero_initialize_workgroup_memory: false,
                 },
@@ -47,15 +51,7 @@ impl Kernel {
         Ok(Self { shader, pipeline, layouts })
     }
 
-    /// Binds the resources of one group, in the order of their bindings.
-    ///
-    /// # Errors
-    /// [`GpuError::Validation`] when they do not match the shader.
-    pub fn bind(&self, gpu: &Gpu, group: u32, resources: &[Resource<'_>]) -> Result<Group, GpuError> {
-        bind(gpu, self.shader, &self.layouts, group, resources)
-    }
-
-    /// Binds the resources of one group by their binding numbers.
+    /// Binds the resources of one group by their binding numbers, as `gpu::bindings` lists them.
     ///
     /// # Errors
     /// [`GpuError::Validation`] when the kernel belongs to another shader, and when the resources do not match
@@ -65,7 +61,7 @@ impl Kernel {
         gpu: &Gpu,
         shader: &'static Shader,
         group: u32,
-        resources: &[(u32, Resource<'_>)],
+        resources: &[(u32, wgpu::BindingResource<'_>)],
     ) -> Result<Group, GpuError> {
         if self.shader.name != shader.name {
             let reason = format!("resources of {} for the kernel {}", shader.name, self.shader.name);
@@ -85,7 +81,7 @@ impl Kernel {
     }
 
     /// Workgroups for `invocations` in one row, spread over x and y if they exceed the limit of one dimension.
-    pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
+    pub(crate) fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
@@ -95,20 +91,20 @@ impl Kernel {
     }
 
     /// Workgroups for `invocations` along x.
-    pub fn groups_for(&self, invocations: u32) -> u32 {
+    pub(crate) fn groups_for(&self, invocations: u32) -> u32 {
         invocations.div_ceil(self.workgroup_size()[0].max(1))
     }
 }
 
 /// Workgroups along x, y and z for `groups` in all, in rows as long as the device permits. For 0 groups the
 /// count along y is 0.
-pub fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
+pub(crate) fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]
 }
 
 /// Compiles a shader.
-pub fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
+pub(crate) fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(shader.name),
         source: wgpu::ShaderSource::Wgsl(shader.source.into()),
@@ -116,7 +112,7 @@ pub fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
 }
 
 /// A pipeline layout of all groups.
-pub fn pipeline_layout(
+pub(crate) fn pipeline_layout(
     gpu: &Gpu,
     shader: &Shader,
     layouts: &[wgpu::BindGroupLayout],
@@ -132,7 +128,7 @@ pub fn pipeline_layout(
 ///
 /// # Errors
 /// [`GpuError::Validation`] when the device's limits do not permit them.
-pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
+pub(crate) fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
     let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
     gpu.scoped(|| {
         (0..groups)
@@ -149,33 +145,6 @@ pub fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>,
                 })
             })
             .collect()
-    })
-}
-
-/// Binds the resources of one group, in the order of their bindings.
-///
-/// # Errors
-/// [`GpuError::Validation`] when they do not match the shader.
-pub fn bind(
-    gpu: &Gpu,
-    shader: &Shader,
-    layouts: &[wgpu::BindGroupLayout],
-    group: u32,
-    resources: &[Resource<'_>],
-) -> Result<Group, GpuError> {
-    let entries: Vec<_> = (shader.bindings.iter().filter(|binding| binding.group == group))
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry {
-            binding: binding.binding,
-            resource: resource.clone(),
-        })
-        .collect();
-    gpu.scoped(|| {
-        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(shader.name),
-            layout: &layouts[group as usize],
-            entries: &entries,
-        })
     })
 }
 

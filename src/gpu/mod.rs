@@ -10,8 +10,6 @@ pub(crate) mod bindings;
 mod buffer;
 mod job;
 mod kernel;
-#[cfg(test)]
-pub(crate) mod layout;
 mod memory;
 mod readback;
 pub mod shaders;
@@ -23,14 +21,14 @@ use std::time::Duration;
 
 pub use crate::error::GpuError;
 pub use adapter::{AdapterSummary, Options, adapters};
-pub(crate) use buffer::storage_bytes;
-pub use buffer::{Buffer, Uniform, storage};
+pub use buffer::{Buffer, Uniform};
 pub use job::{INVOCATIONS_A_SUBMISSION, IndirectJob, Job, Step, compute_pass};
-pub use kernel::{Group, Kernel, Resource, bind, layouts, module, pipeline_layout, rows_of_workgroups};
+pub(crate) use kernel::{Group, Kernel, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};
 
 use shared::Shared;
+pub(crate) use shared::{Drawing, Program};
 
 /// The longest wait for the device before it counts as hung.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -51,8 +49,8 @@ pub struct Gpu {
     summary: AdapterSummary,
     heard: Arc<Mutex<Heard>>,
     memory: Arc<Memory>,
-    pub(crate) kernels: Arc<Shared<Kernel>>,
-    pub(crate) render_pipelines: Arc<Shared<RenderPipeline>>,
+    kernels: Arc<Shared<Program, Kernel>>,
+    pub(crate) render_pipelines: Arc<Shared<Drawing, RenderPipeline>>,
 }
 
 /// A render pipeline with its bind group layouts.

@@ -1,26 +1,28 @@
 //! A cache of the pipelines compiled on a device, which all passes share.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::Mutex;
 
 use super::GpuError;
+use super::shaders::Shader;
 
-/// Compiled objects by the key from which they were compiled.
+/// Compiled pipelines by the key from which they were compiled.
 #[derive(Debug)]
-pub(crate) struct Shared<T>(Mutex<HashMap<String, T>>);
+pub(crate) struct Shared<K, T>(Mutex<HashMap<K, T>>);
 
-impl<T> Default for Shared<T> {
+impl<K, T> Default for Shared<K, T> {
     fn default() -> Self {
         Self(Mutex::default())
     }
 }
 
-impl<T: Clone> Shared<T> {
-    /// The object that was compiled for `key` before, or else the result of `compile`.
+impl<K: Eq + Hash, T: Clone> Shared<K, T> {
+    /// The pipeline that was compiled for `key` before, or else the result of `compile`.
     ///
     /// # Errors
     /// Errors of `compile`, which is tried again at the next call.
-    pub fn get(&self, key: String, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+    pub fn get(&self, key: K, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let all = || self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());
@@ -32,18 +34,57 @@ impl<T: Clone> Shared<T> {
     }
 }
 
+/// A shader with override constants.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Program {
+    /// Its name, which no other shader has.
+    shader: &'static str,
+    /// Name and bits of each value.
+    constants: Vec<(&'static str, u64)>,
+}
+
+impl Program {
+    pub fn new(shader: &'static Shader, constants: &[(&'static str, f64)]) -> Self {
+        let constants = constants.iter().map(|(name, value)| (*name, value.to_bits())).collect();
+        Self { shader: shader.name, constants }
+    }
+}
+
+/// What a render pipeline is compiled from. Its vertex entry and the layout of its vertices are the shader's.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Drawing {
+    pub program: Program,
+    /// The fragment entry.
+    pub fragment: &'static str,
+    pub color: wgpu::TextureFormat,
+    pub topology: wgpu::PrimitiveTopology,
+    /// Triangles that are left out.
+    pub cull: Option<wgpu::Face>,
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::gpu::{Gpu, Kernel, Options, shaders};
+    use super::*;
+    use crate::gpu::bindings::terrain::height::{Constants, kernel};
+    use crate::gpu::{Gpu, Options, shaders};
 
     #[test]
     fn a_device_compiles_a_pipeline_once() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
-        let height = |gpu: &Gpu, rows| {
-            Kernel::new(gpu, &shaders::TERRAIN_HEIGHT, &[("CELL_ROWS", rows)]).expect("compiled").pipeline
+        let height = |gpu: &Gpu, cell_rows| {
+            kernel(gpu, &Constants { cell_rows, ..Constants::default() }).expect("compiled").pipeline
         };
-        let first = height(&gpu, 2.0);
-        assert!(height(&gpu, 2.0) == first && height(&gpu.clone(), 2.0) == first);
-        assert!(height(&gpu, 3.0) != first, "other constants, another pipeline");
+        let first = height(&gpu, 2);
+        assert!(height(&gpu, 2) == first && height(&gpu.clone(), 2) == first);
+        assert!(height(&gpu, 3) != first, "other constants, another pipeline");
+    }
+
+    #[test]
+    fn programs_differ_by_shader_and_bits() {
+        let program = |value| Program::new(&shaders::TERRAIN_HEIGHT, &[("CELL_ROWS", value)]);
+        assert_eq!(program(2.0), program(2.0));
+        assert_ne!(program(0.0), program(-0.0));
+        assert_ne!(program(2.0), Program::new(&shaders::TERRAIN_MORPH, &[("CELL_ROWS", 2.0)]));
+        assert_ne!(program(2.0), Program::new(&shaders::TERRAIN_HEIGHT, &[]));
     }
 }

@@ -32,10 +32,10 @@ pub struct Character<'a> {
     pub matrices: &'a ModelMatrices,
     /// The transforms from the model's space into the world, one per instance. They may mirror.
     pub placements: &'a Buffer<Affine>,
-    /// World units up to which every influence counts, and from which on vertices follow one bone, as [`LodView::projected_distance`]
-    /// counts them.
+    /// The distances, in world units as [`LodView::projected_distance`] measures them, up to which every influence
+    /// counts, and from which on vertices follow one bone.
     pub fade_range: [f32; 2],
-    /// Distances, counted likewise and not descending, from which on levels 1, 2 … of the character are used:
+    /// Distances, measured likewise and not descending, from which on levels 1, 2 … of the character are used:
     /// those at which each of its [`level_errors`](crate::skinning::level_errors) is permitted, as computed by
     /// [`Extent::level_ranges`](crate::skinning::Extent::level_ranges). If empty, the meshes themselves are
     /// drawn.

@@ -1,30 +1,17 @@
 //! Draws meshes with relief in the caller's render pass.
 
-use encase::ShaderType;
 use glam::{Mat4, Vec4};
 
-use crate::gpu::{Gpu, GpuError, Group, Uniform, bind, shaders};
+use crate::gpu::{Gpu, GpuError, Group, Uniform, shaders};
 use crate::render::color::ColorTexture;
-use crate::render::pipeline::Draws;
+use crate::render::pipeline::{Draws, bind};
+use crate::shared::render::relief::ReliefView;
+use crate::shared::surface::ray::SurfaceMarch;
 use crate::surface::material::{Green, Material, Shadow};
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::relief::{March, Method, SurfaceMarch};
+use crate::surface::relief::{March, Method};
 use crate::{Error, InputError};
-
-/// The shader's `ReliefView`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct ReliefView {
-    pub clip_from_world: Mat4,
-    pub eye: Vec4,
-    pub light: Vec4,
-    pub range: Vec4,
-    pub scale: f32,
-    pub plane: f32,
-    pub world: f32,
-    pub shadow_steps: u32,
-    pub softness: f32,
-}
 
 /// Options that are fixed when a pipeline is compiled. [`Material`] has the parameters that may change without
 /// a new pipeline.
@@ -122,8 +109,7 @@ impl ReliefRenderer {
                 attributes: &ATTRIBUTES,
             })],
         };
-        let key = format!("{} {color:?} {options:?}", shaders::RENDER_RELIEF.name);
-        let (pipeline, layouts) = gpu.render_pipelines.get(key, || draws.compile(gpu, color))?;
+        let (pipeline, layouts) = draws.pipeline(gpu, color)?;
         Ok(Self { pipeline, layouts, options })
     }
 
@@ -241,12 +227,4 @@ impl ReliefScene {
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.count, 0, 0..1);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(relief_view_layout: ReliefView = RENDER_RELIEF "ReliefView");
 }

@@ -2,32 +2,21 @@
 //! two indirect draws, the second for those that are mirrored. A mesh has one material: a model with several is
 //! drawn mesh by mesh.
 
-use encase::ShaderType;
-use glam::{Mat4, Vec4};
+use glam::Mat4;
 
 use crate::asset::material::Alpha;
 use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, bind, shaders};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, RenderPipeline, Uniform, shaders};
 use crate::render::albedo::Albedo;
-use crate::render::pipeline::Draws;
+use crate::render::pipeline::{Draws, bind};
+use crate::shared::render::skinned::SkinnedView;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::ClusterLevel;
 use crate::skinning::lod::{draws_at, list_stride};
 use crate::skinning::picture::{Light, is_mirrored};
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
-
-/// The shader's `SkinnedView`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SkinnedView {
-    pub clip_from_world: Mat4,
-    pub light: Vec4,
-    pub color: Vec4,
-    pub vertices: u32,
-    pub cutoff: f32,
-    pub side: f32,
-}
 
 /// Draws meshes on targets of one format.
 #[derive(Debug, Clone)]
@@ -88,8 +77,7 @@ impl SkinnedRenderer {
             },
             vertices: &[],
         };
-        let key = format!("{} {:?} {sides:?} {}", draws.shader.name, self.color, draws.fragment);
-        gpu.render_pipelines.get(key, || draws.compile(gpu, self.color))
+        draws.pipeline(gpu, self.color)
     }
 
     /// Binds instances. Until [`SkinnedScene::arguments`] is written, the first list is drawn with as many
@@ -238,7 +226,6 @@ impl SkinnedScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::layout::layout_test;
 
     #[test]
     fn lists_are_whole() {
@@ -248,6 +235,4 @@ mod tests {
             assert_eq!(lists(words, places).expect_err("refused").path, "drawn.len");
         }
     }
-
-    layout_test!(skinned_view_layout: SkinnedView = RENDER_SKINNED "SkinnedView");
 }

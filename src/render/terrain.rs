@@ -2,26 +2,19 @@
 
 mod scene;
 
-use encase::ShaderType;
 use glam::Mat4;
 
 pub use scene::{FieldsId, TerrainScene};
 
-use crate::gpu::{Buffer, Gpu, GpuError, Uniform, bind, shaders, storage};
-use crate::render::pipeline::Draws;
-use crate::terrain::blend::{Light, Shading, ZoneRange};
+use crate::gpu::{Buffer, Gpu, GpuError, Uniform, shaders};
+use crate::render::pipeline::{Draws, bind};
+use crate::shared::render::terrain::View;
+use crate::shared::terrain::light::Light;
+use crate::shared::terrain::zones;
+use crate::terrain::blend::Shading;
 use crate::terrain::config::Zone;
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
-
-/// The shader's `View`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct View {
-    pub clip_from_world: Mat4,
-    pub light: Light,
-    pub zone_count: u32,
-    pub additive: u32,
-}
 
 /// How terrain is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,7 +40,6 @@ impl TerrainRenderer {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, style: Style) -> Result<Self, GpuError> {
-        let key = format!("{} {color:?} {style:?}", shaders::RENDER_TERRAIN.name);
         let draws = Draws {
             shader: &shaders::RENDER_TERRAIN,
             fragment: "fragment",
@@ -56,7 +48,7 @@ impl TerrainRenderer {
             cull: None,
             vertices: &[],
         };
-        let (pipeline, layouts) = gpu.render_pipelines.get(key, || draws.compile(gpu, color))?;
+        let (pipeline, layouts) = draws.pipeline(gpu, color)?;
         Ok(Self { pipeline, layouts })
     }
 
@@ -95,7 +87,7 @@ impl TerrainRenderer {
 /// Zone ranges and textures on the device.
 #[derive(Debug, Clone)]
 pub struct Materials {
-    zones: Buffer<u8>,
+    zones: Buffer<zones::Zone>,
     zone_count: u32,
     textures: wgpu::Texture,
     sampler: wgpu::Sampler,
@@ -111,9 +103,9 @@ impl Materials {
             let bound = format!("must be one for each of the {} zones", zones.len());
             return Err(InputError::new("textures", textures.len(), bound).into());
         }
-        let ranges: Vec<_> =
-            (zones.iter()).map(|zone| ZoneRange { min: zone.min as f32, max: zone.max as f32 }).collect();
-        let zone_buffer = storage(gpu, "zones", &ranges)?;
+        let range = |zone: &Zone| zones::Zone { min: zone.min as f32, max: zone.max as f32 };
+        let ranges: Vec<_> = zones.iter().map(range).collect();
+        let zone_buffer = Buffer::from_slice(gpu, "zones", &ranges)?;
         let (textures, sampler) = gpu.scoped(|| (upload(gpu, textures), sampler(gpu)))?;
         Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
     }
@@ -163,12 +155,4 @@ fn sampler(gpu: &Gpu) -> wgpu::Sampler {
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(view_layout: View = RENDER_TERRAIN "View");
 }

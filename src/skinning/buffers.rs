@@ -9,10 +9,15 @@ use crate::asset::Model;
 use crate::asset::mesh::{MAX_LEVELS, Mesh};
 use crate::asset::morph::MorphTarget;
 use crate::asset::transform::rows;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
+use crate::shared::skinning::select::Dispatched;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
+
+impl SeenAs<[f32; 2]> for Vertex {}
+impl SeenAs<Dispatched> for u32 {}
 
 /// A mesh on the device, and the skin that it follows. Vertices lie in clusters; see [`Clusters::order`].
 #[derive(Debug, Clone)]
@@ -171,7 +176,7 @@ pub struct ActiveClusters {
 }
 
 /// Number of words in [`ActiveClusters::dispatched`].
-pub const DISPATCHED_WORDS: usize = 5;
+pub const DISPATCHED_WORDS: usize = size_of::<Dispatched>() / size_of::<u32>();
 
 impl ActiveClusters {
     /// Allocates a list with room for all clusters of all instances. It is empty at first.

@@ -3,21 +3,7 @@
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
-
-/// The level of detail of one instance: its influences and its vertices.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct InstanceLod {
-    /// The λ of `fade`, 0 to 1.
-    pub influence_fade: f32,
-    /// The k of `truncate`, at least 1; 0 for an instance that is not seen, which is not skinned.
-    pub max_influences: u32,
-    /// The character's level of detail. Level 0 stands for the meshes themselves; at level n each mesh uses the
-    /// coarsest of its [`Mesh::levels`](crate::asset::Mesh::levels) whose error is at most the n-th of
-    /// [`level_errors`](super::level_errors). A number beyond the last level means the last.
-    pub mesh_lod: u32,
-}
+pub use crate::shared::skinning::instance_lod::InstanceLod;
 
 impl InstanceLod {
     /// All influences of all vertices.

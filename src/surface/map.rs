@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::shared::surface::ray;
 use crate::{Error, InputError};
 
 /// The longest edge of a map in texels: WebGPU's default limit for a texture.
@@ -10,12 +11,13 @@ pub const MAP_EDGE: u32 = 8192;
 /// What lies beyond the edge of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
+#[repr(u32)]
 pub enum Address {
     /// The map repeats.
     #[default]
-    Wrap,
+    Wrap = ray::SURFACE_WRAP,
     /// The texels at the edge continue without end.
-    Clamp,
+    Clamp = ray::SURFACE_CLAMP,
 }
 
 impl Address {
@@ -27,7 +29,7 @@ impl Address {
         }
     }
 
-    /// The value for the shaders: `SURFACE_WRAP` or `SURFACE_CLAMP` of `wgsl/surface/ray.wgsl`.
+    /// The value for the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }

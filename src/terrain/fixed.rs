@@ -1,6 +1,7 @@
 //! Exact arithmetic of heights: the CPU reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
+use crate::shared::terrain::features;
 use crate::terrain::config::{Config, Offset};
 
 /// The mean of four heights, rounded half up.
@@ -71,8 +72,8 @@ impl FeatureMode {
     /// The value of the shaders' `FEATURES` for this mode; 0 means that there are no features.
     pub fn code(self) -> u32 {
         match self {
-            Self::Keep => 1,
-            Self::Additive => 2,
+            Self::Keep => features::FEATURES_KEEP,
+            Self::Additive => features::FEATURES_ADDITIVE,
         }
     }
 }

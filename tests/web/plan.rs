@@ -13,7 +13,6 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("render/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
-    ("surface/cone_map", "OPENING", &[2.0]),
     ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("surface/shade", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("terrain/despike", "FEATURES", &[0.0, 1.0]),

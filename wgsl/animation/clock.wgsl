@@ -4,7 +4,7 @@
 const WRAP_CLAMP = 1u;
 
 // After this many turns, f32 cannot resolve a position in a clip.
-const MAX_TURNS = 16777216.0;
+const MAX_TURNS: f32 = 16777216.0;
 
 // Converts a time in clip seconds, which may be negative, to seconds since the clip's start, 0 to `duration`. A
 // loop never returns `duration` itself, and returns 0 for times too large to resolve.

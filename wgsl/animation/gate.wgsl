@@ -3,6 +3,7 @@
 import package::wgsl::animation::gated::bits::bits;
 import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
+import package::wgsl::animation::order::NO_PARENT;
 
 // One of the constants below.
 override MODE: u32 = 0;
@@ -108,7 +109,6 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     return chosen;
 }
 
-const NO_PARENT = 0xffffffffu;
 // More than is ever permitted.
 const EVERYTHING = 1u << 30u;
 // The encoding of a bone's error budget: above the lowest 8 bits its fraction of what is left, in the lowest

@@ -14,10 +14,11 @@ struct Lod {
     flags: u32,
 }
 
-// Flags: nothing is sampled; everything is sampled in this frame.
+// The instance is not in view: it costs nothing, and is sampled in full when it comes back.
 const LOD_HIDDEN = 1u;
+// The instance is sampled in full this frame, whatever the gate says.
 const LOD_REFRESH = 2u;
-// Full detail.
+// The value of `Lod::omega` at full detail.
 const OMEGA_ONE = 65536u;
 
 // The position of an instance on the common timeline of its clip.

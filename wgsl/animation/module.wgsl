@@ -4,6 +4,8 @@
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::clip::ClipEntry;
 import package::wgsl::animation::clock::{WRAP_CLAMP, inside_clip};
+import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_SPLINE, INTERPOLATION_STEP};
+import package::wgsl::animation::order::{CONTINUES, NO_PARENT};
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 import package::wgsl::animation::gate_state::{LOD_HIDDEN, LOD_REFRESH, Lod, OMEGA_ONE, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};

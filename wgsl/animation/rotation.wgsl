@@ -1,10 +1,12 @@
 // Interpolation of unit quaternions whose dot product is not negative.
 
-// Coefficients of Eberly's polynomial (Eberly 2011) for halved arcs: 1/(i(2i + 1)), the last one multiplied by
-// 1.15.
-const SLERP_U = array<f32, 5>(1.0 / 3.0, 1.0 / 10.0, 1.0 / 21.0, 1.0 / 36.0, 1.15 / 55.0);
-// Coefficients i/(2i + 1), with the same factor on the last.
-const SLERP_V = array<f32, 5>(1.0 / 3.0, 2.0 / 5.0, 3.0 / 7.0, 4.0 / 9.0, 1.15 * 5.0 / 11.0);
+// The factor that minimizes the largest error of five terms on halved arcs.
+const SLERP_REST: f32 = 1.15;
+// Coefficients of Eberly's polynomial (Eberly 2011) for cosines from √½ to 1: 1/(i(2i + 1)) for i from 1 to 5. The last one
+// compensates for omitted terms.
+const SLERP_U = array<f32, 5>(1.0 / 3.0, 1.0 / 10.0, 1.0 / 21.0, 1.0 / 36.0, SLERP_REST / 55.0);
+// Coefficients i/(2i + 1), with the same compensation.
+const SLERP_V = array<f32, 5>(1.0 / 3.0, 2.0 / 5.0, 3.0 / 7.0, 4.0 / 9.0, SLERP_REST * 5.0 / 11.0);
 
 // sin(t theta) / sin(theta) for less_one = cos(theta) - 1, for two values of t at once.
 fn slerp_weights(t: vec2<f32>, less_one: f32) -> vec2<f32> {

@@ -1,9 +1,11 @@
-// How an instance is skinned: its influences and its level of detail.
+// The level of detail of one instance: its influences and its vertices.
 struct InstanceLod {
-    // Fade of the influences: 0 is full quality, 1 is rigid.
+    // The λ of `fade`: 0 is full quality, 1 is rigid.
     influence_fade: f32,
-    // The largest number of influences; 0 for an instance that is not seen and not skinned.
+    // The k of `truncate`, the largest number of influences, at least 1; 0 for an instance that is not seen, which is not
+    // skinned.
     max_influences: u32,
-    // Level of detail: 0 is the mesh itself. A number beyond the last level means the last level.
+    // The character's level of detail. Level 0 stands for the meshes themselves; at level n each mesh uses the coarsest of
+    // its `Mesh::levels` whose error is at most the n-th of `level_errors`. A number beyond the last level means the last.
     mesh_lod: u32,
 }

@@ -15,12 +15,11 @@ const SURFACE_EXHAUSTED: u32 = 2u;
 // so that no step divides by a value close to 0.
 const SURFACE_LEAST_COSINE: f32 = 0.0078125;
 
-// A ray through the volume, in tangent space.
+// A ray through the relief volume, in tangent space: at parameter t it is at uv origin + t · slope and height 1 − t.
 struct SurfaceRay {
     // uv where the ray enters the volume, at height 1.
     origin: vec2<f32>,
-    // Change of uv while the ray falls to height 0: at parameter t the ray is at origin + t · slope, height 1 −
-    // t.
+    // Change of uv while the ray falls to height 0.
     slope: vec2<f32>,
     // Cosine of the angle between the eye and the normal; a ray with 0 or less is a miss.
     cosine: f32,
@@ -41,7 +40,7 @@ struct SurfaceMarch {
     mip: u32,
 }
 
-// The result of a method.
+// The result of a ray.
 struct SurfaceHit {
     // Displaced texture coordinates; outside the tile if the ray left it.
     uv: vec2<f32>,
@@ -52,7 +51,7 @@ struct SurfaceHit {
     // Number of texels loaded, including those of acceleration maps.
     samples: u32,
     // SURFACE_MISS, SURFACE_HIT or SURFACE_EXHAUSTED.
-    outcome: u32,
+    outcome_code: u32,
 }
 
 // The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space, `scale` the

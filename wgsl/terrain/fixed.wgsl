@@ -2,7 +2,7 @@
 // within the bound that the host checks (2^30 - 1), so every device gives the same bits.
 
 // The largest absolute height, in 1/65536 units.
-const HEIGHT_LIMIT = 0x3fffffff;
+const HEIGHT_LIMIT: i32 = 0x3fffffff;
 
 // The mean of four heights, rounded half up, for four lanes at once.
 fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {

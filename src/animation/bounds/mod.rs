@@ -27,15 +27,6 @@ pub mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{BoundsPass, Share};
 
-/// The factor by which extents are enlarged.
-pub const BOUNDS_GROWTH: f32 = 1.0 + 1.0 / 524_288.0;
-
-/// The fraction of the centre's distance that is added to extents.
-pub const BOUNDS_OF_CENTRE: f32 = 1.0 / 2_097_152.0;
-
-/// The length that is added to a row, 2⁻⁶², for squares that are flushed to 0.
-pub const BOUNDS_LEAST: f32 = 2.168_404_3e-19;
-
 /// The largest difference allowed between a side and the reference, on any device, relative to the largest
 /// side: 14ε and 6ε of the extent, 4ε of the centre and 2ε of the side from either: 52ε < 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;

@@ -2,10 +2,13 @@
 
 use super::{Bounds, check_bone_radii};
 use crate::animation::crowd::Crowd;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::bounds as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::animation::bounds::BoundsParams;
+use crate::shared::animation::bounds::{BoundsParams, THREADS};
 use crate::{Error, InputError};
+
+impl SeenAs<[f32; 4]> for Bounds {}
 
 /// The threads that handle the bones of one instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +70,7 @@ impl BoundsPass {
             bounds: bounds.slice().cast(),
         };
         let threads = match self.share {
-            Share::Workgroup => 64 * params.instances,
+            Share::Workgroup => THREADS * params.instances,
             Share::Whole => params.instances,
         };
         let step = Step {

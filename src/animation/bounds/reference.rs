@@ -1,7 +1,8 @@
 //! Bounds of instances: the CPU reference of `kernels/animation/bounds.wgsl`.
 
-use crate::animation::bounds::{BOUNDS_GROWTH, BOUNDS_LEAST, BOUNDS_OF_CENTRE, Bounds};
+use crate::animation::bounds::Bounds;
 use crate::asset::transform::Affine;
+use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTRE};
 
 /// The bounds of each instance, from its model matrices and the radius of each bone.
 ///
@@ -20,8 +21,7 @@ fn around(model_matrices: &[Affine], bone_radii: &[f32]) -> Bounds {
     for (model, bone_radius) in model_matrices.iter().zip(bone_radii) {
         for (axis, [x, y, z, centre]) in model.iter().enumerate() {
             let length = (x * x + y * y + z * z).sqrt();
-            let half =
-                bone_radius * (length + BOUNDS_LEAST) * BOUNDS_GROWTH + centre.abs() * BOUNDS_OF_CENTRE;
+            let half = bone_radius * (length + LEAST) * GROWTH + centre.abs() * OF_CENTRE;
             bounds.low[axis] = bounds.low[axis].min(centre - half);
             bounds.high[axis] = bounds.high[axis].max(centre + half);
         }

@@ -7,10 +7,7 @@ use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::Kind;
 use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM};
-
-/// Words of the tally before those of the instances.
-const TALLY: usize = 1027;
+use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM, TIES};
 
 /// Decides which bones are sampled.
 #[derive(Debug, Clone)]
@@ -53,7 +50,7 @@ impl BudgetPass {
         let words = params.instances * params.words;
         let uniform = Uniform::new(gpu, "budget", &params)?;
         let ranks: Buffer<u32> = Buffer::new(gpu, "ranks", 17 * words as usize)?;
-        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TALLY + gate_state.lods.len())?;
+        let tally: Buffer<u32> = Buffer::new(gpu, "tally", TIES as usize + gate_state.lods.len())?;
         let group = bindings::Group {
             params: &uniform,
             lods: gate_state.lods.slice(),
@@ -103,16 +100,5 @@ impl BudgetJob {
     /// Adds the decision to a compute pass that is being recorded.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.job.dispatch(pass);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ties_begin_behind_the_tally() {
-        let shader = &crate::gpu::shaders::ANIMATION_BUDGET;
-        assert_eq!(crate::gpu::layout::constant(shader, "TIES"), Some(TALLY as u32));
     }
 }

@@ -6,6 +6,7 @@
 //! used.
 
 pub use crate::shared::animation::clip_clock::BLENDED;
+use crate::shared::animation::gate_state;
 pub use crate::shared::animation::gate_state::ClipClock;
 
 #[cfg(feature = "verify")]
@@ -24,14 +25,14 @@ pub use pass::{ClipClockJob, ClipClockPass};
 #[repr(u32)]
 pub enum UpdateReason {
     /// There is none: the gate decides.
-    Free = 0,
+    Free = gate_state::UPDATE_REASON_FREE,
     /// The instance is not seen: nothing is sampled.
-    Hidden = 1,
+    Hidden = gate_state::UPDATE_REASON_HIDDEN,
     /// The stored pose is invalid: everything is sampled.
-    Forced = 2,
+    Forced = gate_state::UPDATE_REASON_FORCED,
     /// Layers have weight above the clip: gates that decide by motion sample everything, other gates decide for
     /// every bone.
-    Blended = 3,
+    Blended = gate_state::UPDATE_REASON_BLENDED,
 }
 
 impl UpdateReason {
@@ -61,9 +62,9 @@ impl ClipClock {
     /// The reason, other than time, to update the pose.
     pub fn reason(&self) -> UpdateReason {
         match self.fraction_and_reason >> 20 {
-            0 => UpdateReason::Free,
-            1 => UpdateReason::Hidden,
-            2 => UpdateReason::Forced,
+            gate_state::UPDATE_REASON_FREE => UpdateReason::Free,
+            gate_state::UPDATE_REASON_HIDDEN => UpdateReason::Hidden,
+            gate_state::UPDATE_REASON_FORCED => UpdateReason::Forced,
             _ => UpdateReason::Blended,
         }
     }

@@ -35,19 +35,9 @@ impl ClipClockPass {
         gate_state: &GateState,
     ) -> Result<ClipClockJob, Error> {
         let time = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
-        let group = bindings::Group {
-            clip_clock_params: &time.uniform,
-            instances: crowd.instances.slice(),
-            clips: clips.clips.slice(),
-            timelines: clips.timelines.slice().cast(),
-            times: clips.times.slice(),
-            lods: gate_state.lods.slice(),
-            layer_weights: crowd.layer_weights.slice(),
-            history: gate_state.history.slice(),
-            clip_clocks: gate_state.clip_clocks.slice(),
-        };
+        let group = group(&time, clips, crowd, gate_state).bind(gpu, &self.kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.params.instances),
             kernel: self.kernel.clone(),
         };
@@ -55,11 +45,31 @@ impl ClipClockPass {
     }
 }
 
+/// What phases are found from, and where they are written.
+pub(crate) fn group<'a>(
+    time: &'a ClipClockTime,
+    clips: &'a ClipBuffers,
+    crowd: &'a Crowd,
+    gate_state: &'a GateState,
+) -> bindings::Group<'a> {
+    bindings::Group {
+        clip_clock_params: &time.uniform,
+        instances: crowd.instances.slice(),
+        clips: clips.clips.slice(),
+        timelines: clips.timelines.slice().cast(),
+        times: clips.times.slice(),
+        lods: gate_state.lods.slice(),
+        layer_weights: crowd.layer_weights.slice(),
+        history: gate_state.history.slice(),
+        clip_clocks: gate_state.clip_clocks.slice(),
+    }
+}
+
 /// The time of the next submission.
 #[derive(Debug, Clone)]
 pub(crate) struct ClipClockTime {
     params: ClipClockParams,
-    pub(crate) uniform: Uniform<ClipClockParams>,
+    uniform: Uniform<ClipClockParams>,
 }
 
 impl ClipClockTime {

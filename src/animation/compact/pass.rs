@@ -64,17 +64,7 @@ impl CompactPass {
     ) -> Result<CompactJob, Error> {
         let params = CompactParams::new(gpu, crowd, active);
         let uniform = Uniform::new(gpu, "compact", &params)?;
-        let group = bindings::Group {
-            bits: active.bits.slice(),
-            compact_params: &uniform,
-            slots: active.slots.slice().cast(),
-            updated_bones: active.updated_bones.slice(),
-            counts: active.counts.slice(),
-            pairs: active.pairs.pairs.slice(),
-            pair_dispatch: active.pairs.dispatched.slice().cast(),
-            updated_instances: active.instances.slice(),
-            instance_dispatches: active.dispatches.slice(),
-        };
+        let group = group(&uniform, active);
         let step = |kernel: &Kernel, threads: u32| {
             Ok::<_, GpuError>(Step {
                 groups: vec![group.bind(gpu, kernel)?],
@@ -92,6 +82,21 @@ impl CompactPass {
             ],
         };
         Ok(Job::new(gpu, "animation/compact", steps)?)
+    }
+}
+
+/// The bits that lists are made of, and the lists.
+pub(crate) fn group<'a>(uniform: &'a Uniform<CompactParams>, active: &'a Active) -> bindings::Group<'a> {
+    bindings::Group {
+        bits: active.bits.slice(),
+        compact_params: uniform,
+        slots: active.slots.slice().cast(),
+        updated_bones: active.updated_bones.slice(),
+        counts: active.counts.slice(),
+        pairs: active.pairs.pairs.slice(),
+        pair_dispatch: active.pairs.dispatched.slice().cast(),
+        updated_instances: active.instances.slice(),
+        instance_dispatches: active.dispatches.slice(),
     }
 }
 

@@ -3,14 +3,15 @@
 use super::Choice;
 use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
-use crate::animation::clip_clock::pass::ClipClockTime;
+use crate::animation::clip_clock::pass::{self as clip_clock, ClipClockTime};
 use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
+use crate::animation::compact::pass as compact;
 use crate::animation::compact::{CompactJob, CompactPass, Stages};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate, GateTime};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
-use crate::gpu::bindings::animation::decide as bindings;
+use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::CompactParams;
@@ -127,7 +128,7 @@ fn whole(gpu: &Gpu, gate: Gate) -> Result<Kernel, GpuError> {
             remedy: "take Dispatches::Each, as Dispatches::of would",
         });
     }
-    bindings::kernel(gpu, &bindings::Constants { mode: gate::mode(gate) })
+    bindings::decide::kernel(gpu, &bindings::decide::Constants { mode: gate::mode(gate) })
 }
 
 fn one(
@@ -142,33 +143,46 @@ fn one(
     let clip_clock = ClipClockTime::new(gpu, clips, crowd, gate_state)?;
     let gate = GateTime::new(gpu, gate, crowd, gate_state, active)?;
     let compact = Uniform::new(gpu, "compact", &CompactParams::new(gpu, crowd, active))?;
-    let group = bindings::Group {
-        clip_clock_params: &clip_clock.uniform,
-        instances: crowd.instances.slice(),
-        clips: clips.clips.slice(),
-        timelines: clips.timelines.slice().cast(),
-        times: clips.times.slice(),
-        lods: gate_state.lods.slice(),
-        layer_weights: crowd.layer_weights.slice(),
-        history: gate_state.history.slice(),
-        clip_clocks: gate_state.clip_clocks.slice(),
-        gate_params: &gate.uniform,
-        animated_bones: gate_state.animated_bones.slice(),
-        table: gate_state.table.slice(),
-        sampled: gate_state.sampled.slice(),
-        remaining: gate_state.remaining.slice(),
-        bits: active.bits.slice(),
-        compact_params: &compact,
-        slots: active.slots.slice().cast(),
-        updated_bones: active.updated_bones.slice(),
-        counts: active.counts.slice(),
-        pairs: active.pairs.pairs.slice(),
-        pair_dispatch: active.pairs.dispatched.slice().cast(),
-        updated_instances: active.instances.slice(),
-        instance_dispatches: active.dispatches.slice(),
-    };
+    let group = group(
+        clip_clock::group(&clip_clock, clips, crowd, gate_state),
+        gate::group(&gate, gate_state, active),
+        compact::group(&compact, active),
+    );
     let step = Step { groups: vec![group.bind(gpu, kernel)?], workgroups: [1; 3], kernel: kernel.clone() };
     Ok(Work::One { clip_clock, gate, job: Job::new(gpu, "animation/decide", vec![step])? })
+}
+
+/// The resources of all three kernels that `animation/decide` stands for.
+fn group<'a>(
+    clip_clock: bindings::clip_clock::Group<'a>,
+    gate: bindings::gate::Group<'a>,
+    compact: bindings::compact::Group<'a>,
+) -> bindings::decide::Group<'a> {
+    bindings::decide::Group {
+        clip_clock_params: clip_clock.clip_clock_params,
+        instances: clip_clock.instances,
+        clips: clip_clock.clips,
+        timelines: clip_clock.timelines,
+        times: clip_clock.times,
+        lods: clip_clock.lods,
+        layer_weights: clip_clock.layer_weights,
+        history: clip_clock.history,
+        clip_clocks: clip_clock.clip_clocks,
+        gate_params: gate.gate_params,
+        animated_bones: gate.animated_bones,
+        table: gate.table,
+        sampled: gate.sampled,
+        remaining: gate.remaining,
+        bits: gate.bits,
+        compact_params: compact.compact_params,
+        slots: compact.slots,
+        updated_bones: compact.updated_bones,
+        counts: compact.counts,
+        pairs: compact.pairs,
+        pair_dispatch: compact.pair_dispatch,
+        updated_instances: compact.updated_instances,
+        instance_dispatches: compact.instance_dispatches,
+    }
 }
 
 impl Decider {

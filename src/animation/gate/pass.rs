@@ -42,22 +42,31 @@ impl GatePass {
         active: &Active,
     ) -> Result<GateJob, Error> {
         let time = GateTime::new(gpu, self.gate, crowd, gate_state, active)?;
-        let group = bindings::Group {
-            lods: gate_state.lods.slice(),
-            clip_clocks: gate_state.clip_clocks.slice(),
-            gate_params: &time.uniform,
-            animated_bones: gate_state.animated_bones.slice(),
-            table: gate_state.table.slice(),
-            sampled: gate_state.sampled.slice(),
-            remaining: gate_state.remaining.slice(),
-            bits: active.bits.slice(),
-        };
+        let group = group(&time, gate_state, active).bind(gpu, &self.kernel)?;
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![group],
             workgroups: self.kernel.spread(gpu, time.threads(self.gate)),
             kernel: self.kernel.clone(),
         };
         Ok(GateJob { time, job: Job::new(gpu, "animation/gate", vec![step])? })
+    }
+}
+
+/// What a gate decides from, and its decision.
+pub(crate) fn group<'a>(
+    time: &'a GateTime,
+    gate_state: &'a GateState,
+    active: &'a Active,
+) -> bindings::Group<'a> {
+    bindings::Group {
+        lods: gate_state.lods.slice(),
+        clip_clocks: gate_state.clip_clocks.slice(),
+        gate_params: &time.uniform,
+        animated_bones: gate_state.animated_bones.slice(),
+        table: gate_state.table.slice(),
+        sampled: gate_state.sampled.slice(),
+        remaining: gate_state.remaining.slice(),
+        bits: active.bits.slice(),
     }
 }
 
@@ -76,7 +85,7 @@ pub(crate) fn mode(gate: Gate) -> u32 {
 #[derive(Debug, Clone)]
 pub(crate) struct GateTime {
     params: GateParams,
-    pub(crate) uniform: Uniform<GateParams>,
+    uniform: Uniform<GateParams>,
 }
 
 impl GateTime {

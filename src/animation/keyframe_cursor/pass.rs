@@ -2,13 +2,18 @@
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::clip_set::ClipSet;
+use crate::animation::clip_set::{ClipSet, Timeline};
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::{Instance, check_elapsed};
+use crate::asset::keyframe::KeyframeCursor;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
+
+impl SeenAs<[u32; 2]> for Timeline {}
+impl SeenAs<[u32; 2]> for KeyframeCursor {}
 
 /// Finds the keyframe cursors of instances.
 #[derive(Debug, Clone)]

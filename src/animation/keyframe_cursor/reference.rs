@@ -4,9 +4,7 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::instance::Wrap;
 use crate::asset::keyframe::{KeyframeCursor, keyframe_cursor};
-
-/// After this many turns, `f32` cannot resolve a position in a clip.
-const MAX_TURNS: f32 = 16_777_216.0;
+use crate::shared::animation::clock::MAX_TURNS;
 
 /// The time inside the clip, in seconds since its start; 0 for a loop whose time is too large to resolve. It
 /// computes in the order of `wgsl/animation/clock.wgsl`; [`Wrap::inside`] is more exact for large times.

@@ -2,12 +2,16 @@
 
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::order::{Order, Slot};
+use crate::animation::order::{Chain, Order, Slot};
 use crate::asset::skeleton::Skeleton;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::local_to_model as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::local_to_model::LocalToModelParams;
 use crate::{Error, InputError};
+
+impl SeenAs<[u32; 4]> for Slot {}
+impl SeenAs<[u32; 2]> for Chain {}
 
 /// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,7 +143,7 @@ impl Nothing {
 struct Binder<'a> {
     order: Order,
     slots: Buffer<Slot>,
-    chains: Buffer<crate::animation::order::Chain>,
+    chains: Buffer<Chain>,
     crowd: &'a Crowd,
 }
 

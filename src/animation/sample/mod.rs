@@ -12,6 +12,7 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub mod verify;
 
+pub use crate::shared::animation::rotation::{SLERP_U, SLERP_V};
 #[cfg(feature = "gpu")]
 pub use pass::{SampleActiveJob, SamplePass};
 
@@ -33,13 +34,3 @@ pub const SAMPLE_BOUND: f32 = 1e-5;
 /// The blend of two unit quaternions less than 90° apart has a length of at least √½, so normalizing enlarges
 /// its error by at most √2 and adds 16ε: √2·e + 33ε, where 33ε = 2e-6 is a fifth of the smallest e.
 pub const LAYER_GROWTH: f32 = 1.65;
-
-/// Coefficients of Eberly's polynomial for cosines from √½ to 1: 1/(i(2i + 1)) for i from 1 to 5. The last one
-/// compensates for omitted terms.
-pub const SLERP_U: [f32; 5] = [1.0 / 3.0, 1.0 / 10.0, 1.0 / 21.0, 1.0 / 36.0, REST / 55.0];
-
-/// Coefficients i/(2i + 1), with the same compensation.
-pub const SLERP_V: [f32; 5] = [1.0 / 3.0, 2.0 / 5.0, 3.0 / 7.0, 4.0 / 9.0, REST * 5.0 / 11.0];
-
-/// The factor that minimizes the largest error of five terms on halved arcs.
-const REST: f32 = 1.15;

@@ -1,12 +1,16 @@
 //! The GPU pass of `kernels/animation/sample.wgsl`.
 
 use crate::animation::active::ActivePairs;
+use crate::animation::clip_set::SetTrack;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::asset::keyframe::RotationPath;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::sample as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
+
+impl SeenAs<[u32; 2]> for SetTrack {}
 
 /// Samples bones.
 #[derive(Debug, Clone)]

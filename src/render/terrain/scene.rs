@@ -1,31 +1,13 @@
 //! The scene of a terrain renderer: fields that are added, moved and removed as the viewer travels.
 
-use encase::{ShaderSize, ShaderType};
-use glam::{IVec2, Vec2};
-
 use super::{TerrainRenderer, View};
-use crate::gpu::{Buffer, Gpu, Group, Uniform, bind, shaders, storage_bytes};
+use crate::gpu::{Buffer, Gpu, Group, Uniform, shaders};
 use crate::render::camera::Camera;
+use crate::render::pipeline::bind;
+use crate::shared::render::terrain::{FieldParams, Place};
 use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
-
-/// The shader's `FieldParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct FieldParams {
-    pub in_width: u32,
-    pub size: u32,
-    pub spacing: f32,
-    pub run: f32,
-    pub tiling: f32,
-}
-
-/// The shader's `Place`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct Place {
-    pub origin: IVec2,
-    pub uv: Vec2,
-}
 
 /// Identifies fields that were added to a [`TerrainScene`]. An identifier is never used again, even after the
 /// fields are removed.
@@ -37,7 +19,7 @@ pub struct FieldsId(u64);
 struct Part {
     id: FieldsId,
     group: Group,
-    places: Buffer<u8>,
+    places: Buffer<Place>,
     size: u32,
     /// Texture tiles along a patch's edge.
     tiles: f64,
@@ -56,7 +38,7 @@ impl Part {
             .map(|patch| place(self.size, self.tiles, *patch, origin))
             .collect::<Result<Vec<_>, _>>()?;
         if !places.is_empty() {
-            self.places.write(gpu, &storage_bytes(&places)?)?;
+            self.places.write(gpu, &places)?;
         }
         self.patches = patches.len() as u32;
         Ok(())
@@ -114,8 +96,7 @@ impl TerrainScene {
             tiling: (tiles / f64::from(size - 1)) as f32,
         };
         let uniform = Uniform::new(gpu, "field", &params)?;
-        let bytes = fields.count as usize * Place::SHADER_SIZE.get() as usize;
-        let places = Buffer::new(gpu, "cursors", bytes.max(Place::SHADER_SIZE.get() as usize))?;
+        let places = Buffer::new(gpu, "cursors", fields.count as usize)?;
         let resources = [
             uniform.raw().as_entire_binding(),
             fields.heights.raw().as_entire_binding(),
@@ -191,14 +172,5 @@ fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Pla
         return Err(InputError::new("patchCoordinates", format!("{patch:?}"), bound));
     }
     let uv = patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32);
-    Ok(Place { origin: IVec2::new(samples[0] as i32, samples[1] as i32), uv: Vec2::from(uv) })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(field_params_layout: FieldParams = RENDER_TERRAIN "FieldParams");
-    layout_test!(place_layout: Place = RENDER_TERRAIN "Place");
+    Ok(Place { origin: samples.map(|sample| sample as i32), uv })
 }

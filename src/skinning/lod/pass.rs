@@ -1,32 +1,20 @@
 //! The GPU pass of `kernels/skinning/lod.wgsl`.
 
-use encase::ShaderType;
+use std::mem::offset_of;
+
 use glam::Vec4;
 
 use super::{LodView, list_stride, list_words};
-use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bind::SeenAs;
+use crate::gpu::bindings::skinning::lod as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::lod::{Arguments, Draw, LodParams};
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
 
-/// The kernel's `LodParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct LodParams {
-    pub planes: [Vec4; 6],
-    pub eye: Vec4,
-    pub ahead: Vec4,
-    pub bounding_sphere: Vec4,
-    pub fade_end: f32,
-    pub steps: f32,
-    pub instances: u32,
-    pub max_influences: u32,
-    pub distances: [Vec4; MAX_LEVELS / 4],
-    pub coarser: u32,
-    pub stride: u32,
-    pub side: f32,
-}
+impl SeenAs<Arguments> for u32 {}
 
 impl LodParams {
     fn new(view: &LodView, instances: usize) -> Self {
@@ -51,20 +39,18 @@ impl LodParams {
     }
 }
 
-/// Words of the arguments of an indexed indirect draw.
-const DRAW_WORDS: usize = 5;
-
 /// Words of a level's arguments: those of its draw, and of its draw of mirrored instances.
-const LEVEL_WORDS: usize = 2 * DRAW_WORDS;
+const LEVEL_WORDS: usize = size_of::<Arguments>() / size_of::<u32>();
 
 /// The byte offsets at which the two draws of a level begin.
 pub(crate) fn draws_at(level: usize) -> [u64; 2] {
-    [0, DRAW_WORDS].map(|draw| (size_of::<u32>() * (LEVEL_WORDS * level + draw)) as u64)
+    [offset_of!(Arguments, listed), offset_of!(Arguments, mirrored)]
+        .map(|draw| (size_of::<Arguments>() * level + draw) as u64)
 }
 
 /// The byte offsets of the numbers of instances of a level's two draws.
 pub(crate) fn numbers_at(level: usize) -> [u64; 2] {
-    draws_at(level).map(|draw| draw + size_of::<u32>() as u64)
+    draws_at(level).map(|draw| draw + offset_of!(Draw, instances) as u64)
 }
 
 /// Decides visibility, fade and level of detail.
@@ -79,7 +65,7 @@ impl LodPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_LOD, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the decisions for all instances. The job writes an InstanceLod for each; for each level of the
@@ -105,15 +91,15 @@ impl LodPass {
         drawn.check_holds("drawn", list_words(instances, levels))?;
         arguments.check_holds("arguments", LEVEL_WORDS * levels)?;
         let uniform = Uniform::new(gpu, "lod", &LodParams::new(view, instances))?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            placements.raw().as_entire_binding(),
-            instance_lods.raw().as_entire_binding(),
-            drawn.raw().as_entire_binding(),
-            arguments.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            placements: placements.slice().cast(),
+            instance_lods: instance_lods.slice(),
+            drawn: drawn.slice(),
+            arguments: arguments.slice().cast(),
+        };
         let step = Step {
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, instances as u32),
             kernel: self.kernel.clone(),
         };
@@ -175,7 +161,6 @@ impl LodJob {
 mod tests {
     use super::*;
     use crate::gpu::Options;
-    use crate::gpu::layout::layout_test;
     use crate::skinning::lod::{LevelRanges, NO_FADE, placed};
     use glam::{Mat4, Vec3};
 
@@ -218,6 +203,4 @@ mod tests {
         assert!(field(lod.set(&gpu, &view(&[0.0; 3])).err()).contains("view.levels.len = 3"));
         assert!(field(prepare(&view(&[0.0; 3])).err()).contains("drawn"));
     }
-
-    layout_test!(lod_params_layout: LodParams = SKINNING_LOD "LodParams");
 }

@@ -1,24 +1,10 @@
 //! The GPU pass of `kernels/skinning/morph.wgsl`.
 
-use encase::ShaderType;
-use glam::UVec4;
-
 use crate::Error;
-use crate::asset::mesh::MAX_LEVELS;
-use crate::gpu::{
-    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
-};
+use crate::gpu::bindings::skinning::morph as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups};
+use crate::shared::skinning::morph::MorphParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-
-/// The kernel's `MorphParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct MorphParams {
-    pub vertices: u32,
-    pub targets: u32,
-    pub instances: u32,
-    pub pairs: u32,
-    pub levels: [UVec4; MAX_LEVELS / 4],
-}
 
 /// Applies morph targets.
 #[derive(Debug, Clone)]
@@ -33,8 +19,8 @@ impl MorphPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |compacted| Kernel::new(gpu, &shaders::SKINNING_MORPH, &[("COMPACTED", compacted)]);
-        Ok(Self { all: kernel(0.0)?, active: kernel(1.0)? })
+        let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
+        Ok(Self { all: kernel(false)?, active: kernel(true)? })
     }
 
     /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail keep
@@ -99,24 +85,16 @@ fn bind(
         levels: mesh.clusters_of_levels(),
     };
     let uniform = Uniform::new(gpu, "morph", &params)?;
-    let resources = [
-        uniform.raw().as_entire_binding(),
-        mesh.vertices.raw().as_entire_binding(),
-        mesh.delta_offsets.raw().as_entire_binding(),
-        mesh.deltas.raw().as_entire_binding(),
-        crowd.weights.raw().as_entire_binding(),
-        crowd.instance_lods.raw().as_entire_binding(),
-        active.pairs.raw().as_entire_binding(),
-        active.dispatched.raw().as_entire_binding(),
-        crowd.morphed.raw().as_entire_binding(),
-    ];
-    Ok(kernel.bind(gpu, 0, &resources)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(morph_params_layout: MorphParams = SKINNING_MORPH "MorphParams");
+    let group = bindings::Group {
+        params: &uniform,
+        vertices: mesh.vertices.slice().cast(),
+        offsets: mesh.delta_offsets.slice(),
+        deltas: mesh.deltas.slice().cast(),
+        weights: crowd.weights.slice(),
+        instance_lods: crowd.instance_lods.slice(),
+        pairs: active.pairs.slice(),
+        dispatched: active.dispatched.slice().cast(),
+        morphed: crowd.morphed.slice().cast(),
+    };
+    Ok(group.bind(gpu, kernel)?)
 }

@@ -4,6 +4,7 @@
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::asset::Mesh;
+pub use crate::shared::skinning::morph_weights::WeightEntry;
 
 #[cfg(feature = "verify")]
 pub mod bench;
@@ -22,23 +23,6 @@ pub use pass::{MorphWeightsJob, MorphWeightsPass};
 /// Let ε = 2⁻²⁴. A time carries 3ε of 16 s, which in segments of 1/8 s is 2.3e-5 of a segment. The slope of a
 /// spline there is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline carries some 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
-
-/// The keys of a clip in a set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct WeightEntry {
-    /// The clip's duration in seconds.
-    pub duration: f32,
-    /// Index of its first key time.
-    pub first_time: u32,
-    /// Number of keys, at least 1.
-    pub keys: u32,
-    /// Index of its first value.
-    pub first_value: u32,
-    /// The code of the [`Interpolation`](crate::asset::Interpolation).
-    pub interpolation: u32,
-}
 
 /// The keys of a mesh's morph weights in several clips.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,20 +1,12 @@
 //! The GPU pass of `kernels/skinning/morph_weights.wgsl`.
 
-use encase::ShaderType;
-
 use super::WeightSet;
 use crate::Error;
 use crate::animation::instance::{Instance, check_elapsed};
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::skinning::morph_weights as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::morph_weights::MorphWeightsParams;
 use crate::skinning::buffers::SkinnedCrowd;
-
-/// The kernel's `MorphWeightsParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct MorphWeightsParams {
-    pub targets: u32,
-    pub pairs: u32,
-    pub elapsed: f32,
-}
 
 /// Evaluates the weights of morph targets.
 #[derive(Debug, Clone)]
@@ -28,7 +20,7 @@ impl MorphWeightsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::SKINNING_MORPH_WEIGHTS, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the weights of a crowd that plays `instances` of the set's clips. Layers above them are
@@ -55,17 +47,17 @@ impl MorphWeightsPass {
             let entries = Buffer::from_slice(gpu, "weight keys", &set.entries)?;
             let times = Buffer::from_slice(gpu, "weight times", &set.times)?;
             let values = Buffer::from_slice(gpu, "weight values", &set.values)?;
-            let resources = [
-                uniform.raw().as_entire_binding(),
-                instances.raw().as_entire_binding(),
-                entries.raw().as_entire_binding(),
-                crowd.instance_lods.raw().as_entire_binding(),
-                times.raw().as_entire_binding(),
-                values.raw().as_entire_binding(),
-                crowd.weights.raw().as_entire_binding(),
-            ];
+            let group = bindings::Group {
+                params: &uniform,
+                instances: instances.slice(),
+                entries: entries.slice(),
+                instance_lods: crowd.instance_lods.slice(),
+                times: times.slice(),
+                values: values.slice(),
+                weights: crowd.weights.slice(),
+            };
             steps.push(Step {
-                groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+                groups: vec![group.bind(gpu, &self.kernel)?],
                 workgroups: self.kernel.spread(gpu, params.pairs),
                 kernel: self.kernel.clone(),
             });
@@ -96,12 +88,4 @@ impl MorphWeightsJob {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(morph_weights_params_layout: MorphWeightsParams = SKINNING_MORPH_WEIGHTS "MorphWeightsParams");
 }

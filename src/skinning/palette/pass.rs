@@ -1,21 +1,13 @@
 //! The GPU pass of `kernels/skinning/palette.wgsl`.
 
-use encase::ShaderType;
-
 use crate::Error;
 use crate::animation::ModelMatrices;
 use crate::animation::model_matrices::Consumer;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::skinning::palette as bindings;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::palette::PaletteParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
-
-/// The kernel's `PaletteParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct PaletteParams {
-    pub bones: u32,
-    pub all_bones: u32,
-    pub pairs: u32,
-}
 
 /// Computes palettes.
 #[derive(Debug, Clone)]
@@ -30,8 +22,8 @@ impl PalettePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |dual| Kernel::new(gpu, &shaders::SKINNING_PALETTE, &[("DUAL", dual)]);
-        Ok(Self { linear: kernel(0.0)?, dual: kernel(1.0)? })
+        let kernel = |dual| bindings::kernel(gpu, &bindings::Constants { dual });
+        Ok(Self { linear: kernel(false)?, dual: kernel(true)? })
     }
 
     /// Prepares the palettes of all instances that are seen.
@@ -59,27 +51,19 @@ impl PalettePass {
             pairs: (crowd.instances * mesh.bones.len()) as u32,
         };
         let uniform = Uniform::new(gpu, "palette", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            mesh.bones.raw().as_entire_binding(),
-            mesh.inverse_binds.raw().as_entire_binding(),
-            matrices.raw().as_entire_binding(),
-            crowd.instance_lods.raw().as_entire_binding(),
-            crowd.palette.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            bones: mesh.bones.slice(),
+            inverse_binds: mesh.inverse_binds.slice().cast(),
+            model_matrices: matrices.buffer().slice().cast(),
+            instance_lods: crowd.instance_lods.slice(),
+            palette: crowd.palette.slice(),
+        };
         let step = Step {
-            groups: vec![kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, kernel)?],
             workgroups: kernel.spread(gpu, params.pairs),
             kernel: kernel.clone(),
         };
         Ok(Job::new(gpu, "skinning/palette", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(palette_params_layout: PaletteParams = SKINNING_PALETTE "PaletteParams");
 }

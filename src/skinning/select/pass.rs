@@ -1,24 +1,10 @@
 //! The GPU pass of `kernels/skinning/select.wgsl`.
 
-use encase::ShaderType;
-use glam::UVec4;
-
 use crate::Error;
-use crate::asset::mesh::MAX_LEVELS;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use crate::gpu::bindings::skinning::select as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::select::{self, SelectParams};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
-
-/// The kernel's `SelectParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SelectParams {
-    pub instances: u32,
-    pub clusters: u32,
-    pub words: u32,
-    pub most: u32,
-    pub vertices: u32,
-    pub targets: u32,
-    pub levels: [UVec4; MAX_LEVELS / 4],
-}
 
 /// The inputs of a selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
@@ -42,7 +28,7 @@ pub struct SelectBuffers {
 }
 
 /// Words per instance in [`SelectBuffers::skinned`], before its weights.
-pub const SKINNED_WORDS: usize = 4;
+pub const SKINNED_WORDS: usize = select::SKINNED_WORDS as usize;
 
 impl SelectBuffers {
     /// Allocates the buffers for a crowd, with no updated bone.
@@ -70,8 +56,8 @@ impl SelectPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |finish| Kernel::new(gpu, &shaders::SKINNING_SELECT, &[("FINISH", finish)]);
-        Ok(Self { select: kernel(0.0)?, finish: kernel(1.0)? })
+        let kernel = |finish| bindings::kernel(gpu, &bindings::Constants { finish });
+        Ok(Self { select: kernel(false)?, finish: kernel(true)? })
     }
 
     /// Prepares the list of clusters to be skinned.
@@ -103,20 +89,21 @@ impl SelectPass {
             levels: mesh.clusters_of_levels(),
         };
         let uniform = Uniform::new(gpu, "select", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            mesh.masks.raw().as_entire_binding(),
-            buffers.updated_bones.raw().as_entire_binding(),
-            crowd.instance_lods.raw().as_entire_binding(),
-            crowd.weights.raw().as_entire_binding(),
-            mesh.delta_offsets.raw().as_entire_binding(),
-            buffers.skinned.raw().as_entire_binding(),
-            active.pairs.raw().as_entire_binding(),
-            active.dispatched.raw().as_entire_binding(),
-        ];
+        let group = bindings::Group {
+            params: &uniform,
+            masks: mesh.masks.slice(),
+            updated_bones: buffers.updated_bones.slice(),
+            instance_lods: crowd.instance_lods.slice(),
+            // Compared as bits.
+            weights: crowd.weights.slice().cast(),
+            offsets: mesh.delta_offsets.slice(),
+            skinned: buffers.skinned.slice(),
+            pairs: active.pairs.slice(),
+            dispatched: active.dispatched.slice().cast(),
+        };
         let step = |kernel: &Kernel, threads: usize| {
             Ok(Step {
-                groups: vec![kernel.bind(gpu, 0, &resources)?],
+                groups: vec![group.bind(gpu, kernel)?],
                 workgroups: kernel.spread(gpu, threads as u32),
                 kernel: kernel.clone(),
             })
@@ -124,19 +111,5 @@ impl SelectPass {
         let steps = [step(&self.select, pairs), step(&self.finish, crowd.instances)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "skinning/select", steps)?)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(select_params_layout: SelectParams = SKINNING_SELECT "SelectParams");
-
-    #[test]
-    fn weights_begin_where_the_kernel_has_them() {
-        let shader = &crate::gpu::shaders::SKINNING_SELECT;
-        assert_eq!(crate::gpu::layout::constant(shader, "SKINNED_WORDS"), Some(SKINNED_WORDS as u32));
     }
 }

@@ -2,27 +2,12 @@
 
 use std::ops::Range;
 
-use encase::ShaderType;
-use glam::UVec4;
-
-use crate::asset::mesh::MAX_LEVELS;
-use crate::gpu::{
-    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups, shaders,
-};
+use crate::gpu::bindings::skinning::skin as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups};
+use crate::shared::skinning::skin::SkinParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
-
-/// The kernel's `SkinParams`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct SkinParams {
-    pub vertices: u32,
-    pub pairs: u32,
-    pub bones: u32,
-    pub instances: u32,
-    pub first_instance: u32,
-    pub levels: [UVec4; MAX_LEVELS / 4],
-}
 
 /// Skins vertices.
 #[derive(Debug, Clone)]
@@ -41,13 +26,11 @@ impl SkinPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, blend: Blend) -> Result<Self, GpuError> {
-        let dual = f64::from(blend == Blend::DualQuaternion);
-        let kernel = |compacted, morphed| {
-            let overrides = [("COMPACTED", compacted), ("DUAL", dual), ("MORPHED", morphed)];
-            Kernel::new(gpu, &shaders::SKINNING_SKIN, &overrides)
-        };
-        let kernels = [[kernel(0.0, 0.0)?, kernel(0.0, 1.0)?], [kernel(1.0, 0.0)?, kernel(1.0, 1.0)?]];
-        Ok(Self { kernels, blend })
+        let dual = blend == Blend::DualQuaternion;
+        let kernel =
+            |compacted, morphed| bindings::kernel(gpu, &bindings::Constants { compacted, dual, morphed });
+        let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, false)?, kernel(compacted, true)?]);
+        Ok(Self { kernels: [kernels(false)?, kernels(true)?], blend })
     }
 
     /// Prepares the skinning of a range of instances into `skinned`, one instance after the other, in the order
@@ -132,17 +115,17 @@ impl SkinPass {
             levels: mesh.clusters_of_levels(),
         };
         let uniform = Uniform::new(gpu, "skin", &params)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            vertices.raw().as_entire_binding(),
-            mesh.influences.raw().as_entire_binding(),
-            crowd.palette.raw().as_entire_binding(),
-            crowd.instance_lods.raw().as_entire_binding(),
-            active.pairs.raw().as_entire_binding(),
-            active.dispatched.raw().as_entire_binding(),
-            skinned.raw().as_entire_binding(),
-        ];
-        Ok(kernel.bind(gpu, 0, &resources)?)
+        let group = bindings::Group {
+            params: &uniform,
+            vertices: vertices.slice().cast(),
+            influences: mesh.influences.slice(),
+            palette: crowd.palette.slice(),
+            instance_lods: crowd.instance_lods.slice(),
+            pairs: active.pairs.slice(),
+            dispatched: active.dispatched.slice().cast(),
+            skinned: skinned.slice().cast(),
+        };
+        Ok(group.bind(gpu, kernel)?)
     }
 }
 
@@ -174,7 +157,6 @@ pub fn keep_last(
 mod tests {
     use super::*;
     use crate::gpu::Options;
-    use crate::gpu::layout::layout_test;
 
     #[test]
     fn the_last_frame_is_kept() {
@@ -191,6 +173,4 @@ mod tests {
         let refused = keep_last(&mut gpu.encoder("refused"), &skinned, &other).expect_err("refused");
         assert_eq!((&*refused.path, &*refused.value), ("last.len", "4"));
     }
-
-    layout_test!(skin_params_layout: SkinParams = SKINNING_SKIN "SkinParams");
 }

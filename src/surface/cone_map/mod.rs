@@ -14,13 +14,9 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub mod verify;
 
+pub use crate::shared::surface::cone_map::OPENING;
 #[cfg(feature = "gpu")]
 pub use pass::{ConeMapPass, Cones};
-
-/// The ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give
-/// wider cones and a slower computation: 4 saves one load in twenty-five in a march, and takes half as long
-/// again to compute.
-pub const OPENING: f32 = 2.0;
 
 /// The largest relative difference allowed between a radius and the reference, on any device.
 ///

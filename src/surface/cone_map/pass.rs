@@ -2,7 +2,6 @@
 
 use glam::UVec2;
 
-use super::OPENING;
 use crate::gpu::bindings::surface::cone_map as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::cone_map::ConeParams;
@@ -35,7 +34,7 @@ impl ConeMapPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { opening: OPENING })? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Allocates the cone maps of a batch with these pyramids.

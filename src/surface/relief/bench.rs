@@ -4,12 +4,12 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::Error;
-use crate::baseline::loads::LoadsPass;
 use crate::gpu::{Buffer, Gpu};
 use crate::harness::{Backend, Bench, Contender};
 use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
 use crate::samples::BuiltInMap;
+use crate::surface::bench::{bare_loads, rays};
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::material::Material;
 use crate::surface::mesh::SurfaceMesh;
@@ -47,7 +47,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
     let target = Target::new(gpu, [EDGE, EDGE])?;
     let plain = scene(gpu, &map, &albedo, Method::Plain)?;
-    let (rays, march) = (rays(EDGE), March::default());
+    let (rays, march) = (rays(EDGE, towards()), March::default());
     for method in Method::ALL {
         let scene = scene(gpu, &map, &albedo, method)?;
         let surface = Surface::new(&map, method, Address::Wrap);
@@ -75,7 +75,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
 /// Measures one method with the compute kernel.
 fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let rays = rays(EDGE);
+    let rays = rays(EDGE, towards());
     let march = March::default();
     let surface = Surface::new(map, method, Address::Wrap);
     let samples: u64 =
@@ -85,9 +85,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), 
     let input = Buffer::from_slice(gpu, "rays", &rays)?;
     let hits = Buffer::new(gpu, "hits", rays.len())?;
     let job = ReliefPass::new(gpu, method)?.prepare(gpu, &textures, &march, &input, &hits)?;
-    let sums = Buffer::new(gpu, "sums", rays.len())?;
-    let bare = LoadsPass::new(gpu)?;
-    let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+    let bare = bare_loads(gpu, &textures, EDGE, samples)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &bare),
@@ -112,15 +110,13 @@ fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> R
     let mesh = SurfaceMesh::square(1.0);
     let mut scene = renderer.scene(gpu, &mesh, maps, &Material::default(), &March::default(), 1.0)?;
     let clip_from_world = Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(2.0, 2.0, 1.0));
-    let (sine, cosine) = ANGLE.to_radians().sin_cos();
-    scene.set_camera(gpu, ReliefCamera { clip_from_world, eye: Vec4::new(0.0, -sine, cosine, 0.0) })?;
+    let [x, y, z] = towards();
+    scene.set_camera(gpu, ReliefCamera { clip_from_world, eye: Vec4::new(x, -y, z, 0.0) })?;
     Ok(scene)
 }
 
-/// The rays of the picture, `edge` along each edge.
-fn rays(edge: u32) -> Vec<Ray> {
+/// The unit vector towards the eye, tangent space.
+fn towards() -> [f32; 3] {
     let (sine, cosine) = ANGLE.to_radians().sin_cos();
-    let at = |index: u32| (index as f32 + 0.5) / edge as f32;
-    let places = (0..edge).flat_map(|y| (0..edge).map(move |x| [at(x), at(y)]));
-    places.map(|uv| Ray::new(uv, [0.0, sine, cosine], Material::default().scale, 1.0)).collect()
+    [0.0, sine, cosine]
 }

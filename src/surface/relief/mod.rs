@@ -15,22 +15,22 @@ pub mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::ReliefPass;
-#[cfg(feature = "gpu")]
-pub(crate) use pass::SurfaceMarch;
 
 use std::str::FromStr;
 
 use crate::InputError;
+pub use crate::shared::surface::ray::{SurfaceHit as Hit, SurfaceRay as Ray};
+use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
 /// The smallest cosine with which rays are marched: 89.55° from the normal.
-pub const LEAST_COSINE: f32 = 1.0 / 128.0;
+pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 
 /// The most linear steps of a march.
-pub const MAX_STEPS: u32 = 1024;
+pub const MAX_STEPS: u32 = linear::SURFACE_MAX_STEPS;
 
 /// The most binary steps of a march.
-pub const MAX_BINARY: u32 = 24;
+pub const MAX_BINARY: u32 = linear::SURFACE_MAX_BINARY;
 
 /// The deepest relief, in uv units.
 pub const MAX_SCALE: f32 = 1.0;
@@ -38,21 +38,22 @@ pub const MAX_SCALE: f32 = 1.0;
 /// The method that finds the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[repr(u32)]
 pub enum Method {
     /// None: the polygon's own texture coordinates.
-    Plain,
+    Plain = trace::SURFACE_PLAIN,
     /// Parallax mapping: one height, one shift (Kaneko 2001).
-    Parallax,
+    Parallax = trace::SURFACE_PARALLAX,
     /// Parallax mapping with Welsh's offset limiting.
-    ParallaxLimited,
+    ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
     /// Linear search, then binary search (Policarpo 2005; B table 4.4).
-    Relief,
+    Relief = trace::SURFACE_RELIEF,
     /// Linear search, then the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
-    Occlusion,
+    Occlusion = trace::SURFACE_OCCLUSION,
     /// Relaxed cones that are safe under bilinear filtering, then binary search. Needs a cone map.
-    Cone,
+    Cone = trace::SURFACE_CONE,
     /// Max-mip traversal with exact bilinear patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
-    Quadtree,
+    Quadtree = trace::SURFACE_QUADTREE,
 }
 
 impl Method {
@@ -80,7 +81,7 @@ impl Method {
         }
     }
 
-    /// The method's value in the shaders: `SURFACE_PLAIN` and so on, of `wgsl/surface/trace.wgsl`.
+    /// The method's value in the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }
@@ -100,21 +101,6 @@ impl FromStr for Method {
             InputError::new("method", name, format!("must be one of {names}"))
         })
     }
-}
-
-/// A ray through the relief volume: at parameter t it is at uv `origin + t · slope` and height 1 − t.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Ray {
-    /// uv at which the ray enters the volume, at height 1.
-    pub origin: [f32; 2],
-    /// Change of uv while the ray falls to height 0.
-    pub slope: [f32; 2],
-    /// Cosine of the angle between eye and normal; a ray with 0 or less is a miss.
-    pub cosine: f32,
-    /// The parameter at which the ray meets the polygon; 0 if the polygon is the top of the volume.
-    pub polygon: f32,
 }
 
 impl Ray {
@@ -174,44 +160,42 @@ impl March {
 
 /// The outcome of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Outcome {
     /// The ray comes from behind.
-    Miss,
+    Miss = ray::SURFACE_MISS,
     /// The ray met the surface.
-    Hit,
+    Hit = ray::SURFACE_HIT,
     /// The method ran out of steps; the result is the point that it had reached. `cone` and `quadtree` visit at
     /// most 32,774 nodes, which is enough for rays that cross 16,384 cells.
-    Exhausted,
+    Exhausted = ray::SURFACE_EXHAUSTED,
 }
 
-/// The result of a ray.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Hit {
-    /// Displaced texture coordinates; outside the tile if the ray left it.
-    pub uv: [f32; 2],
-    /// Height of the surface at the hit.
-    pub height: f32,
-    /// The ray's parameter at the hit.
-    pub parameter: f32,
-    /// Number of texels loaded, including those of acceleration maps.
-    pub samples: u32,
-    /// 0 for a miss, 1 for a hit, 2 for exhausted; see [`Hit::outcome`].
-    pub code: u32,
+impl Default for Hit {
+    /// A miss, at the corner of the tile.
+    fn default() -> Self {
+        let outcome_code = Outcome::Miss as u32;
+        Self { uv: [0.0; 2], height: 0.0, parameter: 0.0, samples: 0, outcome_code }
+    }
 }
 
 impl Hit {
     /// The result at a point of the ray.
     pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
-        Self { uv: ray.at(parameter), height: 1.0 - parameter, parameter, samples, code: outcome as u32 }
+        Self {
+            uv: ray.at(parameter),
+            height: 1.0 - parameter,
+            parameter,
+            samples,
+            outcome_code: outcome as u32,
+        }
     }
 
     /// The outcome that `code` stands for.
     pub fn outcome(&self) -> Outcome {
-        match self.code {
-            0 => Outcome::Miss,
-            1 => Outcome::Hit,
+        match self.outcome_code {
+            ray::SURFACE_MISS => Outcome::Miss,
+            ray::SURFACE_HIT => Outcome::Hit,
             _ => Outcome::Exhausted,
         }
     }

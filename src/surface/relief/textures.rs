@@ -36,6 +36,12 @@ impl SurfaceTextures {
         Ok(Self { heights, acceleration, method, address })
     }
 
+    /// Views of the heights and of the acceleration map, to bind.
+    pub(crate) fn views(&self) -> [wgpu::TextureView; 2] {
+        [&self.heights, &self.acceleration]
+            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+
     /// Refuses a method or an address mode for which the textures were not computed.
     pub(crate) fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
         if self.method != method {

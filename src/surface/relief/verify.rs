@@ -89,7 +89,8 @@ fn judgement(hit: &Hit, judged: &Judged, size: [u32; 2]) -> Judgement {
         off(hit.parameter, expected.parameter) / judged.parameter,
         off(hit.height, expected.height) / judged.height,
     ];
-    let is_other = hit.code != expected.code || (judged.is_steady && hit.samples != expected.samples);
+    let is_other =
+        hit.outcome_code != expected.outcome_code || (judged.is_steady && hit.samples != expected.samples);
     // Unlike `f64::max`, this keeps NaN.
     let largest = ratios.into_iter().fold(0.0, |most, ratio| if ratio <= most { most } else { ratio });
     let ratio = if is_other || ratios.iter().any(|ratio| ratio.is_nan()) { f64::INFINITY } else { largest };

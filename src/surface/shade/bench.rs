@@ -2,24 +2,22 @@
 //! bare texel loads.
 
 use crate::Error;
-use crate::baseline::loads::LoadsPass;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::samples::BuiltInMap;
+use crate::surface::bench::{bare_loads, rays};
 use crate::surface::map::Address;
 use crate::surface::material::Material;
 use crate::surface::relief::reference::Surface;
+use crate::surface::relief::reference::height::BILINEAR;
 use crate::surface::relief::reference::shadow::light_ray;
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::relief::{March, Method, Ray};
+use crate::surface::relief::{March, Method};
 use crate::surface::shade::reference::shade_all;
 use crate::surface::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 
 /// Points along each edge.
 const EDGE: u32 = 512;
-
-/// Number of texel loads of one bilinear height.
-const BILINEAR: u32 = 4;
 
 /// Measures 512² points on cobbles of 512² texels, seen straight from above under the default light, with hard
 /// shadows by `quadtree` and by `relief`. `copy` makes as many texel loads per point as both shadows together,
@@ -45,9 +43,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let input = Buffer::from_slice(gpu, "points", &points)?;
         let shades = Buffer::new(gpu, "shades", points.len())?;
         let job = ShadePass::new(gpu, method)?.prepare(gpu, &textures, &march, &view, &input, &shades)?;
-        let sums = Buffer::new(gpu, "sums", points.len())?;
-        let bare = LoadsPass::new(gpu)?;
-        let bare = bare.prepare(gpu, &textures.heights, [EDGE, EDGE], mean.round() as u32, &sums)?;
+        let bare = bare_loads(gpu, &textures, EDGE, samples)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &bare),
@@ -65,9 +61,7 @@ pub fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
 /// One point per texel.
 fn points(surface: &Surface<'_>, method: Method, march: &March) -> Vec<ShadePoint> {
     let material = Material::default();
-    let at = |index: u32| (index as f32 + 0.5) / EDGE as f32;
-    let places = (0..EDGE).flat_map(|y| (0..EDGE).map(move |x| [at(x), at(y)]));
-    let rays = places.map(|uv| Ray::new(uv, [0.0, 0.0, 1.0], material.scale, 1.0)).collect::<Vec<_>>();
+    let rays = rays(EDGE, [0.0, 0.0, 1.0]);
     let hits = surface.trace_all(method, &rays, march);
     let points = rays.into_iter().zip(hits).map(|(ray, hit)| ShadePoint {
         light: material.light,

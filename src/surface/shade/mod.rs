@@ -18,22 +18,8 @@ pub use pass::ShadePass;
 use glam::{Mat4, Vec4};
 
 use crate::InputError;
-use crate::surface::relief::{Hit, MAX_STEPS, Ray};
-
-/// The view and shadow parameters that all points of a list share.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShadeView {
-    /// The matrix from world space to clip space, depth 0 to 1.
-    pub clip_from_world: Mat4,
-    /// The position of the eye with w = 1, or for a parallel projection the direction towards it with w = 0;
-    /// world space.
-    pub eye: Vec4,
-    /// Number of heights that a soft shadow samples on the way to the light, 1 to [`MAX_STEPS`].
-    pub shadow_steps: u32,
-    /// The ratio of the surface's height above the way to the light to its distance at which a soft shadow is
-    /// full; 0.001 to 1000.
-    pub softness: f32,
-}
+pub use crate::shared::surface::shade::{Shade, ShadePoint, ShadeView};
+use crate::surface::relief::MAX_STEPS;
 
 impl Default for ShadeView {
     /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
@@ -72,38 +58,6 @@ impl ShadeView {
         }
         Ok(())
     }
-}
-
-/// A point of a relief where an eye's ray met it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct ShadePoint {
-    /// Unit vector towards the light, in tangent space.
-    pub light: [f32; 3],
-    /// Depth of the relief in uv units.
-    pub scale: f32,
-    /// The point where the eye's ray meets the polygon, in world space.
-    pub position: [f32; 3],
-    /// World units per uv unit.
-    pub world: f32,
-    /// The eye's ray.
-    pub ray: Ray,
-    /// The hit of that ray.
-    pub hit: Hit,
-}
-
-/// The shading of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Shade {
-    /// 1 if the light's ray ends in the point, else 0.
-    pub hard: f32,
-    /// Light with penumbras, 0 in full shadow to 1 in full light.
-    pub soft: f32,
-    /// Depth of the relief at the point, 0 (near) to 1 (far).
-    pub depth: f32,
 }
 
 #[cfg(test)]

@@ -1,22 +1,12 @@
 //! The GPU pass of `kernels/surface/shade.wgsl`.
 
-use encase::ShaderType;
-use glam::{Mat4, Vec4};
-
-use super::{Shade, ShadePoint};
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders};
+use super::{Shade, ShadePoint, ShadeView};
+use crate::gpu::bindings::surface::shade as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::surface::ray::SurfaceMarch;
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::relief::{March, Method, SurfaceMarch};
+use crate::surface::relief::{March, Method};
 use crate::{Error, InputError};
-
-/// The shader's `ShadeView`.
-#[derive(Debug, Clone, Copy, ShaderType)]
-struct ShadeView {
-    clip_from_world: Mat4,
-    eye: Vec4,
-    shadow_steps: u32,
-    softness: f32,
-}
 
 /// Shades lists of points. Hard shadows trace the light's rays with one method.
 #[derive(Debug, Clone)]
@@ -31,8 +21,8 @@ impl ShadePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, method: Method) -> Result<Self, GpuError> {
-        let overrides = [("METHOD", method.code().into())];
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::SURFACE_SHADE, &overrides)?, method })
+        let constants = bindings::Constants { method: method.code() };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }
 
     /// Prepares the shading of all `points`, with one [`Shade`] each.
@@ -45,7 +35,7 @@ impl ShadePass {
         gpu: &Gpu,
         textures: &SurfaceTextures,
         march: &March,
-        view: &super::ShadeView,
+        view: &ShadeView,
         points: &Buffer<ShadePoint>,
         shades: &Buffer<Shade>,
     ) -> Result<Job, Error> {
@@ -56,55 +46,22 @@ impl ShadePass {
             let bound = format!("must be at least {}, one a point", points.len());
             return Err(InputError::new("shades.len", shades.len(), bound).into());
         }
-        let super::ShadeView { clip_from_world, eye, shadow_steps, softness } = *view;
-        let view =
-            Uniform::new(gpu, "shade view", &ShadeView { clip_from_world, eye, shadow_steps, softness })?;
+        let view = Uniform::new(gpu, "shade view", view)?;
         let march = Uniform::new(gpu, "march", &SurfaceMarch::from(*march))?;
-        let plane = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let (heights, acceleration) = (plane(&textures.heights), plane(&textures.acceleration));
-        let resources = [
-            view.raw().as_entire_binding(),
-            march.raw().as_entire_binding(),
-            wgpu::BindingResource::TextureView(&heights),
-            wgpu::BindingResource::TextureView(&acceleration),
-            points.raw().as_entire_binding(),
-            shades.raw().as_entire_binding(),
-        ];
+        let [heights, acceleration] = textures.views();
+        let group = bindings::Group {
+            view: &view,
+            march: &march,
+            heights: &heights,
+            acceleration: &acceleration,
+            points: points.slice(),
+            shades: shades.slice(),
+        };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: self.kernel.spread(gpu, points.len() as u32),
         };
         Ok(Job::new(gpu, "surface/shade", vec![step])?)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-    use std::mem::offset_of;
-
-    layout_test!(view_layout: ShadeView = SURFACE_SHADE "ShadeView");
-
-    #[test]
-    fn points_and_shades_are_laid_out_as_the_shader_sees_them() {
-        let layout = |name: &str| {
-            let layout = shaders::SURFACE_SHADE.structs.iter().find(|layout| layout.name == name);
-            let layout = layout.expect("a struct of the shader");
-            (
-                layout.size as usize,
-                layout.members.iter().map(|member| member.offset as usize).collect::<Vec<_>>(),
-            )
-        };
-        let point = [
-            offset_of!(ShadePoint, light),
-            offset_of!(ShadePoint, position),
-            offset_of!(ShadePoint, ray),
-            offset_of!(ShadePoint, hit),
-        ];
-        assert_eq!(layout("ShadePoint"), (size_of::<ShadePoint>(), point.to_vec()));
-        let shade = [offset_of!(Shade, hard), offset_of!(Shade, soft), offset_of!(Shade, depth)];
-        assert_eq!(layout("Shade"), (size_of::<Shade>(), shade.to_vec()));
     }
 }

@@ -66,13 +66,14 @@ pub fn shade_all(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surface::relief::Outcome;
 
     /// In a parallel view straight from above, a hit is as deep as the relief is there.
     #[test]
     fn depth_is_that_of_the_hit_rather_than_the_polygon() {
         let ray = Ray::new([0.5, 0.5], [0.0, 0.0, 1.0], 0.2, 0.75);
         for height in [0.0, 0.25, 0.75, 1.0] {
-            let hit = Hit { parameter: 1.0 - height, height, ..Hit::default() };
+            let hit = Hit::of(&ray, 1.0 - height, 0, Outcome::Hit);
             let behind = distance(&ray, &hit, 0.2) * 3.0;
             assert!((behind - (0.75 - height) * 0.6).abs() < 1e-6, "{height}: {behind}");
             let view = ShadeView::default();

@@ -22,7 +22,7 @@ pub const BLUNT: f64 = 1.0 / 32.0;
 const CONE_STEP: f64 = RADIUS_BOUND as f64 + 12.0 * ULP;
 
 /// The reference's hit of a ray, and how far a device's hit may be from it.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Judged {
     /// The reference's hit.
     pub expected: Hit,
@@ -72,7 +72,7 @@ pub fn judge(
         let positions = positions(ray, map, method, march.address, source);
         classes.entry(felt(ray, map, march.address, positions).log2().ceil() as i32).or_default().push(index);
     }
-    let mut judged = vec![Judged::default(); rays.len()];
+    let mut judged = vec![None; rays.len()];
     // If the search over cones ends in binary steps, it is close to the crossing that the quadtree finds.
     let crossing = if method == Method::Cone { Method::Quadtree } else { method };
     for (exponent, indices) in classes {
@@ -88,9 +88,10 @@ pub fn judge(
             ends: [&raised, &lowered].map(|map| Surface::new(map, crossing, march.address)),
         };
         let found: Vec<Judged> = indices.par_iter().map(|index| judge.ray(&rays[*index])).collect();
-        indices.into_iter().zip(found).for_each(|(index, found)| judged[index] = found);
+        indices.into_iter().zip(found).for_each(|(index, found)| judged[index] = Some(found));
     }
-    Ok(judged)
+    // Every ray is in one class.
+    Ok(judged.into_iter().flatten().collect())
 }
 
 /// How far rounding may move a point of a ray, in texels along x and y.
@@ -185,7 +186,8 @@ impl Judge<'_> {
         let expected = self.surface.trace(self.method, ray, march);
         let ends = self.ends.each_ref().map(|surface| surface.trace(self.crossing, ray, march));
         let shifted = self.shifted(ray).map(|ray| self.surface.trace(self.method, &ray, march));
-        let is_same = |hit: &Hit| hit.samples == expected.samples && hit.code == expected.code;
+        let is_same =
+            |hit: &Hit| hit.samples == expected.samples && hit.outcome_code == expected.outcome_code;
         let is_steady =
             shifted.iter().all(is_same) && (!self.method.is_stepped() || ends.iter().all(is_same));
         let mut farthest = [0.0_f64; 2];

@@ -1,12 +1,13 @@
 //! Bounds on soft shadow in f64, whatever a device rounds. `docs/relief-bounds.md` has the derivation.
 
 use super::bounds::{ULP, off};
+use crate::shared::surface::shadow::SURFACE_SHADOW_BIAS;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{LEAST_COSINE, MAX_STEPS};
 use crate::surface::shade::{ShadePoint, ShadeView};
 
-/// The height difference below which a point does not shade itself: `SURFACE_SHADOW_BIAS`.
-pub(crate) const BIAS: f64 = 0.005_f32 as f64;
+/// The height difference below which a point does not shade itself.
+pub(crate) const BIAS: f64 = SURFACE_SHADOW_BIAS as f64;
 
 /// A map with its steepness at each texel ([`steepness`](super::bounds::steepness)).
 #[derive(Debug, Clone, Copy)]

@@ -9,13 +9,12 @@ pub mod reference;
 pub mod verify;
 
 use crate::InputError;
+pub use crate::shared::terrain::blend::MapZone;
 use crate::terrain::config::finite;
 use crate::terrain::config::{MAX_ZONES, check_range};
 
 #[cfg(feature = "gpu")]
 pub use pass::BlendPass;
-#[cfg(feature = "gpu")]
-pub(crate) use pass::{Light, ZoneRange};
 
 /// How zone weights are combined into a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -66,17 +65,6 @@ impl Shading {
         }
         finite("ambient", self.ambient.into(), 0.0, 1.0)
     }
-}
-
-/// A height zone as the colour map uses it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MapZone {
-    /// Mean linear colour of the zone's texture.
-    pub color: [f32; 3],
-    /// Lower end of the range, in height units.
-    pub min: f32,
-    /// Upper end of the range, in height units.
-    pub max: f32,
 }
 
 /// Checks that there are 1 to [`MAX_ZONES`] zones, and that each has a valid range of heights and a finite

@@ -1,50 +1,13 @@
 //! The GPU pass of `kernels/terrain/blend.wgsl`.
 
-use encase::ShaderType;
-use glam::Vec3;
-
 use super::{MapZone, Shading, check_map_zones};
 use crate::Error;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, shaders, storage};
+use crate::gpu::bindings::terrain::blend as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::blend::MapParams;
+use crate::shared::terrain::light::Light;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
-
-/// `Light` of the shaders.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct Light {
-    pub direction: Vec3,
-    pub ambient: f32,
-}
-
-/// `MapParams` of the kernel.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct MapParams {
-    pub light: Light,
-    pub in_width: u32,
-    pub run: f32,
-    pub zone_count: u32,
-    pub additive: u32,
-}
-
-/// `Zone` of the shaders.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct ZoneRange {
-    pub min: f32,
-    pub max: f32,
-}
-
-/// `MapZone` of the shaders.
-#[derive(Debug, Clone, Copy, ShaderType)]
-pub(crate) struct ShaderZone {
-    pub color: Vec3,
-    pub zone: ZoneRange,
-}
-
-impl From<&MapZone> for ShaderZone {
-    fn from(zone: &MapZone) -> Self {
-        Self { color: zone.color.into(), zone: ZoneRange { min: zone.min, max: zone.max } }
-    }
-}
 
 /// Draws the top-down colour maps of patches.
 #[derive(Debug, Clone)]
@@ -58,7 +21,7 @@ impl BlendPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: Kernel::new(gpu, &shaders::TERRAIN_BLEND, &[])? })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the colour maps of `windows`: `pixels` receives a pixel for every sample but those of the
@@ -89,30 +52,18 @@ impl BlendPass {
             additive: shading.weights.code(),
         };
         let uniform = Uniform::new(gpu, "colour map", &params)?;
-        let zones: Vec<_> = zones.iter().map(ShaderZone::from).collect();
-        let zones = storage(gpu, "zones", &zones)?;
-        let resources = [
-            uniform.raw().as_entire_binding(),
-            windows.heights.raw().as_entire_binding(),
-            zones.raw().as_entire_binding(),
-            pixels.raw().as_entire_binding(),
-        ];
+        let zones = Buffer::from_slice(gpu, "zones", zones)?;
+        let group = bindings::Group {
+            params: &uniform,
+            windows: windows.heights.slice(),
+            zones: zones.slice(),
+            pixels: pixels.slice(),
+        };
         let step = Step {
             kernel: self.kernel.clone(),
-            groups: vec![self.kernel.bind(gpu, 0, &resources)?],
+            groups: vec![group.bind(gpu, &self.kernel)?],
             workgroups: windows.workgroups(&self.kernel, 1),
         };
         Ok(Job::new(gpu, "terrain/blend", vec![step])?)
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::layout::layout_test;
-
-    layout_test!(map_params_layout: MapParams = TERRAIN_BLEND "MapParams");
-    layout_test!(light_layout: Light = TERRAIN_BLEND "Light");
-    layout_test!(shader_zone_layout: ShaderZone = TERRAIN_BLEND "MapZone");
-    layout_test!(zone_range_layout: ZoneRange = TERRAIN_BLEND "Zone");
 }

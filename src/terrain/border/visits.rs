@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Neighbours, waves};
 use crate::InputError;
+use crate::shared::terrain::border::NONE;
 use crate::terrain::fields::Place;
 
 /// One dispatch: patches of one part that move towards neighbours that all lie in one part.
@@ -31,7 +32,7 @@ pub(super) fn visits(neighbours: &[Neighbours], places: &[Place]) -> Result<Vec<
             let Place { part, index } = places[patch as usize];
             let around = neighbours[patch as usize].map(|neighbour| neighbour.map(|at| places[at]));
             let mut visit = |turn: usize, source: usize, around: [Option<Place>; 4]| {
-                let around = around.map(|place| place.map_or(u32::MAX, |place| place.index));
+                let around = around.map(|place| place.map_or(NONE, |place| place.index));
                 dispatches.entry((part, turn, source)).or_default().push((index, around));
             };
             if around.iter().flatten().all(|place| place.part == part) {
@@ -54,8 +55,6 @@ pub(super) fn visits(neighbours: &[Neighbours], places: &[Place]) -> Result<Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const NONE: u32 = u32::MAX;
 
     fn places(counts: &[u32]) -> Vec<Place> {
         let part = |(part, count): (usize, &u32)| (0..*count).map(move |index| Place { part, index });

@@ -12,6 +12,7 @@ use std::path::Path;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
+use crate::shared::terrain::{fixed, offset};
 use crate::{Error, InputError};
 
 /// Fixed-point one of heights: a height is an integer multiple of 1/65536 unit.
@@ -21,7 +22,7 @@ pub const HEIGHT_ONE: f64 = 65_536.0;
 pub const PATCH_EDGE: i64 = 4096;
 
 /// The largest absolute height, 2^30 − 1 in 1/65536 units: sums and differences of two heights still fit `i32`.
-pub const HEIGHT_LIMIT: i64 = (1 << 30) - 1;
+pub const HEIGHT_LIMIT: i64 = fixed::HEIGHT_LIMIT as i64;
 
 /// The most texture tiles along a patch's edge: with more, `f32` texture coordinates could not resolve a
 /// quarter of a texel.
@@ -44,9 +45,9 @@ impl Offset {
     /// The value of the shaders' `DISTRIBUTION` for this distribution.
     pub fn code(self) -> u32 {
         match self {
-            Self::Signed => 0,
-            Self::Positive => 1,
-            Self::Gaussian => 2,
+            Self::Signed => offset::OFFSET_SIGNED,
+            Self::Positive => offset::OFFSET_POSITIVE,
+            Self::Gaussian => offset::OFFSET_GAUSSIAN,
         }
     }
 }

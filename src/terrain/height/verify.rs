@@ -14,8 +14,8 @@ use crate::terrain::height::{Blocks, HeightJob, HeightPass, HeightScratch};
 use crate::terrain::verify::{config, scattered};
 use crate::terrain::window::Window;
 
-/// The cases cover every size, distribution and number of coarse levels; windows of every alignment; features; batches; block
-/// sizes.
+/// The cases cover every size, distribution and number of coarse levels; windows of every
+/// alignment; features; batches; block sizes.
 ///
 /// # Errors
 /// What the device reports.

@@ -10,7 +10,8 @@ use crate::terrain::thermal::reference::thermal;
 use crate::terrain::thermal::{Thermal, ThermalPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
-/// The cases cover odd and even numbers of iterations, angles from 0 up, heights at the limit. Both buffers are compared as a whole.
+/// The cases cover odd and even numbers of iterations, angles from 0 up, and heights at the limit.
+/// Both buffers are compared as a whole.
 ///
 /// # Errors
 /// What the device reports.

@@ -9,14 +9,11 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::keyframe::keyframe_cursor;
 use crate::asset::transform::Transform;
+use crate::shared::animation::sample::VANISHING;
 
 mod arcs;
 
 use arcs::Arcs;
-
-/// A spline of rotations that comes this close to zero has no direction there and keeps the previous key's
-/// value.
-const VANISHING: f32 = 1e-12;
 
 /// Every bone's local transform at a time inside the clip, in seconds.
 pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {

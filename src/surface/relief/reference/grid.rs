@@ -1,11 +1,10 @@
 //! The grid of bilinear cells: the CPU reference of `wgsl/surface/grid.wgsl`.
 
+use crate::shared::surface::grid::{
+    SURFACE_FAR as FAR, SURFACE_LEAST_TRAVEL as LEAST_TRAVEL, SURFACE_NEVER as NEVER,
+};
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::Ray;
-
-const FAR: i32 = 1 << 30;
-const LEAST_TRAVEL: f32 = 1e-6;
-const NEVER: f32 = 2.0;
 
 /// The grid of bilinear cells under a ray.
 pub(crate) struct Grid {

@@ -1,9 +1,7 @@
 //! Bilinear heights: the CPU reference of `wgsl/surface/height.wgsl`.
 
+pub use crate::shared::surface::height::SURFACE_BILINEAR as BILINEAR;
 use crate::surface::map::{Address, HeightMap};
-
-/// Number of texel loads of one bilinear height.
-pub const BILINEAR: u32 = 4;
 
 /// The bilinear height at `uv`.
 pub fn height(map: &HeightMap, uv: [f32; 2], address: Address) -> f32 {

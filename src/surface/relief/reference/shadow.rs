@@ -1,6 +1,7 @@
 //! Self-shadow: the CPU reference of `wgsl/surface/shadow.wgsl`.
 
 use super::height::height;
+use crate::shared::surface::shadow::SURFACE_SHADOW_BIAS as BIAS;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
@@ -13,9 +14,6 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     let origin = [hit.uv[0] - rise * slope[0], hit.uv[1] - rise * slope[1]];
     Ray { origin, slope, cosine: light[2], polygon: 0.0 }
 }
-
-/// The height difference below which a point does not shade itself, as a fraction of the relief's depth.
-const BIAS: f32 = 0.005;
 
 /// Whether the light's ray ended above the point at which it was aimed.
 pub fn shaded(first: &Hit, hit: &Hit) -> bool {

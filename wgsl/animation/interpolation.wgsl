@@ -1,0 +1,8 @@
+// How values go from one key to the next, as tracks and weights say it.
+
+// They stay until the next key.
+const INTERPOLATION_STEP: u32 = 0u;
+// A straight line; rotations take the shortest arc.
+const INTERPOLATION_LINEAR: u32 = 1u;
+// A cubic Hermite spline: a key has an in-tangent, a value and an out-tangent.
+const INTERPOLATION_SPLINE: u32 = 2u;
