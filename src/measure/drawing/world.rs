@@ -121,7 +121,7 @@ impl<'a> World<'a> {
         };
         let mesh = &stage.model(variant.mesh).meshes[index];
         let keys = WeightSet::new(mesh, &stage.set, &[stage.subject.clip])?;
-        Ok(MorphWeightsPass::new(gpu)?.prepare(gpu, &keys, playing, &skin.crowd)?)
+        MorphWeightsPass::new(gpu)?.prepare(gpu, &keys, playing, &skin.crowd)
     }
 
     /// Who is seen, and how far they fade.
@@ -151,7 +151,7 @@ impl<'a> World<'a> {
             levels,
         };
         let instance_lods = &skin.crowd.instance_lods;
-        Ok(LodPass::new(gpu)?.prepare(gpu, &view, placements, instance_lods, drawn, &scene.arguments)?)
+        LodPass::new(gpu)?.prepare(gpu, &view, placements, instance_lods, drawn, &scene.arguments)
     }
 }
 
