@@ -31,6 +31,9 @@
 //! reports and pictures whole or not at all. Both need the feature `verify`. `plot` draws charts of such figures and
 //! needs `cli`.
 //!
+//! `measure` plays crowds of the caller's own models under level of detail, and reports what it saves and which errors
+//! it shows. It needs the feature `verify`.
+//!
 //! [`srgb`] converts between bytes and linear light. [`mod@hash`] draws counter-based random words. [`error`] names
 //! invalid input by field, value and bound.
 //!

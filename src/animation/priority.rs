@@ -43,7 +43,7 @@ pub const USER_DEFAULT: f32 = 0.5;
 pub const TERMS: [&str; 6] = ["translation", "rotation", "scale", "children", "depth", "user"];
 
 /// The weights of the terms, which sum to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Weights(pub [f64; 6]);
 
 impl Default for Weights {

@@ -20,6 +20,8 @@ mod harness;
 mod import;
 mod layers;
 mod malformed;
+#[cfg(feature = "verify")]
+mod measures;
 mod meshes;
 mod player;
 mod rigid;

@@ -1,40 +1,21 @@
 //! `relievo crowd`
 
-#[cfg(feature = "gpu")]
-mod device;
-#[cfg(feature = "gpu")]
-mod drawn;
-mod errors;
-mod gates;
+mod detail;
 mod pareto;
 mod plan;
-mod play;
-mod reference;
+mod progress;
 mod report;
-#[cfg(feature = "gpu")]
 mod scene;
-mod skinning;
-mod stage;
-mod triangles;
-mod verdict;
-#[cfg(feature = "gpu")]
-mod vertices;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use relievo::Error;
+use relievo::{Error, InputError, measure};
 
 use crate::Context;
 use crate::terrain::Backend;
-use gates::Mode;
 use plan::Plan;
-#[cfg(feature = "gpu")]
-use skinning::Drawn;
-
-/// Files of `--scene`, besides pictures.
-const SCENE_FILES: [&str; 2] = ["scene.json", "scene.png"];
 
 /// Plays a crowd under animation level of detail, and measures what it saves and what it costs: A's experiment
 /// (section 13), with the error that A left out.
@@ -132,7 +113,7 @@ pub struct Crowd {
     seed: u32,
     /// Who decides. Not with --pareto, which compares them all.
     #[arg(long, value_name = "MODE", required_unless_present = "pareto", conflicts_with = "pareto")]
-    gate: Option<Mode>,
+    gate: Option<Gate>,
     /// skip-period: seconds between two skipped updates at priority 1 and Ω = 1.
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_hyphen_values = true)]
     period: f64,
@@ -192,34 +173,57 @@ pub struct Crowd {
     out: PathBuf,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+/// The gates' names.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Gate {
+    Off,
+    SkipPeriod,
+    Uniform,
+    Random,
+    Budget,
+    Bounded,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Layout {
     Grid,
     Random,
 }
 
+impl From<Layout> for measure::Layout {
+    fn from(layout: Layout) -> Self {
+        match layout {
+            Layout::Grid => Self::Grid,
+            Layout::Random => Self::Random,
+        }
+    }
+}
+
 impl Crowd {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let plan = Plan::new(self)?;
-        match plan.drawn {
-            _ if self.pareto => pareto::run(&plan, &self.out)?,
-            #[cfg(feature = "gpu")]
-            Some(Drawn::Scene) => scene::run(&plan, context, &self.out)?,
-            _ => report::run(&plan, context, &self.out)?,
+        match (self.pareto, self.scene) {
+            (true, _) => pareto::run(&plan, &self.out)?,
+            (_, true) => scene::run(&plan, context, &self.out)?,
+            _ => report::run(&plan, self.image, context, &self.out)?,
         }
         Ok(ExitCode::SUCCESS)
     }
 
+    /// Whether meshes are asked for.
+    fn is_drawn(&self) -> bool {
+        self.image || self.scene
+    }
+
     /// The largest errors of `--pareto` alone, for the demonstration.
-    #[cfg(feature = "gpu")]
     pub fn comparison(&self) -> Result<image::RgbaImage, Error> {
         pareto::largest_errors(&Plan::new(self)?)
     }
 
     /// The picture of `--image` at the first distance alone, for the demonstration.
-    #[cfg(feature = "gpu")]
     pub fn picture(&self, context: &Context) -> Result<image::RgbaImage, Error> {
-        report::first_picture(&Plan::new(self)?, context)
+        let (_, pictures) = report::measured(&Plan::new(self)?, self.image, context)?;
+        let missing = || InputError::new("image", "no", "must be given");
+        Ok(pictures.into_iter().next().ok_or_else(missing)?)
     }
 }

@@ -1,19 +1,17 @@
 //! Which gate is how much better.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
-use super::gates::Mode;
-use super::pareto::Point;
+use super::ParetoPoint;
+use crate::measure::gates::GateName;
 
 /// What gates are compared with.
-const RIVALS: [Mode; 2] = [Mode::Uniform, Mode::Random];
+const RIVALS: [GateName; 2] = [GateName::Uniform, GateName::Random];
 
 /// Comparisons along curves: the least error that a gate reached at a cost or below it, interpolated between its points
 /// (by the error's logarithm); full evaluation, cost 1 and error 0, ends every curve.
-#[derive(Debug, Serialize)]
-pub struct Verdicts {
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparisons {
     /// The largest error at equal cost.
     pub bounded_max_pixels: Vec<AtCost>,
     /// The rms error at equal cost.
@@ -22,38 +20,48 @@ pub struct Verdicts {
     pub bounded_cost: Vec<AtError>,
 }
 
-#[derive(Debug, PartialEq, Serialize)]
+/// Errors in pixels at equal cost.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtCost {
+    /// Bones interpolated, of all that move.
     pub cost: f64,
+    /// The gate's error.
     pub gate: f64,
+    /// A rival's.
     pub uniform: f64,
+    /// A rival's.
     pub random: f64,
     /// The gate's error divided by the lesser of its rivals'; below 1 the gate is better.
     pub ratio: Option<f64>,
 }
 
-#[derive(Debug, PartialEq, Serialize)]
+/// Costs at equal largest error: bones interpolated, of all that move.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtError {
+    /// The error.
     pub max_pixels: f64,
+    /// The cost of uniform updates.
     pub uniform: f64,
+    /// That of the bounded gate.
     pub bounded: f64,
+    /// The latter divided by the former.
     pub ratio: f64,
 }
 
-impl Verdicts {
-    pub fn new(points: &[Point]) -> Self {
-        let largest = |point: &Point| point.error.max_pixels;
+impl Comparisons {
+    pub(crate) fn new(points: &[ParetoPoint]) -> Self {
+        let largest = |point: &ParetoPoint| point.error.max_pixels;
         Self {
-            bounded_max_pixels: at_costs(points, Mode::Bounded, largest),
-            budget_rms_pixels: at_costs(points, Mode::Budget, |point| point.error.rms_pixels),
+            bounded_max_pixels: at_costs(points, GateName::Bounded, largest),
+            budget_rms_pixels: at_costs(points, GateName::Budget, |point| point.error.rms_pixels),
             bounded_cost: at_errors(points),
         }
     }
 }
 
-fn at_costs(points: &[Point], mode: Mode, error: fn(&Point) -> f64) -> Vec<AtCost> {
-    let curve = |mode: Mode| Curve::of(points, mode, error);
-    let own = curve(mode);
+fn at_costs(points: &[ParetoPoint], name: GateName, error: fn(&ParetoPoint) -> f64) -> Vec<AtCost> {
+    let curve = |name: GateName| Curve::of(points, name, error);
+    let own = curve(name);
     let [uniform, random] = RIVALS.map(curve);
     let at = |tenth: u32| {
         let cost = f64::from(tenth) / 10.0;
@@ -66,13 +74,15 @@ fn at_costs(points: &[Point], mode: Mode, error: fn(&Point) -> f64) -> Vec<AtCos
     (1..10).filter_map(at).collect()
 }
 
-fn at_errors(points: &[Point]) -> Vec<AtError> {
-    let bounded = Curve::of(points, Mode::Bounded, |point| point.error.max_pixels);
-    let is_whole = |point: &&Point| {
+fn at_errors(points: &[ParetoPoint]) -> Vec<AtError> {
+    let bounded = Curve::of(points, GateName::Bounded, |point| point.error.max_pixels);
+    let is_whole = |point: &&ParetoPoint| {
         let frames = point.parameter.recip();
-        point.gate == Mode::Uniform && (frames - frames.round()).abs() < 1e-9 && point.error.max_pixels > 0.0
+        point.gate == GateName::Uniform
+            && (frames - frames.round()).abs() < 1e-9
+            && point.error.max_pixels > 0.0
     };
-    let at = |point: &Point| {
+    let at = |point: &ParetoPoint| {
         let (max_pixels, uniform) = (point.error.max_pixels, point.cost);
         let bounded = bounded.cost_at(max_pixels)?;
         Some(AtError { max_pixels, uniform, bounded, ratio: bounded / uniform })
@@ -84,8 +94,8 @@ fn at_errors(points: &[Point]) -> Vec<AtError> {
 struct Curve(Vec<[f64; 2]>);
 
 impl Curve {
-    fn of(points: &[Point], mode: Mode, error: fn(&Point) -> f64) -> Self {
-        let own = points.iter().filter(|point| point.gate == mode);
+    fn of(points: &[ParetoPoint], name: GateName, error: fn(&ParetoPoint) -> f64) -> Self {
+        let own = points.iter().filter(|point| point.gate == name);
         Self::new(own.map(|point| [point.cost, error(point)]).collect())
     }
 
@@ -124,59 +134,8 @@ impl Curve {
 }
 
 /// Between two errors, by their logarithms where they have any.
-fn between(a: f64, b: f64, fraction: f64) -> f64 {
-    if a > 0.0 && b > 0.0 { a * (b / a).powf(fraction) } else { a + (b - a) * fraction }
-}
-
-pub fn table(verdicts: &Verdicts) -> String {
-    let mut text = String::new();
-    for (name, what, rows) in [
-        ("bounded", "largest error in pixels", &verdicts.bounded_max_pixels),
-        ("budget", "rms error in pixels", &verdicts.budget_rms_pixels),
-    ] {
-        write!(
-            text,
-            "At equal cost, {what}:\n\n| cost | {name} | uniform | random | ratio to the better |\n"
-        )
-        .expect("a string");
-        text += "|---:|---:|---:|---:|---:|\n";
-        for AtCost { cost, gate, uniform, random, ratio } in rows {
-            let ratio = ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}"));
-            writeln!(text, "| {cost:.1} | {gate:.4} | {uniform:.4} | {random:.4} | {ratio} |")
-                .expect("a string");
-        }
-        writeln!(text, "\n{}\n", sentence(name, rows)).expect("a string");
-    }
-    text += "At equal largest error, interpolations of moving bones:\n\n\
-             | largest error px | uniform | bounded | ratio |\n|---:|---:|---:|---:|\n";
-    for AtError { max_pixels, uniform, bounded, ratio } in &verdicts.bounded_cost {
-        writeln!(text, "| {max_pixels:.3} | {uniform:.3} | {bounded:.3} | {ratio:.2} |").expect("a string");
-    }
-    let ratios: Vec<f64> = verdicts.bounded_cost.iter().map(|row| row.ratio).collect();
-    if let Some([least, most]) = ends(&ratios) {
-        writeln!(text, "\n`bounded` does {least:.2} to {most:.2} times the interpolations of `uniform`.")
-            .expect("a string");
-    }
-    text
-}
-
-fn sentence(name: &str, rows: &[AtCost]) -> String {
-    let ratios: Vec<f64> = rows.iter().filter_map(|row| row.ratio).collect();
-    let worse: Vec<_> = (rows.iter())
-        .filter(|row| row.ratio.is_some_and(|ratio| ratio >= 1.0))
-        .map(|row| format!("{:.1}", row.cost))
-        .collect();
-    let Some([least, most]) = ends(&ratios) else { return format!("`{name}` has no rival.") };
-    let verdict = match worse.is_empty() {
-        true => "better at every one of these costs".to_owned(),
-        false => format!("not better at the costs {}", worse.join(", ")),
-    };
-    format!("`{name}` is {verdict}: {least:.2} to {most:.2} times the error.")
-}
-
-fn ends(values: &[f64]) -> Option<[f64; 2]> {
-    let [least, most] = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| values.iter().copied().reduce(of));
-    Some([least?, most?])
+fn between(a: f64, b: f64, weight: f64) -> f64 {
+    if a > 0.0 && b > 0.0 { a * (b / a).powf(weight) } else { a + (b - a) * weight }
 }
 
 #[cfg(test)]
@@ -201,12 +160,5 @@ mod tests {
         near(curve.cost_at(1.0), 0.4);
         near(curve.cost_at(0.5), 0.6);
         near(curve.cost_at(0.0), 1.0);
-    }
-
-    #[test]
-    fn sentences_admit_defeat() {
-        let row = |cost, ratio| AtCost { cost, gate: 1.0, uniform: 1.0, random: 1.0, ratio: Some(ratio) };
-        assert!(sentence("x", &[row(0.1, 0.5), row(0.2, 0.9)]).contains("better at every"));
-        assert!(sentence("x", &[row(0.1, 0.5), row(0.2, 1.0)]).contains("not better at the costs 0.2"));
     }
 }

@@ -1,51 +1,50 @@
 //! The crowd on the device.
 
-use relievo::Error;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
-use relievo::animation::sample::SamplePass;
-use relievo::animation::{Gate, Lod};
-use relievo::asset::Affine;
-use relievo::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
-
 use super::gates::{PATH, frame};
-use super::play::{Play, Played, Taken, Times, Timing};
+use super::play::{FrameTimes, Play, Played, Times, Timing};
 use super::stage::Stage;
+use crate::Error;
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::frame::GatedFrame;
+use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use crate::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
+use crate::animation::sample::SamplePass;
+use crate::animation::{Gate, Lod};
+use crate::asset::Affine;
+use crate::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
 
 /// Both crowds.
-pub struct Device {
+pub(crate) struct Device {
     gpu: Gpu,
     timer: Timer,
     rate: f64,
-    pub(super) gated: Gated,
-    pub(super) full: Full,
+    pub(crate) gated: Gated,
+    pub(crate) full: Full,
     stale: Vec<Affine>,
     fresh: Vec<Affine>,
 }
 
 /// The crowd under a gate.
-pub(super) struct Gated {
-    pub(super) crowd: Crowd,
-    pub(super) frame: GatedFrame,
+pub(crate) struct Gated {
+    pub(crate) crowd: Crowd,
+    pub(crate) frame: GatedFrame,
 }
 
 /// Everything of everybody.
-pub(super) struct Full {
-    pub(super) crowd: Crowd,
+pub(crate) struct Full {
+    pub(crate) crowd: Crowd,
     place: KeyframeCursorJob,
     sample: Job,
     local_to_model: LocalToModelJob,
 }
 
 impl Device {
-    pub fn new(gpu: &Gpu, stage: &Stage<'_>, gate: &Gate, lods: &[Lod]) -> Result<Self, Error> {
+    pub(crate) fn new(gpu: &Gpu, stage: &Stage<'_>, gate: &Gate, lods: &[Lod]) -> Result<Self, Error> {
         let clips = ClipBuffers::new(gpu, &stage.set)?;
         Ok(Self {
             gpu: gpu.clone(),
             timer: Timer::new(gpu)?,
-            rate: stage.plan.rate,
+            rate: stage.options.rate,
             gated: Gated::new(gpu, stage, &clips, gate, lods)?,
             full: Full::new(gpu, stage, &clips)?,
             stale: Vec::new(),
@@ -54,12 +53,12 @@ impl Device {
     }
 
     /// What clock takes the times.
-    pub fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
+    pub(crate) fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
         Ok(Timer::new(gpu)?.timed_by())
     }
 
     /// Chooses the frame that is recorded next.
-    pub fn set(&self, number: u32) -> Result<(), Error> {
+    pub(crate) fn set(&self, number: u32) -> Result<(), Error> {
         let (frame, elapsed) = frame(number, self.rate);
         self.gated.frame.set(&self.gpu, &frame, elapsed)?;
         self.full.place.set(&self.gpu, elapsed)
@@ -73,11 +72,10 @@ impl Device {
     /// Both crowds, whole frames.
     fn play_whole(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
-        let whole = |time| Taken { whole: Some(time), ..Taken::default() };
         let frame = &gated.frame;
         Ok(Times {
-            gated: whole(self.timed(|pass| frame.dispatch(pass))?),
-            full: whole(self.timed(|pass| full.dispatch(pass))?),
+            gated: FrameTimes::of_whole(self.timed(|pass| frame.dispatch(pass))?),
+            full: FrameTimes::of_whole(self.timed(|pass| full.dispatch(pass))?),
         })
     }
 
@@ -85,7 +83,7 @@ impl Device {
     fn play_stages(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
         let frame = &gated.frame;
-        let stages = |gate, sample, local_to_model| Taken { gate, sample, local_to_model, whole: None };
+        let stages = |gate, sample, local_to_model| FrameTimes { gate, sample, local_to_model, whole: None };
         Ok(Times {
             gated: stages(
                 Some(self.timed(|pass| frame.dispatch_gate(pass))?),
@@ -143,7 +141,7 @@ impl Gated {
         gate: &Gate,
         lods: &[Lod],
     ) -> Result<Self, Error> {
-        let skeleton = &stage.plan.model.skeleton;
+        let skeleton = &stage.subject.model.skeleton;
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, gate)?;
         frame.state.lods.write(gpu, lods)?;
@@ -157,7 +155,11 @@ impl Full {
         Ok(Self {
             place: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
-            local_to_model: LocalToModelPass::new(gpu)?.prepare(gpu, &stage.plan.model.skeleton, &crowd)?,
+            local_to_model: LocalToModelPass::new(gpu)?.prepare(
+                gpu,
+                &stage.subject.model.skeleton,
+                &crowd,
+            )?,
             crowd,
         })
     }
@@ -172,7 +174,7 @@ impl Full {
         self.local_to_model.dispatch(pass);
     }
 
-    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "full"));
     }
 }

@@ -1,26 +1,25 @@
-//! The crowd on the CPU.
+//! The crowd on the CPU, by the references.
 
 use std::time::Instant;
 
-use relievo::animation::frame::reference::Crowd;
-use relievo::animation::{Gate, Lod};
-use relievo::asset::Affine;
-use relievo::{Error, InputError};
-
 use super::gates::{PATH, frame};
-use super::play::{Play, Played, Taken, Times, Timing};
+use super::play::{FrameTimes, Play, Played, Times, Timing};
 use super::stage::Stage;
+use crate::animation::frame::reference::Crowd;
+use crate::animation::{Gate, Lod};
+use crate::asset::Affine;
+use crate::{Error, InputError};
 
-/// Both crowds.
-pub struct References<'a> {
+/// The crowd under a gate, and the same in full.
+pub(crate) struct Cpu<'a> {
     gated: Crowd<'a>,
     full: Crowd<'a>,
     rate: f64,
 }
 
-impl<'a> References<'a> {
-    /// `off` is the gate of [`Mode::Off`](super::gates::Mode::Off).
-    pub fn new(
+impl<'a> Cpu<'a> {
+    /// `off` is the gate of [`GateMode::Off`](super::gates::GateMode::Off).
+    pub(crate) fn new(
         stage: &'a Stage<'_>,
         gate: &'a Gate,
         off: &'a Gate,
@@ -29,11 +28,11 @@ impl<'a> References<'a> {
         let crowd = |gate| Crowd::new(&stage.order, &stage.set, gate, PATH, stage.instances.clone());
         let mut gated = crowd(gate)?;
         gated.lods = lods;
-        Ok(Self { gated, full: crowd(off)?, rate: stage.plan.rate })
+        Ok(Self { gated, full: crowd(off)?, rate: stage.options.rate })
     }
 }
 
-impl Play for References<'_> {
+impl Play for Cpu<'_> {
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
         let (frame, elapsed) = frame(number, self.rate);
         let start = Instant::now();
@@ -41,8 +40,7 @@ impl Play for References<'_> {
         let gated = start.elapsed();
         self.full.advance(&frame, elapsed);
         let full = start.elapsed() - gated;
-        let [gated, full] =
-            [gated, full].map(|time| Taken { whole: Some(time.as_nanos() as f64), ..Taken::default() });
+        let [gated, full] = [gated, full].map(|time| FrameTimes::of_whole(time.as_nanos() as f64));
         Ok(Played {
             interpolated: work.pairs.len(),
             concatenated: work.updated_bones.iter().map(|word| word.count_ones() as usize).sum(),

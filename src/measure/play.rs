@@ -1,20 +1,19 @@
 //! Playing a crowd: what a frame does and takes, on the device or the CPU.
 
-use relievo::Error;
-use relievo::asset::Affine;
 use serde::Serialize;
 
 use super::errors::{Errors, Jump, Meter};
-use super::gates::Mode;
-use super::plan::Plan;
-use super::stage::{Scene, Stage};
+use super::placement::Placements;
+use super::stage::Stage;
+use crate::Error;
+use crate::asset::Affine;
 
 /// Frames of a run that are timed.
 const TIMED: u32 = 40;
 
 /// What a frame did.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Played {
+pub(crate) struct Played {
     /// Bones that were sampled.
     pub interpolated: usize,
     /// Bones whose matrices were computed.
@@ -25,7 +24,7 @@ pub struct Played {
 
 /// How a frame is timed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Timing {
+pub(crate) enum Timing {
     None,
     /// In one piece, as a renderer records it.
     Whole,
@@ -47,74 +46,78 @@ impl Timing {
 
 /// Nanoseconds of a frame.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Times {
+pub(crate) struct Times {
     /// With the gate.
-    pub gated: Taken,
+    pub gated: FrameTimes,
     /// Without.
-    pub full: Taken,
+    pub full: FrameTimes,
 }
 
 /// What was measured of a frame.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Taken {
+pub(crate) struct FrameTimes {
     pub gate: Option<f64>,
     pub sample: Option<f64>,
     pub local_to_model: Option<f64>,
     pub whole: Option<f64>,
 }
 
-/// Nanoseconds by stage, and of whole frames; on the CPU the latter alone.
+/// Nanoseconds by stage, and of whole frames; on the CPU the latter alone. Medians over the frames that were timed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Stages {
+pub struct StageTimes {
+    /// The search for phases, the decision and the lists.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gate: Option<f64>,
+    /// Keyframes' interpolation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample: Option<f64>,
+    /// From local transforms to the model's space.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub local_to_model: Option<f64>,
+    /// The whole frame, recorded in one piece.
     pub total: f64,
 }
 
 /// A crowd under a gate, and the same in full.
-pub trait Play {
+pub(crate) trait Play {
     /// Brings both to a frame.
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error>;
-    /// The gated crowd's palettes.
+    /// The gated crowd's model matrices.
     fn stale(&self) -> &[Affine];
     /// The full crowd's.
     fn fresh(&self) -> &[Affine];
 }
 
 /// What a run found.
-pub struct Found {
+pub(crate) struct Found {
     pub interpolated: u64,
     pub concatenated: u64,
     pub errors: Errors,
     pub jump: Jump,
     /// Medians.
-    pub gated: Stages,
-    pub full: Stages,
+    pub gated: StageTimes,
+    pub full: StageTimes,
 }
 
 /// Plays all frames, and measures all but the first. `step` is called after each.
-pub fn run(
-    play: &mut impl Play,
+pub(crate) fn play(
+    crowds: &mut impl Play,
     stage: &Stage<'_>,
-    scene: &Scene,
+    placements: &Placements,
     is_timed: bool,
     step: impl Fn(),
 ) -> Result<Found, Error> {
-    let mut meter = Meter::new(stage, scene);
+    let mut meter = Meter::new(&stage.radii, stage.projection, placements);
     let (mut interpolated, mut concatenated, mut times) = (0, 0, Vec::new());
-    let frames = stage.plan.frames;
+    let frames = stage.options.frames;
     for number in 0..=frames {
         let timing = if is_timed { Timing::of(number, frames) } else { Timing::None };
-        let played = play.play(number, timing)?;
+        let played = crowds.play(number, timing)?;
         if number > 0 {
             interpolated += played.interpolated as u64;
             concatenated += played.concatenated as u64;
             times.extend(played.times);
-            meter.add(play.stale(), play.fresh());
+            meter.add(crowds.stale(), crowds.fresh());
         }
         step();
     }
@@ -125,23 +128,30 @@ pub fn run(
 }
 
 /// The median, where there is one.
-pub fn middle(mut times: Vec<f64>) -> Option<f64> {
+pub(crate) fn middle(mut times: Vec<f64>) -> Option<f64> {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied()
 }
 
-fn medians(times: &[Taken]) -> Stages {
-    let median = |of: &dyn Fn(&Taken) -> Option<f64>| middle(times.iter().filter_map(of).collect());
+fn medians(times: &[FrameTimes]) -> StageTimes {
+    let median = |of: &dyn Fn(&FrameTimes) -> Option<f64>| middle(times.iter().filter_map(of).collect());
     let [gate, sample, local_to_model] =
         [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.local_to_model)];
     // The stages' sum where no whole frame was timed.
     let sum = [gate, sample, local_to_model].into_iter().flatten().sum();
-    Stages { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
+    StageTimes { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
 }
 
-impl Stages {
+impl FrameTimes {
+    /// Of a frame in one piece.
+    pub(crate) fn of_whole(nanoseconds: f64) -> Self {
+        Self { whole: Some(nanoseconds), ..Self::default() }
+    }
+}
+
+impl StageTimes {
     /// Divided by so many bones.
-    pub fn a_bone(&self, bones: usize) -> Self {
+    pub(crate) fn a_bone(&self, bones: usize) -> Self {
         let each = |time: Option<f64>| time.map(|time| time / bones as f64);
         Self {
             gate: each(self.gate),
@@ -150,9 +160,4 @@ impl Stages {
             total: self.total / bones as f64,
         }
     }
-}
-
-/// The plan's gate, and the most bones that it may sample.
-pub fn gate_of(plan: &Plan) -> (Mode, u32) {
-    (plan.gate.unwrap_or(Mode::Off), plan.budget.unwrap_or(0))
 }

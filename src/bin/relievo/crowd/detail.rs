@@ -1,0 +1,65 @@
+//! `--skinning` and `--mesh`
+
+use relievo::InputError;
+use relievo::measure::{MeshDetail, SkinningDetail};
+use relievo::skinning::instance_lod::InstanceLod;
+
+/// Which bones vertices follow.
+pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
+    let refused = || InputError::new("skinning", text, "must be full, truncate:K, fade or bounded:PIXELS");
+    if let Some(pixels) = bounded("skinning", text) {
+        return Ok(SkinningDetail::Bounded { pixels: pixels? });
+    }
+    match text.split_once(':') {
+        None if text == "full" => Ok(SkinningDetail::Full),
+        None if text == "fade" => Ok(SkinningDetail::Fade),
+        Some(("truncate", most)) => {
+            let instance_lod =
+                InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(|error| {
+                    InputError::new("skinning", text, format!("{} {}", error.path, error.bound))
+                })?;
+            let max_influences = instance_lod.max_influences;
+            let is_full = instance_lod == InstanceLod::FULL;
+            Ok(if is_full { SkinningDetail::Full } else { SkinningDetail::Truncate { max_influences } })
+        }
+        _ => Err(refused()),
+    }
+}
+
+/// Which triangles meshes have.
+pub fn mesh(text: &str) -> Result<MeshDetail, InputError> {
+    match bounded("mesh", text) {
+        Some(pixels) => Ok(MeshDetail::Bounded { pixels: pixels? }),
+        None if text == "full" => Ok(MeshDetail::Full),
+        None => Err(InputError::new("mesh", text, "must be full or bounded:PIXELS")),
+    }
+}
+
+/// The pixels of `bounded:PIXELS`, if that is what it is.
+fn bounded(field: &str, text: &str) -> Option<Result<f32, InputError>> {
+    let pixels = text.strip_prefix("bounded:")?;
+    let within = pixels.parse().ok().filter(|pixels| (0.0..=1e6).contains(pixels));
+    Some(within.ok_or_else(|| InputError::new(field, text, "must be bounded: and 0 to 1e6 pixels")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        for name in ["full", "fade", "truncate:2", "bounded:0.25"] {
+            assert_eq!(skinning(name).expect("valid").to_string(), name);
+        }
+        for name in ["full", "bounded:0.25"] {
+            assert_eq!(mesh(name).expect("valid").to_string(), name);
+        }
+        for name in ["", "truncate", "truncate:0", "truncate:x", "fade:1", "half"] {
+            assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");
+        }
+        for name in ["", "bounded", "bounded:-1", "bounded:NaN", "bounded:x", "half", "full:1"] {
+            assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");
+            assert_eq!(mesh(name).expect_err("refused").path, "mesh", "{name}");
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Checks of options.
+
+use crate::InputError;
+
+/// Refuses a value that is not in these bounds, or no number.
+pub(crate) fn check(
+    field: &str,
+    value: f64,
+    bounds: std::ops::RangeInclusive<f64>,
+) -> Result<(), InputError> {
+    if bounds.contains(&value) {
+        return Ok(());
+    }
+    Err(InputError::new(field, value, format!("must be in {}..={}", bounds.start(), bounds.end())))
+}

@@ -1,0 +1,238 @@
+//! A crowd with its skin, on screen: looks at the same frames, each with what it takes and how far its vertices lie from
+//! where full animation and full skinning put them.
+
+mod look;
+mod world;
+
+use image::RgbaImage;
+
+use super::device::Device;
+use super::gates::frame;
+use super::options::{CrowdOptions, DrawnOptions, MeshDetail, SkinningDetail};
+use super::placement::Placements;
+use super::stage::{LINES, Stage};
+use super::vertices::{FrameCost, Seen, Skinned};
+use crate::animation::{Gate, Lod};
+use crate::gpu::{Gpu, TimedBy, Timer};
+use crate::render::target::Target;
+use crate::{Error, InputError};
+use look::Look;
+use world::World;
+
+/// Frames of a run that are timed.
+const TIMED: u32 = 45;
+
+/// Linear.
+const SKY: [f64; 3] = [0.02, 0.025, 0.03];
+
+/// Width of the picture over its height.
+const ASPECT: [u32; 2] = [16, 9];
+
+/// In pixels.
+const PICTURE: [u32; 2] = [LINES * ASPECT[0] / ASPECT[1], LINES];
+
+/// Who animates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Animation {
+    /// The crowd under the gate; clusters with a bone that moved are skinned.
+    Gated,
+    /// Everything of everybody, in animation and skinning.
+    Full,
+}
+
+/// How a crowd is animated, skinned and drawn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Variant {
+    pub animation: Animation,
+    pub skinning: SkinningDetail,
+    pub mesh: MeshDetail,
+}
+
+impl Variant {
+    /// Without level of detail.
+    pub(crate) const FULL: Self =
+        Self { animation: Animation::Full, skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
+
+    /// With what is drawn, all of it animated.
+    pub(crate) fn of(drawn: &DrawnOptions) -> Self {
+        Self { skinning: drawn.skinning, mesh: drawn.mesh, ..Self::FULL }
+    }
+}
+
+/// Turns until each of so many variants was timed as a whole and in its parts, and all of their skinning once.
+fn turns(variants: usize) -> usize {
+    2 * variants + 1
+}
+
+/// Refuses too few frames to take each time of so many variants once.
+pub(crate) fn check_frames(options: &CrowdOptions, variants: usize) -> Result<(), InputError> {
+    let least = turns(variants);
+    if options.frames as usize >= least {
+        return Ok(());
+    }
+    let bound = format!("must be at least {least}, as the crowd is drawn");
+    Err(InputError::new("frames", options.frames, bound))
+}
+
+/// Looks at a crowd. The first is what the others are compared with.
+pub(crate) struct Drawing<'a> {
+    gpu: &'a Gpu,
+    stage: &'a Stage<'a>,
+    placements: &'a Placements,
+    device: Device,
+    timer: Timer,
+    target: Target,
+    looks: Vec<Look>,
+}
+
+impl<'a> Drawing<'a> {
+    /// A look for each of `variants`.
+    pub(crate) fn new(
+        gpu: &'a Gpu,
+        stage: &'a Stage<'a>,
+        placements: &'a Placements,
+        (gate, lods): (&Gate, &[Lod]),
+        variants: &[Variant],
+    ) -> Result<Self, Error> {
+        let device = Device::new(gpu, stage, gate, lods)?;
+        let world = World::new(gpu, stage, placements)?;
+        let looks = variants.iter().map(|variant| world.look(&device, *variant)).collect::<Result<_, _>>()?;
+        Ok(Self {
+            looks,
+            target: Target::new(gpu, PICTURE)?,
+            timer: Timer::for_drawing(gpu)?,
+            gpu,
+            stage,
+            placements,
+            device,
+        })
+    }
+
+    /// Plays all frames, and says of each look what it took. `step` is called after each frame.
+    pub(crate) fn run(&mut self, step: impl Fn()) -> Result<Vec<FrameCost>, Error> {
+        let CrowdOptions { frames, rate, .. } = *self.stage.options;
+        let mut timed = 0..;
+        for number in 0..=frames {
+            self.device.set(number)?;
+            let (_, elapsed) = frame(number, rate);
+            for mesh in self.looks.iter().flat_map(|look| &look.meshes) {
+                mesh.weights.set(self.gpu, elapsed)?;
+            }
+            if number > 0 && number % frames.div_ceil(TIMED) == 0 {
+                let turn = timed.next().unwrap_or(0) % turns(self.looks.len());
+                self.play_timed(turn)?;
+                self.compare()?;
+            } else {
+                self.gpu.run("frame", |encoder| {
+                    self.device.gated.frame.record(encoder);
+                    let gated = |look: &&Look| look.variant.animation == Animation::Gated;
+                    self.looks.iter().filter(gated).for_each(|look| look.compute(encoder));
+                })?;
+            }
+            step();
+        }
+        Ok(self.looks.iter().map(Look::cost).collect())
+    }
+
+    /// What clock takes the times.
+    pub(crate) fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
+        Ok(Timer::for_drawing(gpu)?.timed_by())
+    }
+
+    /// A picture of the last frame.
+    pub(crate) fn picture(&self, look: usize) -> Result<RgbaImage, Error> {
+        let look = &self.looks[look];
+        self.target.draw(self.gpu, SKY, |pass| look.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)))?;
+        Ok(self.target.read(self.gpu)?)
+    }
+
+    /// A frame of all looks. The gated crowd can be stepped once alone, so that looks take turns: one is timed as a
+    /// whole, or what is computed and what is drawn apart; in the last turn, of each look its skinning.
+    fn play_timed(&mut self, turn: usize) -> Result<(), Error> {
+        let chosen = (turn < 2 * self.looks.len()).then_some(turn / 2);
+        for animation in [Animation::Gated, Animation::Full] {
+            if chosen.is_none_or(|chosen| self.looks[chosen].variant.animation != animation) {
+                self.gpu.run("animation", |encoder| self.device.record(animation, encoder))?;
+            }
+        }
+        if let Some(chosen) = chosen {
+            self.time_look(chosen, turn.is_multiple_of(2))?;
+        }
+        let Self { gpu, timer, looks, .. } = self;
+        for (index, look) in looks.iter_mut().enumerate() {
+            match chosen {
+                None => {
+                    gpu.run("decisions", |encoder| look.decide(encoder))?;
+                    let skin = timer.measure(gpu, |encoder| look.skin(encoder))?.nanoseconds;
+                    look.times.skin.push(skin);
+                }
+                Some(chosen) if chosen == index => {}
+                Some(_) => gpu.run("skinning", |encoder| look.compute(encoder))?,
+            }
+        }
+        Ok(())
+    }
+
+    /// A look's frame with its animation, in one piece or in two.
+    fn time_look(&mut self, chosen: usize, is_whole: bool) -> Result<(), Error> {
+        let Self { gpu, timer, target, device, looks, .. } = self;
+        let look = &looks[chosen];
+        let compute = |encoder: &mut wgpu::CommandEncoder| {
+            device.record(look.variant.animation, encoder);
+            look.compute(encoder);
+        };
+        let draw = |encoder: &mut wgpu::CommandEncoder| look.draw(target, encoder);
+        let timed = |record: &dyn Fn(&mut wgpu::CommandEncoder)| -> Result<f64, Error> {
+            Ok(timer.measure(gpu, record)?.nanoseconds)
+        };
+        if is_whole {
+            let frame = timed(&|encoder| {
+                compute(encoder);
+                draw(encoder);
+            })?;
+            looks[chosen].times.frame.push(frame);
+        } else {
+            let [compute, draw] = [timed(&compute)?, timed(&draw)?];
+            looks[chosen].times.compute.push(compute);
+            looks[chosen].times.draw.push(draw);
+        }
+        Ok(())
+    }
+
+    /// Reads all looks back, and compares them with the first.
+    fn compare(&mut self) -> Result<(), Error> {
+        let Self { gpu, stage, placements, looks, .. } = self;
+        for mesh in 0..stage.subject.model.meshes.len() {
+            let first = &looks[0].meshes[mesh];
+            let fresh = first.skin.skinned.read_blocking(gpu)?;
+            let places = first.places.clone();
+            let fresh = Skinned { vertices: &fresh, places: &places };
+            for look in looks.iter_mut() {
+                let drawn = &look.meshes[mesh];
+                let own = drawn.skin.skinned.read_blocking(gpu)?;
+                let stale = Skinned { vertices: &own, places: &drawn.places };
+                let instance_lods = drawn.skin.crowd.instance_lods.read_blocking(gpu)?;
+                let levelled = stage.levelled.as_ref().filter(|_| look.variant.mesh != MeshDetail::Full);
+                let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));
+                look.errors.add(
+                    (placements, stage.projection),
+                    Seen { instance_lods: &instance_lods, levels },
+                    stale,
+                    fresh,
+                );
+                look.count(gpu, mesh, &instance_lods)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Device {
+    /// A frame of one of the crowds.
+    fn record(&self, animation: Animation, encoder: &mut wgpu::CommandEncoder) {
+        match animation {
+            Animation::Gated => self.gated.frame.record(encoder),
+            Animation::Full => self.full.record(encoder),
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! How far stale points lie from fresh ones.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::placement::{Placement, Placements};
+use super::tally::Tally;
+use crate::animation::Projection;
+use crate::asset::Affine;
+
+/// How far points lie from where full evaluation puts them, over all frames. Metres are the model's; percentiles are at
+/// most a 64th too large.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Errors {
+    /// The root of the mean square.
+    pub rms_metres: f64,
+    /// What 99 of 100 are at most.
+    pub p99_metres: f64,
+    /// The largest.
+    pub max_metres: f64,
+    /// As in metres, on screen.
+    pub rms_pixels: f64,
+    /// As in metres, on screen.
+    pub p99_pixels: f64,
+    /// As in metres, on screen.
+    pub max_pixels: f64,
+    /// Points in all frames.
+    pub points: u64,
+    /// Those nearer than the near plane, which have no pixels; of vertices, those of instances out of view too.
+    pub unseen: u64,
+}
+
+/// The largest change of a point's error from one frame to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Jump {
+    /// In the model's metres.
+    pub max_metres: f64,
+    /// On screen, as if across the line of sight.
+    pub max_pixels: f64,
+}
+
+/// Collects errors frame by frame, of the ends of all bones' axes.
+pub(crate) struct Meter<'a> {
+    /// For each bone, how far along its axes.
+    radii: &'a [f32],
+    projection: Projection,
+    placements: &'a Placements,
+    /// Each of some instances in turn.
+    parts: Vec<Part>,
+    /// Instances of a part.
+    each: usize,
+}
+
+/// What is known of some instances.
+struct Part {
+    metres: Tally,
+    pixels: Tally,
+    jump: Jump,
+    unseen: u64,
+    /// Of each bone: stale minus fresh in the frame before.
+    last: Vec<Affine>,
+}
+
+impl<'a> Meter<'a> {
+    pub(crate) fn new(radii: &'a [f32], projection: Projection, placements: &'a Placements) -> Self {
+        let (count, bones) = (placements.origins.len(), radii.len());
+        let each = count.div_ceil(rayon::current_num_threads());
+        let part = |first: usize| Part {
+            metres: Tally::new(),
+            pixels: Tally::new(),
+            jump: Jump { max_metres: 0.0, max_pixels: 0.0 },
+            unseen: 0,
+            last: vec![[[0.0; 4]; 3]; bones * each.min(count - first)],
+        };
+        let parts = (0..count).step_by(each).map(part).collect();
+        Self { radii, projection, placements, parts, each }
+    }
+
+    /// Adds a frame; both lists are `instance · bones + bone`.
+    pub(crate) fn add(&mut self, stale: &[Affine], fresh: &[Affine]) {
+        let Self { radii, projection, placements, each, .. } = *self;
+        let pairs = each * radii.len();
+        let lists = stale.par_chunks(pairs).zip(fresh.par_chunks(pairs));
+        self.parts.par_iter_mut().zip(lists).enumerate().for_each(|(at, (part, (stale, fresh)))| {
+            for (pair, (stale, fresh)) in stale.iter().zip(fresh).enumerate() {
+                let placement = placements.get(at * each + pair / radii.len(), projection);
+                part.add(pair, &placement, radii[pair % radii.len()], stale, fresh);
+            }
+        });
+    }
+
+    pub(crate) fn finish(self) -> (Errors, Jump) {
+        let (mut metres, mut pixels, mut unseen) = (Tally::new(), Tally::new(), 0);
+        let mut jump = Jump { max_metres: 0.0, max_pixels: 0.0 };
+        for part in &self.parts {
+            metres.merge(&part.metres);
+            pixels.merge(&part.pixels);
+            unseen += part.unseen;
+            jump.max_metres = jump.max_metres.max(part.jump.max_metres);
+            jump.max_pixels = jump.max_pixels.max(part.jump.max_pixels);
+        }
+        (Errors::of(&metres, &pixels, unseen), jump)
+    }
+}
+
+impl Errors {
+    pub(crate) fn of(metres: &Tally, pixels: &Tally, unseen: u64) -> Self {
+        Self {
+            rms_metres: metres.rms(),
+            p99_metres: metres.percentile(0.99),
+            max_metres: metres.max,
+            rms_pixels: pixels.rms(),
+            p99_pixels: pixels.percentile(0.99),
+            max_pixels: pixels.max,
+            points: metres.count,
+            unseen,
+        }
+    }
+}
+
+impl Part {
+    /// The ends of a bone's axes, `radius` out.
+    fn add(&mut self, pair: usize, placement: &Placement, radius: f32, stale: &Affine, fresh: &Affine) {
+        let off: Affine =
+            std::array::from_fn(|row| std::array::from_fn(|column| stale[row][column] - fresh[row][column]));
+        let last = std::mem::replace(&mut self.last[pair], off);
+        let still = [[0.0; 4]; 3];
+        if off == still && last == still {
+            self.metres.count += 6;
+            self.pixels.count += 6;
+            return;
+        }
+        for (axis, side) in (0..3).flat_map(|axis| [(axis, -radius), (axis, radius)]) {
+            let at = |matrix: &Affine| -> [f64; 3] {
+                matrix.map(|row| f64::from(row[3]) + f64::from(side) * f64::from(row[axis]))
+            };
+            let [offset, before] = [at(&off), at(&last)];
+            let change = length(std::array::from_fn(|axis| offset[axis] - before[axis]));
+            self.metres.add(length(offset));
+            self.jump.max_metres = self.jump.max_metres.max(change);
+            match placement.pixels(at(fresh), offset) {
+                None => self.unseen += 1,
+                Some([pixels, a_metre]) => {
+                    self.pixels.add(pixels);
+                    self.jump.max_pixels = self.jump.max_pixels.max(change * a_metre);
+                }
+            }
+        }
+    }
+}
+
+pub(crate) fn length([x, y, z]: [f64; 3]) -> f64 {
+    (x * x + y * y + z * z).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One bone, a metre long, ten metres before a lens of 1000 pixels, moved sideways, up and away.
+    #[test]
+    fn errors_are_projected_and_jumps_seen() {
+        let projection = Projection { focal_pixels: 1000.0, near: 0.1 };
+        let placements = Placements { origins: vec![[0.0, 0.0, 10.0]], turns: vec![[0.0, 1.0]] };
+        let fresh: Affine = crate::asset::transform::AFFINE_IDENTITY;
+        let run = |ways: &[[f32; 3]]| {
+            let mut meter = Meter::new(&[1.0], projection, &placements);
+            for way in ways {
+                let mut stale = fresh;
+                (0..3).for_each(|row| stale[row][3] = way[row]);
+                meter.add(&[stale], &[fresh]);
+            }
+            meter.finish()
+        };
+        let (errors, jump) = run(&[[0.1, 0.0, 0.0]]);
+        // The nearest point is 9 m away.
+        assert!((errors.max_pixels - 100.0 / 9.0).abs() < 1e-4 && (errors.rms_metres - 0.1).abs() < 1e-6);
+        assert!((jump.max_metres - 0.1).abs() < 1e-6 && errors.points == 6);
+        // Toward the camera a point on the axis does not move on screen, one a metre beside it does a little.
+        let (errors, _) = run(&[[0.0, 0.0, 0.1]]);
+        assert!((errors.max_pixels - 1000.0 * (1.0 / 9.9 - 0.1)).abs() < 1e-3, "{errors:?}");
+        let (errors, jump) = run(&[[0.0, 0.1, 0.0], [0.0, -0.1, 0.0], [0.0, -0.1, 0.0]]);
+        assert!((jump.max_metres - 0.2).abs() < 1e-6 && errors.points == 18);
+        let (errors, _) = run(&[[0.0, 0.0, 0.0], [0.0, 0.0, 20.0]]);
+        assert_eq!((errors.points, errors.unseen), (12, 6));
+    }
+}

@@ -1,0 +1,198 @@
+//! Error against cost for every gate, on the CPU.
+
+mod comparison;
+
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+pub use comparison::{AtCost, AtError, Comparisons};
+
+use crate::Error;
+use crate::animation::priority::Weights;
+use crate::animation::{Gate, lod::OMEGA_ONE};
+use crate::measure::cpu::Cpu;
+use crate::measure::errors::{Errors, Jump};
+use crate::measure::gates::{GateMode, GateName};
+use crate::measure::options::{ParetoOptions, Subject};
+use crate::measure::placement::Placements;
+use crate::measure::play::play;
+use crate::measure::progress::{Listener, Steps};
+use crate::measure::stage::{Stage, moving_bones};
+
+/// Gates in the order of reports.
+const GATES: [GateName; 5] =
+    [GateName::Bounded, GateName::Budget, GateName::Uniform, GateName::Random, GateName::SkipPeriod];
+
+/// A gate at one setting.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParetoPoint {
+    /// The gate.
+    pub gate: GateName,
+    /// Pixels of bounded, the part of the moving bones that budget may sample, Ω of the others.
+    pub parameter: f64,
+    /// Bones interpolated, of all that move, over all frames but the first.
+    pub cost: f64,
+    /// Bones whose matrices were computed, of all.
+    pub concatenated_fraction: f64,
+    /// Of points a bone's length from each bone, along its axes.
+    #[serde(flatten)]
+    pub error: Errors,
+    /// Of the same.
+    pub jump: Jump,
+}
+
+/// Every gate's errors and costs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParetoReport {
+    /// The model's name.
+    pub model: String,
+    /// The clip's name.
+    pub clip: String,
+    /// How many.
+    pub instances: usize,
+    /// Bones of an instance.
+    pub bones: usize,
+    /// Those that the clip moves.
+    pub moving_bones: usize,
+    /// Frames that were measured.
+    pub frames: u32,
+    /// Frames a second.
+    pub rate: f64,
+    /// Seconds of [`GateMode::SkipPeriod`].
+    pub period: f64,
+    /// Of the same.
+    pub weights: Weights,
+    /// Pixels that the model's largest extent takes.
+    pub tall_pixels: f32,
+    /// Gate by gate.
+    pub points: Vec<ParetoPoint>,
+    /// What they say of the gates.
+    #[serde(rename = "verdicts")]
+    pub comparisons: Comparisons,
+}
+
+/// Plays instances at one place, turned every way, under every gate at many settings, each beside the same in full.
+/// Everything runs on the CPU, by the references; the camera does not move.
+///
+/// # Errors
+/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a
+/// point at rest.
+pub fn pareto(
+    subject: Subject<'_>,
+    options: &ParetoOptions,
+    listener: Listener<'_>,
+) -> Result<ParetoReport, Error> {
+    options.validate()?;
+    let stage = Stage::new(subject, &options.crowd, None, listener)?;
+    let off = stage.gate(&GateMode::Off)?;
+    let moving_bones = moving_bones(&off);
+    let points = points(&stage, options, &off, listener)?;
+    let ParetoOptions { crowd, period, weights, tall_pixels } = options;
+    Ok(ParetoReport {
+        model: subject.name.to_owned(),
+        clip: stage.clip.name().to_owned(),
+        instances: crowd.instances,
+        bones: stage.set.bones(),
+        moving_bones,
+        frames: crowd.frames,
+        rate: crowd.rate,
+        period: *period,
+        weights: *weights,
+        tall_pixels: *tall_pixels,
+        comparisons: Comparisons::new(&points),
+        points,
+    })
+}
+
+/// What a gate tries.
+fn parameters(gate: GateName) -> Vec<f64> {
+    let twentieths = || (1..20).map(|twentieth| f64::from(twentieth) / 20.0);
+    match gate {
+        GateName::Off => vec![1.0],
+        GateName::Random | GateName::Budget => twentieths().collect(),
+        // Between whole periods it is as far off as the longer one.
+        GateName::Uniform => {
+            let mut all: Vec<f64> =
+                (2..=16).map(|frames| 1.0 / f64::from(frames)).chain([0.6, 0.75, 0.9]).collect();
+            all.sort_by(f64::total_cmp);
+            all
+        }
+        GateName::SkipPeriod => {
+            (1..=14).rev().map(|half| 0.5_f64.powf(f64::from(half) / 2.0 - 0.4)).collect()
+        }
+        GateName::Bounded => (-40..=32).map(|quarter| 2.0_f64.powf(f64::from(quarter) / 4.0)).collect(),
+    }
+}
+
+/// A gate with a parameter, in a crowd with so many moving bones.
+fn mode(gate: GateName, parameter: f64, moving: usize, options: &ParetoOptions) -> GateMode {
+    match gate {
+        GateName::Off => GateMode::Off,
+        GateName::SkipPeriod => GateMode::SkipPeriod { period: options.period, weights: options.weights },
+        GateName::Uniform => GateMode::Uniform,
+        GateName::Random => GateMode::Random,
+        GateName::Budget => GateMode::Budget { bones: (parameter * moving as f64).round() as u32 },
+        GateName::Bounded => GateMode::Bounded { pixels: parameter as f32 },
+    }
+}
+
+fn points(
+    stage: &Stage<'_>,
+    options: &ParetoOptions,
+    off: &Gate,
+    listener: Listener<'_>,
+) -> Result<Vec<ParetoPoint>, Error> {
+    let placements = stage.line_up(options.tall_pixels);
+    let moving = stage.instances.len() * moving_bones(off);
+    let mut settings = Vec::new();
+    for gate in GATES {
+        let mode = |parameter| mode(gate, parameter, moving, options);
+        // The table is the same at every parameter.
+        let made = stage.gate(&mode(1.0))?;
+        let setting = |parameter| (mode(parameter), parameter, with_budget(made.clone(), &mode(parameter)));
+        settings.extend(parameters(gate).into_iter().map(setting));
+    }
+    let steps = Steps::new(listener, "comparing", settings.len() as u64);
+    let points = settings.par_iter().map(|(mode, parameter, gate)| {
+        let point = point(stage, &placements, mode, *parameter, [gate, off]);
+        steps.step();
+        point
+    });
+    points.collect()
+}
+
+/// The gate with the mode's budget, if it has one.
+fn with_budget(gate: Gate, mode: &GateMode) -> Gate {
+    match (gate, mode) {
+        (Gate::Budget { table, .. }, GateMode::Budget { bones }) => Gate::Budget { table, bones: *bones },
+        (gate, _) => gate,
+    }
+}
+
+fn point(
+    stage: &Stage<'_>,
+    placements: &Placements,
+    mode: &GateMode,
+    parameter: f64,
+    [gate, off]: [&Gate; 2],
+) -> Result<ParetoPoint, Error> {
+    let mut lods = stage.lods(placements, gate, mode.pixels());
+    if matches!(mode, GateMode::Uniform | GateMode::Random | GateMode::SkipPeriod { .. }) {
+        // Up, so that each whole number of frames is one.
+        let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
+        lods.iter_mut().for_each(|lod| lod.omega = omega);
+    }
+    let mut crowds = Cpu::new(stage, gate, off, lods)?;
+    let found = play(&mut crowds, stage, placements, false, || {})?;
+    let frames = f64::from(stage.options.frames);
+    let moving = stage.instances.len() * moving_bones(off);
+    Ok(ParetoPoint {
+        gate: mode.name(),
+        parameter,
+        cost: found.interpolated as f64 / (moving.max(1) as f64 * frames),
+        concatenated_fraction: found.concatenated as f64 / (stage.pairs() as f64 * frames),
+        error: found.errors,
+        jump: found.jump,
+    })
+}

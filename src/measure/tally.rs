@@ -1,0 +1,72 @@
+//! Many values, of which the mean square, a percentile and the largest are asked for.
+
+/// Bits of an `f32` below those that choose a bin: 64 bins an octave.
+const BIN_SHIFT: u32 = 17;
+
+/// Values, counted by size: percentiles are at most a 64th too large.
+#[derive(Clone)]
+pub(crate) struct Tally {
+    pub(crate) count: u64,
+    squares: f64,
+    pub(crate) max: f64,
+    /// Of all but zeros.
+    bins: Vec<u64>,
+}
+
+impl Tally {
+    pub(crate) fn new() -> Self {
+        Self { count: 0, squares: 0.0, max: 0.0, bins: vec![0; 1 << (31 - BIN_SHIFT)] }
+    }
+
+    pub(crate) fn add(&mut self, value: f64) {
+        self.count += 1;
+        self.squares += value * value;
+        self.max = self.max.max(value);
+        if value > 0.0 {
+            self.bins[((value as f32).to_bits() >> BIN_SHIFT) as usize] += 1;
+        }
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.count += other.count;
+        self.squares += other.squares;
+        self.max = self.max.max(other.max);
+        self.bins.iter_mut().zip(&other.bins).for_each(|(bin, more)| *bin += more);
+    }
+
+    pub(crate) fn rms(&self) -> f64 {
+        (self.squares / self.count.max(1) as f64).sqrt()
+    }
+
+    /// A value that a share of all are at most.
+    pub(crate) fn percentile(&self, fraction: f64) -> f64 {
+        let mut above = (self.count as f64 * (1.0 - fraction)) as u64;
+        for (bin, count) in self.bins.iter().enumerate().rev() {
+            if *count > above {
+                return f64::from(f32::from_bits((bin as u32 + 1) << BIN_SHIFT)).min(self.max);
+            }
+            above -= count;
+        }
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tallies_know_mean_percentile_and_largest() {
+        let mut tally = Tally::new();
+        (0..1000).for_each(|value| tally.add(f64::from(value) / 100.0));
+        let p99 = tally.percentile(0.99);
+        assert!((9.89..=9.9 * 65.0 / 64.0).contains(&p99), "{p99}");
+        assert!((tally.rms() - 5.7692).abs() < 1e-3 && tally.max == 9.99, "{}", tally.rms());
+        let mut zeros = Tally::new();
+        (0..1000).for_each(|_| zeros.add(0.0));
+        assert_eq!(zeros.percentile(0.99), 0.0);
+        zeros.merge(&tally);
+        assert_eq!((zeros.count, zeros.max), (2000, 9.99));
+        assert!((zeros.percentile(0.5) - 0.0).abs() < 0.02 && zeros.percentile(0.75) > 4.9);
+    }
+}

@@ -1,0 +1,164 @@
+//! `measure`, as a user of the library measures a model of their own: a rig of nine meshes, from a file.
+
+use std::sync::Mutex;
+
+use relievo::Error;
+use relievo::asset::Model;
+use relievo::measure::{
+    AnimationReport, CrowdOptions, DrawnOptions, GateMode, GateName, LodOptions, MeshDetail, ParetoOptions,
+    ParetoPoint, ParetoReport, Progress, SkinningDetail, Subject, animation, drawn, pareto, scene,
+};
+
+use crate::harness::gpu;
+
+/// As far as places on screen round.
+const ROUNDING: f64 = 1e-3;
+
+fn model() -> Model {
+    Model::from_file("tests/truth/files/rig.glb".as_ref()).expect("a model")
+}
+
+fn subject(model: &Model) -> Subject<'_> {
+    Subject { name: "rig", model, clip: 0 }
+}
+
+fn options(gate: GateMode) -> LodOptions {
+    let crowd = CrowdOptions { instances: 5, frames: 12, ..CrowdOptions::default() };
+    LodOptions { crowd, gate, distances: vec![200.0, 900.0, 2000.0] }
+}
+
+fn measured(gate: GateMode) -> AnimationReport {
+    animation(None, subject(&model()), &options(gate), &|_| ()).expect("measured")
+}
+
+#[test]
+fn a_gate_that_is_off_saves_nothing_and_errs_nowhere() {
+    let report = measured(GateMode::Off);
+    assert_eq!((report.model.as_str(), report.backend, report.adapter), ("rig", "cpu", None));
+    let (bones, moving) = (report.bones as u64, report.moving_bones as u64);
+    assert!(bones > moving && moving > 0);
+    for row in &report.distances {
+        assert_eq!((row.interpolated, row.skipped, row.fraction), (moving * 5 * 12, 0, 1.0));
+        assert_eq!((row.error.max_metres, row.jump.max_metres), (0.0, 0.0));
+        assert_eq!((row.error.points, row.error.unseen), (bones * 5 * 12 * 6, 0));
+        assert!(row.full_nanoseconds_per_bone.total > 0.0);
+    }
+}
+
+#[test]
+fn bounded_errors_stay_below_their_pixels() {
+    let mut saved = 0;
+    for pixels in [0.25, 1.0, 4.0] {
+        for row in measured(GateMode::Bounded { pixels }).distances {
+            let worst = row.error.max_pixels;
+            assert!(worst <= f64::from(pixels) + ROUNDING, "{worst} of {pixels} at {}", row.distance);
+            assert!(row.error.rms_pixels <= worst && row.error.p99_pixels <= worst);
+            saved += row.skipped;
+        }
+    }
+    assert!(saved > 0, "far too careful");
+}
+
+fn compared() -> ParetoReport {
+    let crowd = CrowdOptions { instances: 3, frames: 24, ..CrowdOptions::default() };
+    let options = ParetoOptions { crowd, ..ParetoOptions::default() };
+    pareto(subject(&model()), &options, &|_| ()).expect("measured")
+}
+
+#[test]
+fn curves_fall_and_points_keep_what_they_promise() {
+    let report = compared();
+    let of = |gate: GateName| report.points.iter().filter(move |point| point.gate == gate);
+    for point in of(GateName::Bounded) {
+        assert!(point.error.max_pixels <= point.parameter + ROUNDING, "{point:?}");
+    }
+    let bounded: Vec<&ParetoPoint> = of(GateName::Bounded).collect();
+    let [strictest, laxest] = [bounded[0], bounded[bounded.len() - 1]];
+    assert!(laxest.cost < strictest.cost && laxest.error.rms_pixels > strictest.error.rms_pixels);
+    for point in of(GateName::Uniform) {
+        // All bones in a share Ω of the frames: as many, up to one turn of each instance.
+        assert!((point.cost - point.parameter).abs() <= 1.0 / 24.0 + 1e-9, "{point:?}");
+    }
+    for rows in [&report.comparisons.bounded_max_pixels, &report.comparisons.budget_rms_pixels] {
+        assert!(rows.len() > 3, "{rows:?}");
+        for pair in rows.windows(2) {
+            let [dear, cheap] = [pair[1], pair[0]].map(|row| [row.gate, row.uniform, row.random]);
+            assert!(pair[0].cost < pair[1].cost);
+            assert!(dear.iter().zip(cheap).all(|(dear, cheap)| *dear <= cheap), "{pair:?}");
+        }
+    }
+}
+
+#[test]
+fn the_device_measures_as_the_cpu_does_and_draws() {
+    let (gpu, model) = (gpu(), model());
+    let pixels = 1.0;
+    let options = LodOptions { distances: vec![900.0], ..options(GateMode::Bounded { pixels }) };
+    let quarter = DrawnOptions {
+        skinning: SkinningDetail::Bounded { pixels: 0.25 },
+        mesh: MeshDetail::Bounded { pixels: 0.25 },
+    };
+    let cpu = animation(None, subject(&model), &options, &|_| ()).expect("measured");
+    let on_gpu = animation(Some(&gpu), subject(&model), &options, &|_| ()).expect("measured");
+    let [a, b] = [&cpu, &on_gpu].map(|report| report.distances[0]);
+    assert_eq!((a.interpolated, a.concatenated), (b.interpolated, b.concatenated));
+    assert!((a.error.rms_pixels - b.error.rms_pixels).abs() < ROUNDING);
+    let (report, pictures) = drawn(&gpu, subject(&model), &options, &quarter, &|_| ()).expect("measured");
+    let row = report.distances[0].drawn.expect("it is drawn");
+    // The gate's pixels, and a quarter each for influences and triangles.
+    assert!(row.gated.vertex_error.max_pixels <= 1.5 + ROUNDING, "{row:?}");
+    assert!(row.gated.frame_nanoseconds > 0.0 && row.full_frame_nanoseconds > 0.0);
+    assert_eq!((pictures.len(), pictures[0].dimensions()), (1, (1920, 1080)));
+    assert!(pictures[0].pixels().any(|pixel| pixel != pictures[0].get_pixel(0, 0)));
+    let (report, _) = scene(&gpu, subject(&model), &options, &quarter, &|_| ()).expect("measured");
+    let row = report.distances[0];
+    assert_eq!(row.off.vertex_error.max_pixels, 0.0);
+    assert!(row.animation.vertex_error.max_pixels <= 1.0 + ROUNDING, "{row:?}");
+    assert!(row.skinning.vertex_error.max_pixels <= 0.25 + ROUNDING, "{row:?}");
+    assert!(row.all.expect("with levels").vertex_error.max_pixels <= 1.5 + ROUNDING, "{row:?}");
+}
+
+#[test]
+fn progress_counts_the_frames() {
+    let told = Mutex::new(Vec::new());
+    let options = options(GateMode::Uniform);
+    animation(None, subject(&model()), &options, &|progress| told.lock().expect("no panic").push(progress))
+        .expect("measured");
+    let told = told.into_inner().expect("no panic");
+    let expected = (0..=39).map(|done| Progress { part: "uniform", done, of: Some(39) });
+    assert_eq!(told, expected.collect::<Vec<_>>());
+}
+
+/// The field that is refused.
+fn refused<T>(measured: Result<T, Error>) -> String {
+    match measured {
+        Err(Error::Input(error)) => error.path,
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("measured"),
+    }
+}
+
+#[test]
+fn options_out_of_their_bounds_are_refused() {
+    let model = model();
+    let lod = |change: &dyn Fn(&mut LodOptions)| {
+        let mut options = options(GateMode::Off);
+        change(&mut options);
+        refused(animation(None, subject(&model), &options, &|_| ()))
+    };
+    assert_eq!(lod(&|options| options.crowd.instances = 0), "instances");
+    assert_eq!(lod(&|options| options.crowd.frames = 0), "frames");
+    assert_eq!(lod(&|options| options.crowd.rate = f64::NAN), "rate");
+    assert_eq!(lod(&|options| options.crowd.range.max = 100.0), "range.max");
+    assert_eq!(lod(&|options| options.distances.clear()), "distance");
+    assert_eq!(lod(&|options| options.distances[1] = 0.5), "distance");
+    assert_eq!(lod(&|options| options.gate = GateMode::Bounded { pixels: -1.0 }), "pixels");
+    let missing = Subject { clip: model.clips.len(), ..subject(&model) };
+    let of_options = options(GateMode::Off);
+    assert_eq!(refused(animation(None, missing, &of_options, &|_| ())), "subject.clip");
+    let tall = ParetoOptions { tall_pixels: 0.0, ..ParetoOptions::default() };
+    assert_eq!(refused(pareto(subject(&model), &tall, &|_| ())), "tall");
+    let few = LodOptions { crowd: CrowdOptions { frames: 4, ..of_options.crowd }, ..of_options };
+    let full = DrawnOptions { skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
+    assert_eq!(refused(drawn(&gpu(), subject(&model), &few, &full, &|_| ())), "frames");
+}
