@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use relievo::{Error, InputError, measure};
 
 use crate::Context;
-use crate::terrain::Backend;
+use crate::arguments::Backend;
 use plan::Plan;
 
 /// Plays a crowd under animation level of detail, and measures what it saves and what it costs: A's experiment

@@ -22,7 +22,6 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
-use relievo::plot;
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
 ///

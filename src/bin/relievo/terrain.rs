@@ -28,7 +28,7 @@ use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
-pub use crate::arguments::Backend;
+use crate::arguments::Backend;
 use crate::arguments::{one_of, pair};
 use crate::memory;
 use crate::output::say;

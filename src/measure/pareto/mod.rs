@@ -2,7 +2,6 @@
 
 mod comparison;
 
-
 use rayon::prelude::*;
 use serde::Serialize;
 

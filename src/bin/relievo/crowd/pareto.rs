@@ -11,7 +11,7 @@ use super::plan::Plan;
 use super::progress::shown;
 use super::report::{self, picture};
 use crate::output::say;
-use crate::plot::{Chart, Series};
+use relievo::plot::{Chart, Series};
 
 /// Files of this command with `--pareto`.
 pub const FILES: [&str; 3] = ["pareto.json", "pareto_max.png", "pareto_rms.png"];

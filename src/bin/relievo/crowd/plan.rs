@@ -7,9 +7,9 @@ use relievo::measure::{CrowdOptions, DrawnOptions, GateMode, LodOptions, ParetoO
 use relievo::{Error, InputError};
 
 use super::{Crowd, Gate, detail};
+use crate::arguments::Backend;
 use crate::pose::{find, open, open_bare, place};
 use crate::priorities;
-use crate::terrain::Backend;
 
 /// Checked arguments.
 pub struct Plan {

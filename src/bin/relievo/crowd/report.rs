@@ -15,7 +15,7 @@ use super::{pareto, scene};
 use crate::Context;
 use crate::arguments::Backend;
 use crate::output::say;
-use crate::plot::{Chart, Series, grid};
+use relievo::plot::{Chart, Series, grid};
 
 /// Pixels of a plot.
 const SIZE: (u32, u32) = (800, 500);

@@ -12,7 +12,7 @@ use super::progress::shown;
 use super::report::{clock, file_name, is_ours, picture};
 use crate::Context;
 use crate::output::say;
-use crate::plot::{Chart, Series};
+use relievo::plot::{Chart, Series};
 
 /// Files of this command with `--scene`, besides pictures.
 pub const FILES: [&str; 2] = ["scene.json", "scene.png"];
