@@ -4,10 +4,10 @@
 //!
 //! | call | what is compared | where |
 //! |---|---|---|
-//! | [`animation`] | a gated crowd with the same in full, over distances (A section 13): bones that were interpolated and concatenated, nanoseconds by stage, errors of points around each bone | GPU or CPU |
+//! | [`animation()`] | a gated crowd with the same in full, over distances (A section 13): bones that were interpolated and concatenated, nanoseconds by stage, errors of points around each bone | GPU or CPU |
 //! | [`drawn`] | the same with their meshes on screen: whole frames, errors of every vertex | GPU |
-//! | [`scene`] | whole frames without level of detail, with it in animation, in skinning (A section 8.4), in both, and in the meshes too | GPU |
-//! | [`pareto`] | every gate at many settings: errors against bones interpolated, and the gates' curves with each other | CPU |
+//! | [`scene()`] | whole frames without level of detail, with it in animation, in skinning (A section 8.4), in both, and in the meshes too | GPU |
+//! | [`pareto()`] | every gate at many settings: errors against bones interpolated, and the gates' curves with each other | CPU |
 //!
 //! # What is held still
 //!

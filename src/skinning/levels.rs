@@ -48,7 +48,7 @@ pub struct MeshLevels {
 
 impl MeshLevels {
     /// Simplifies a mesh for these clips and its rest pose, and measures each level in `poses` of each clip,
-    /// evenly spaced from start to end; [`poses_of`](super::poses_of) gives a sufficient number for a clip.
+    /// evenly spaced from start to end; [`poses_of`] gives a sufficient number for a clip.
     /// Without clips only the rest pose counts. Blending is linear, with the clips' weights of morph targets.
     /// Edges that are hard in normals only do not hinder simplification: each remaining corner keeps a vertex
     /// whose normal is close to its own.

@@ -30,6 +30,7 @@ impl Address {
     }
 
     /// The value for the shaders.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         self as u32
     }
@@ -110,6 +111,7 @@ impl HeightMap {
 
     /// The next mip level: both edges halved, rounded down but at least 1. Each texel is the mean of the four
     /// texels that it covers.
+    #[cfg(feature = "gpu")]
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mean = |x: u32, y: u32| {

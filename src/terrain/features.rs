@@ -135,7 +135,7 @@ impl Features {
     /// Refuses heights that could overflow when the offsets of the configuration are added.
     ///
     /// # Errors
-    /// [`InputError`] as [`Config::check_overflow`].
+    /// [`InputError`] when heights with these features could leave the range of fixed-point heights.
     pub fn check(&self, config: &Config) -> Result<(), InputError> {
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
@@ -151,6 +151,7 @@ impl Features {
     }
 
     /// The mode of injection, or `None` if there are no features.
+    #[cfg(feature = "gpu")]
     pub(crate) fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
     }

@@ -1,6 +1,7 @@
 //! Exact arithmetic of heights: the CPU reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
+#[cfg(feature = "gpu")]
 use crate::shared::terrain::features;
 use crate::terrain::config::{Config, Offset};
 
@@ -70,6 +71,7 @@ pub enum FeatureMode {
 
 impl FeatureMode {
     /// The value of the shaders' `FEATURES` for this mode; 0 means that there are no features.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
             Self::Keep => features::FEATURES_KEEP,

@@ -114,6 +114,7 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     /// The lattice with one more point on every side.
+    #[cfg(feature = "gpu")]
     pub(crate) fn grown(self) -> Self {
         Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
     }

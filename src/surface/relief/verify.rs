@@ -66,7 +66,7 @@ fn compared(
 }
 
 /// Compares hits: outcomes must be equal, numbers of loads must be equal where rounding changes no branch, and
-/// errors must be within each ray's own bound. At most the fraction [`TOUCHING`] of the rays may touch.
+/// errors must be within each ray's own bound. At most the fraction `TOUCHING` of the rays may touch.
 pub fn hits(actual: &[Hit], judged: &[Judged], size: [u32; 2]) -> Comparison {
     if actual.len() != judged.len() {
         let fault = format!("{} hits instead of {}", actual.len(), judged.len());

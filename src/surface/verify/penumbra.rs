@@ -9,7 +9,7 @@ use crate::surface::shade::{ShadePoint, ShadeView};
 /// The height difference below which a point does not shade itself.
 pub(crate) const BIAS: f64 = SURFACE_SHADOW_BIAS as f64;
 
-/// A map with its steepness at each texel ([`steepness`](super::bounds::steepness)).
+/// A map with its steepness at each texel (`surface::verify::bounds::steepness`).
 #[derive(Debug, Clone, Copy)]
 pub struct Terrain<'a> {
     /// The heights.

@@ -11,6 +11,7 @@ pub(crate) mod verify;
 use crate::InputError;
 pub use crate::shared::terrain::blend::MapZone;
 use crate::terrain::config::finite;
+#[cfg(feature = "gpu")]
 use crate::terrain::config::{MAX_ZONES, check_range};
 
 #[cfg(feature = "gpu")]
@@ -29,6 +30,7 @@ pub enum WeightMode {
 
 impl WeightMode {
     /// The value of the shaders' `additive` for this mode: 0 or 1.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         u32::from(self == Self::Additive)
     }
@@ -72,6 +74,7 @@ impl Shading {
 ///
 /// # Errors
 /// [`InputError`] that names the zone.
+#[cfg(feature = "gpu")]
 pub(crate) fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
     if zones.is_empty() || zones.len() > MAX_ZONES {
         let bound = format!("must hold 1 to {MAX_ZONES} zones");

@@ -4,6 +4,7 @@ mod json;
 mod zones;
 
 pub(crate) use json::{from_json_object, read_text};
+#[cfg(feature = "gpu")]
 pub(crate) use zones::check_range;
 pub use zones::{BuiltIn, MAX_ZONES, Zone, ZoneTexture};
 
@@ -12,7 +13,9 @@ use std::path::Path;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
-use crate::shared::terrain::{fixed, offset};
+use crate::shared::terrain::fixed;
+#[cfg(feature = "gpu")]
+use crate::shared::terrain::offset;
 use crate::{Error, InputError};
 
 /// Fixed-point one of heights: a height is an integer multiple of 1/65536 unit.
@@ -43,6 +46,7 @@ pub enum Offset {
 
 impl Offset {
     /// The value of the shaders' `DISTRIBUTION` for this distribution.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
             Self::Signed => offset::OFFSET_SIGNED,
