@@ -71,7 +71,7 @@ pub struct Projection {
 impl Projection {
     /// The projection of a picture of `height` pixels with a vertical field of view in radians.
     pub fn new(height: u32, field_of_view: f32, near: f32) -> Self {
-        Self { focal_pixels: height as f32 / 2.0 / (field_of_view / 2.0).tan(), near }
+        Self { focal_pixels: height as f32 / 2.0 / libm::tanf(field_of_view / 2.0), near }
     }
 
     /// The largest distance, in metres, by which every point inside a sphere may be off while none is drawn
