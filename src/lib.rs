@@ -27,15 +27,12 @@
 //! the same bytes (`relievo bench`). They use `harness` (comparators and clocks). All
 //! three need the feature `verify`.
 //!
-//! `measure` measures surface mapping on the caller's own height maps: error and cost of every method. `files` writes
-//! reports and pictures whole or not at all. Both need the feature `verify`. `plot` draws charts of such figures and
-//! needs `cli`.
-//!
-//! `measure` plays crowds of the caller's own models under level of detail, and reports what it saves and which errors
-//! it shows. It needs the feature `verify`.
+//! `measure` says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
+//! models, and surface mapping on height maps. `files` writes reports and pictures whole or not at all. Both need the
+//! feature `verify`. `plot` draws charts of such figures and needs `cli`.
 //!
 //! [`srgb`] converts between bytes and linear light. [`mod@hash`] draws counter-based random words. [`error`] names
-//! invalid input by field, value and bound.
+//! invalid input by path, value and bound.
 //!
 //! `wgpu`, [`glam`] and [`image`] are exported, so that the versions of an embedding program match.
 //!

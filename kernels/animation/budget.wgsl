@@ -57,7 +57,7 @@ const TIES = 1027u;
 
 var<workgroup> sums: array<u32, WIDTH>;
 
-struct KeyframeCursor {
+struct WordOfBones {
     instance: u32,
     // The first of the instance's bones.
     slot: u32,
@@ -67,7 +67,7 @@ struct KeyframeCursor {
     clip_clock: ClipClock,
 }
 
-fn word_of_bones_at(index: u32) -> KeyframeCursor {
+fn word_of_bones_at(index: u32) -> WordOfBones {
     let instance = index / params.words;
     let word = index - instance * params.words;
     let clip_clock = clip_clocks[instance];
@@ -76,7 +76,7 @@ fn word_of_bones_at(index: u32) -> KeyframeCursor {
     let all = 0xffffffffu >> (32u - min(params.bones - 32u * word, 32u));
     let candidates = select(animated_bones[record + 1u + word], 0u, reason != UPDATE_REASON_FREE);
     let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
-    return KeyframeCursor(instance, 32u * word, candidates, forced, animated_bones[record], clip_clock);
+    return WordOfBones(instance, 32u * word, candidates, forced, animated_bones[record], clip_clock);
 }
 
 fn is_unlimited() -> bool {
@@ -103,11 +103,11 @@ fn rank_of(missed: u32, weight: u32) -> u32 {
     return 1u + 16u * lead + (fine & 15u);
 }
 
-fn motion_now(word_of_bones: KeyframeCursor, bit: u32) -> u32 {
+fn motion_now(word_of_bones: WordOfBones, bit: u32) -> u32 {
     return motion_at(table[word_of_bones.clip_clock.row * params.stride + word_of_bones.slot + bit], fraction_of(word_of_bones.clip_clock));
 }
 
-fn missed_by(word_of_bones: KeyframeCursor, bit: u32, last: u32) -> u32 {
+fn missed_by(word_of_bones: WordOfBones, bit: u32, last: u32) -> u32 {
     let period = table[word_of_bones.periods * params.stride + word_of_bones.slot + bit].x;
     return motion_between(motion_now(word_of_bones, bit), last, period);
 }

@@ -55,8 +55,8 @@ fn zone_color(height: f32) -> vec3<f32> {
     }
     var color = vec3<f32>(0.0);
     for (var z = 0u; z < params.zone_count; z++) {
-        let share = zone_fraction(fold, z, range_of(z), height, params.additive != 0u);
-        color += share * vec3<f32>(zones[z].color[0], zones[z].color[1], zones[z].color[2]);
+        let fraction = zone_fraction(fold, z, range_of(z), height, params.additive != 0u);
+        color += fraction * vec3<f32>(zones[z].color[0], zones[z].color[1], zones[z].color[2]);
     }
     return color;
 }

@@ -68,11 +68,11 @@ pub(crate) fn posed(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> R
     let clips = ClipBuffers::new(gpu, &set)?;
     // The time is inside the clip already, and its end is not its start here.
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
-    let place = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
+    let cursors = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
     let local_to_model = LocalToModelPass::new(gpu)?.prepare(gpu, skeleton, &crowd)?;
     gpu.run("pose", |encoder| {
-        place.record(encoder);
+        cursors.record(encoder);
         sample.record(encoder);
         local_to_model.record(encoder);
     })?;

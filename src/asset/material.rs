@@ -81,7 +81,7 @@ pub enum Alpha {
 
 /// The threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with an alpha below it are not
 /// drawn. It is the rank of the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
-pub fn dithered([x, y]: [u32; 2]) -> f32 {
+pub fn dither_threshold([x, y]: [u32; 2]) -> f32 {
     let rank = |x: u32, y: u32| 2 * (x ^ y) + y;
     ((4 * rank(x & 1, y & 1) + rank(x >> 1 & 1, y >> 1 & 1)) as f32 + 0.5) / 16.0
 }
@@ -92,12 +92,12 @@ mod tests {
 
     #[test]
     fn every_place_of_the_screen_has_a_rank_of_its_own() {
-        let all = |size: u32| (0..size * size).map(move |at| dithered([at % size, at / size]));
+        let all = |size: u32| (0..size * size).map(move |at| dither_threshold([at % size, at / size]));
         let mut ranks: Vec<f32> = all(4).collect();
         ranks.sort_by(f32::total_cmp);
         assert_eq!(ranks, (0..16).map(|rank| (rank as f32 + 0.5) / 16.0).collect::<Vec<_>>());
-        assert_eq!(dithered([5, 6]), dithered([1, 2]));
+        assert_eq!(dither_threshold([5, 6]), dither_threshold([1, 2]));
         // At an alpha of ½ the drawn pixels form a chequerboard.
-        assert!((0..16).all(|at| (dithered([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
+        assert!((0..16).all(|at| (dither_threshold([at % 4, at / 4]) < 0.5) == ((at % 4 + at / 4) % 2 == 0)));
     }
 }

@@ -326,20 +326,20 @@ mod tests {
     }
 
     #[test]
-    fn reaches_are_the_farthest_vertices() {
+    fn bone_radii_are_the_farthest_vertices() {
         let (mut mesh, skins) = triangle();
         assert_eq!(mesh.validate(&skins), Ok(()));
-        let bone_radius = |mesh: &Mesh| bone_radii(5, &skins, std::slice::from_ref(mesh));
+        let radii = |mesh: &Mesh| bone_radii(5, &skins, std::slice::from_ref(mesh));
         let near = |found: f32, wanted: f32| (wanted..wanted * 1.000_002).contains(&found);
         // The weight of −3 counts with its absolute value.
-        let found = bone_radius(&mesh);
+        let found = radii(&mesh);
         assert!(near(found[3], 2.0 + 3.0) && near(found[1], 26.0_f32.sqrt() + 1.5), "{found:?}");
         assert_eq!([found[0], found[2], found[4]], [0.0; 3]);
         mesh.weights = vec![0.0];
-        assert!(near(bone_radius(&mesh)[3], 3.0));
+        assert!(near(radii(&mesh)[3], 3.0));
         let keys = WeightKeys::new(["t", "v"], vec![0.0], vec![7.0], crate::asset::Interpolation::Step, 1);
         mesh.weight_keys = vec![(0, keys.expect("valid"))];
-        assert!(near(bone_radius(&mesh)[3], 9.0));
+        assert!(near(radii(&mesh)[3], 9.0));
         assert_eq!((mesh.weights_at(0, 0.5), mesh.weights_at(1, 0.5)), (vec![7.0], vec![0.0]));
     }
 

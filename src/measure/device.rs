@@ -33,7 +33,7 @@ pub(crate) struct Gated {
 /// Everything of everybody.
 pub(crate) struct Full {
     pub(crate) crowd: Crowd,
-    place: KeyframeCursorJob,
+    cursors: KeyframeCursorJob,
     sample: Job,
     local_to_model: LocalToModelJob,
 }
@@ -61,7 +61,7 @@ impl Device {
     pub(crate) fn set(&self, number: u32) -> Result<(), Error> {
         let (frame, elapsed) = frame(number, self.rate);
         self.gated.frame.set(&self.gpu, &frame, elapsed)?;
-        self.full.place.set(&self.gpu, elapsed)
+        self.full.cursors.set(&self.gpu, elapsed)
     }
 
     fn timed(&self, dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>)) -> Result<f64, Error> {
@@ -153,7 +153,7 @@ impl Full {
     fn new(gpu: &Gpu, stage: &Stage<'_>, clips: &ClipBuffers) -> Result<Self, Error> {
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         Ok(Self {
-            place: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
+            cursors: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
             sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
             local_to_model: LocalToModelPass::new(gpu)?.prepare(
                 gpu,
@@ -165,7 +165,7 @@ impl Full {
     }
 
     fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.place.dispatch(pass);
+        self.cursors.dispatch(pass);
         self.sample.dispatch(pass);
     }
 

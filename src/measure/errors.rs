@@ -157,7 +157,7 @@ pub(crate) fn length([x, y, z]: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// One bone, a metre long, ten metres before a lens of 1000 pixels, moved sideways, up and away.
+    /// One bone, a metre long, ten metres before a projection of 1000 pixels, moved sideways, up and away.
     #[test]
     fn errors_are_projected_and_jumps_seen() {
         let projection = Projection { focal_pixels: 1000.0, near: 0.1 };

@@ -29,9 +29,9 @@ pub enum GateMode {
         /// Of the terms that make a bone's priority.
         weights: Weights,
     },
-    /// All bones of an instance, in a share Ω of the frames.
+    /// All bones of an instance, in a fraction Ω of the frames.
     Uniform,
-    /// A share Ω of the bones, by chance.
+    /// A fraction Ω of the bones, by chance.
     Random,
     /// Those bones that have missed most on screen.
     Budget {

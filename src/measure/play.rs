@@ -65,7 +65,7 @@ pub(crate) struct FrameTimes {
 /// Nanoseconds by stage, and of whole frames; on the CPU the latter alone. Medians over the frames that were timed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StageTimes {
-    /// The search for phases, the decision and the lists.
+    /// The search for clip clocks, the decision and the lists.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gate: Option<f64>,
     /// Keyframes' interpolation.

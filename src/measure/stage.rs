@@ -203,10 +203,10 @@ fn corners(models: &[Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
     let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for (model, length) in models.iter().zip(lengths) {
         for (axis, row) in model.iter().enumerate() {
-            let bone_radius = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
+            let extent = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
             // A bone points somewhere: half its length is its middle.
-            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - bone_radius / 2.0);
-            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + bone_radius / 2.0);
+            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - extent / 2.0);
+            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + extent / 2.0);
         }
     }
     corners

@@ -38,7 +38,7 @@ impl Tally {
         (self.squares / self.count.max(1) as f64).sqrt()
     }
 
-    /// A value that a share of all are at most.
+    /// A value that a fraction of all are at most.
     pub(crate) fn percentile(&self, fraction: f64) -> f64 {
         let mut above = (self.count as f64 * (1.0 - fraction)) as u64;
         for (bin, count) in self.bins.iter().enumerate().rev() {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-/// How much room above and below the values, as a share of the axis.
+/// How much room above and below the values, as a fraction of the axis.
 const MARGIN: f64 = 0.04;
 
 /// Decades between the least value above zero and the place of zero on a logarithmic axis.
@@ -106,8 +106,8 @@ impl Ranged for Axis {
     type ValueType = f64;
 
     fn map(&self, place: &f64, (start, end): (i32, i32)) -> i32 {
-        let share = (place - self.range[0]) / (self.range[1] - self.range[0]);
-        start + (share * f64::from(end - start)).round() as i32
+        let fraction = (place - self.range[0]) / (self.range[1] - self.range[0]);
+        start + (fraction * f64::from(end - start)).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {

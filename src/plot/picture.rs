@@ -76,10 +76,10 @@ impl<'a> Picture<'a> {
         area: &Area<'b>,
         text: &str,
         place: (i32, i32),
-        (share, align): (f64, Align),
+        (fraction, align): (f64, Align),
         color: RGBColor,
     ) -> Drawn<'b> {
-        self.letters.write(area, text, place, (share * f64::from(self.text), align, false), color)
+        self.letters.write(area, text, place, (fraction * f64::from(self.text), align, false), color)
     }
 
     /// Lines of the legend: which name at which place.

@@ -13,7 +13,7 @@ use crate::skinning::vertex::vertices_of;
 pub const CLUSTER: usize = 64;
 
 /// The largest number of bones of a skin.
-pub const MAX_BONES: usize = 1 << 16;
+pub const MAX_SKIN_BONES: usize = 1 << 16;
 
 /// The part of a mesh in clusters that a level of detail uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,12 +62,12 @@ impl Clusters {
     /// Arranges a mesh, whose skin must match a skeleton.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MAX_BONES`].
+    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MAX_SKIN_BONES`].
     pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
-        if skin.bones.len() > MAX_BONES {
-            let bound = format!("must be at most {MAX_BONES}");
+        if skin.bones.len() > MAX_SKIN_BONES {
+            let bound = format!("must be at most {MAX_SKIN_BONES}");
             return Err(InputError::new("skin.bones.len", skin.bones.len(), bound));
         }
         skin.validate(skeleton)?;

@@ -64,10 +64,10 @@ fn misses_nothing(gpu: &Gpu) {
     let decide = decide.prepare(gpu, &buffers, &lazy, &state, &active).expect("prepared");
     let cursors = cursor.prepare_active(gpu, &buffers, &lazy, &state, &active).expect("prepared");
     let samples = sample.prepare_active(gpu, &buffers, &lazy, &active.pairs).expect("prepared");
-    let palettes = local_to_model.prepare_active(gpu, &model.skeleton, &lazy, &active).expect("prepared");
+    let matrices = local_to_model.prepare_active(gpu, &model.skeleton, &lazy, &active).expect("prepared");
     let all_cursors = cursor.prepare(gpu, &buffers, &full).expect("prepared");
     let all_samples = sample.prepare(gpu, &buffers, &full).expect("prepared");
-    let all_palettes = local_to_model.prepare(gpu, &model.skeleton, &full).expect("prepared");
+    let all_matrices = local_to_model.prepare(gpu, &model.skeleton, &full).expect("prepared");
     for number in 0..8_u32 {
         let elapsed = 0.15 * number as f32;
         if number == 3 {
@@ -83,10 +83,10 @@ fn misses_nothing(gpu: &Gpu) {
             decide.record(encoder);
             cursors.record(encoder);
             samples.record(encoder);
-            palettes.record(encoder);
+            matrices.record(encoder);
             all_cursors.record(encoder);
             all_samples.record(encoder);
-            all_palettes.record(encoder);
+            all_matrices.record(encoder);
         })
         .expect("run");
         let [lazy, full] =

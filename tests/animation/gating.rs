@@ -371,6 +371,6 @@ fn tables_refuse_what_does_not_fit() {
     assert_eq!(field(bounds(&bone_radii)), "bone_radii[3]");
     let other = Stage::random(0, 7);
     assert_eq!(field(AnimatedBones::new(&other.order, &stage.set, &clips)), "skeleton.len");
-    // The reference alone, without phases, has nothing to decide.
+    // The reference alone, without clip clocks, has nothing to decide.
     assert!(gate(&stage.off(), &frame(0), &[], &[], &mut []).bits.is_empty());
 }

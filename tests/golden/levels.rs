@@ -92,12 +92,12 @@ impl Crowd {
     fn view(&self, eye: Vec3) -> LodView {
         let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.5, -6.0), Vec3::Y);
         let BoundingSphere { center, radius } = BoundingSphere::in_clips(&self.model);
-        let [near, far] = NO_FADE;
+        let [fade_start, fade_end] = NO_FADE;
         LodView {
             clip_from_world: camera::rh::proj::directx::perspective(0.6, 176.0 / 112.0, 0.2, 100.0) * look,
             eye,
-            fade_start: near,
-            fade_end: far,
+            fade_start,
+            fade_end,
             steps: 1,
             max_influences: 8,
             center,

@@ -69,6 +69,6 @@ fn readback(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
         Contender::both(Backend::Copy, || Ok(gpu.run("copy", |encoder| copied.record(encoder))?)),
         Contender::host(Backend::Reference, || black_box(&mut there).copy_from_slice(black_box(&here))),
     ];
-    let case = format!("{} × 153, readback of palettes", scene.instances.len());
+    let case = format!("{} × 153, readback of model matrices", scene.instances.len());
     bench.case(case, (pairs, "bone"), 96 * pairs as u64, contenders)
 }

@@ -27,7 +27,7 @@ pub(crate) mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::BoundsPass;
 #[cfg(feature = "verify")]
-pub(crate) use pass::Share;
+pub(crate) use pass::Threads;
 
 /// The largest difference allowed between a side and the reference, on any device, relative to the largest
 /// side: 14ε and 6ε of the extent, 4ε of the centre and 2ε of the side from either: 52ε < 4e-6.

@@ -12,17 +12,17 @@ impl SeenAs<[f32; 4]> for Bounds {}
 
 /// The threads that handle the bones of one instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Share {
+pub(crate) enum Threads {
     /// A workgroup, which gives enough threads to hardware.
     Workgroup,
     /// A single thread, without barriers, which are slow on adapters with few processors.
     Whole,
 }
 
-impl Share {
+impl Threads {
     /// The faster choice for this kind of adapter.
     pub fn of(gpu: &Gpu) -> Self {
-        if gpu.adapter().kind == "cpu" { Self::Whole } else { Self::Workgroup }
+        if gpu.tuning().wants_long_threads() { Self::Whole } else { Self::Workgroup }
     }
 }
 
@@ -30,7 +30,7 @@ impl Share {
 #[derive(Debug, Clone)]
 pub struct BoundsPass {
     kernel: Kernel,
-    share: Share,
+    threads: Threads,
 }
 
 impl BoundsPass {
@@ -39,16 +39,16 @@ impl BoundsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_share(gpu, Share::of(gpu))
+        Self::with_threads(gpu, Threads::of(gpu))
     }
 
     /// Compiles the pipeline for what takes the bones of an instance together.
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn with_share(gpu: &Gpu, share: Share) -> Result<Self, GpuError> {
-        let whole = share == Share::Whole;
-        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, share })
+    pub(crate) fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
+        let whole = threads == Threads::Whole;
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, threads })
     }
 
     /// Prepares the bounds of a crowd's instances from its model matrices, with one radius per bone in metres.
@@ -77,9 +77,9 @@ impl BoundsPass {
             bone_radii: bone_radii.slice(),
             bounds: bounds.slice().cast(),
         };
-        let threads = match self.share {
-            Share::Workgroup => THREADS * params.instances,
-            Share::Whole => params.instances,
+        let threads = match self.threads {
+            Threads::Workgroup => THREADS * params.instances,
+            Threads::Whole => params.instances,
         };
         let step = Step {
             groups: vec![group.bind(gpu, &self.kernel)?],

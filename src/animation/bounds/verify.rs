@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::animation::bounds::reference::bounds;
-use crate::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, Share};
+use crate::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, Threads};
 use crate::animation::crowd::Crowd;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::asset::transform::Affine;
@@ -19,16 +19,16 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
-        let (model_matrices, bone_radii) = random_palettes(case as u32, bones, count);
+        let (model_matrices, bone_radii) = random_poses(case as u32, bones, count);
         let crowd = Crowd::new(gpu, &set, &instances)?;
         crowd.model_matrices.buffer().write(gpu, &model_matrices)?;
         let expected = bounds(&model_matrices, &bone_radii);
-        for fraction in [Share::Workgroup, Share::Whole] {
+        for threads in [Threads::Workgroup, Threads::Whole] {
             let output = Poisoned::<Bounds>::new(gpu, count)?;
             let job =
-                BoundsPass::with_share(gpu, fraction)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
+                BoundsPass::with_threads(gpu, threads)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let name = format!("{bones} bones × {count}, {fraction:?}");
+            let name = format!("{bones} bones × {count}, {threads:?}");
             let comparison = output.check(gpu, |actual| {
                 compare::absolute(
                     &relative_sizes(actual, &expected),
@@ -48,14 +48,14 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 }
 
 /// Matrices with rows of very different lengths, some of them 0.
-fn random_palettes(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f32>) {
+fn random_poses(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f32>) {
     let mut draw = Draw::new(case ^ 0xb0c5);
     let bone_radii = (0..bones).map(|bone| if bone % 5 == 3 { 0.0 } else { draw.signed().abs() }).collect();
-    let mut palettes = Vec::with_capacity(bones * count);
+    let mut model_matrices = Vec::with_capacity(bones * count);
     for _ in 0..count {
         let size = [1.0, 1e-6, 3e4][draw.word() as usize % 3];
         let away = [0.0, 1.0, 1e3][draw.word() as usize % 3] * size;
-        palettes.extend((0..bones).map(|_| {
+        model_matrices.extend((0..bones).map(|_| {
             [0; 3].map(|_| {
                 let long = size * [0.0, 1e-3, 1.0, 1.0][draw.word() as usize % 4];
                 let [x, y, z] = [0; 3].map(|_| draw.signed() * long);
@@ -63,7 +63,7 @@ fn random_palettes(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f
             })
         }));
     }
-    (palettes, bone_radii)
+    (model_matrices, bone_radii)
 }
 
 /// The sides divided by the largest side of the expected box.

@@ -45,7 +45,7 @@ impl ClipClockPass {
     }
 }
 
-/// What phases are found from, and where they are written.
+/// What clip clocks are found from, and where they are written.
 pub(crate) fn group<'a>(
     time: &'a ClipClockTime,
     clips: &'a ClipBuffers,

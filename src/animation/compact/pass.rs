@@ -24,7 +24,7 @@ impl Stages {
     /// The faster choice for a crowd on this kind of adapter.
     pub fn of(gpu: &Gpu, crowd: &Crowd) -> Self {
         let words = crowd.len() * crowd.bones.div_ceil(32);
-        if gpu.adapter().kind == "cpu" && words <= Self::FEW { Self::One } else { Self::Three }
+        if gpu.tuning().wants_long_threads() && words <= Self::FEW { Self::One } else { Self::Three }
     }
 }
 

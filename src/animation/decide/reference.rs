@@ -48,7 +48,7 @@ impl<'a> Decider<'a> {
     /// lists.
     ///
     /// # Panics
-    /// With fewer levels than phases.
+    /// With fewer levels than clip clocks.
     pub fn bits(&mut self, frame: &Frame, lods: &[Lod], clip_clocks: &[ClipClock]) -> Chosen {
         gate(self.gate, frame, lods, clip_clocks, &mut self.sampled)
     }

@@ -27,7 +27,7 @@ pub(crate) enum Walk {
 impl Walk {
     /// The faster choice for this kind of adapter.
     pub fn of(gpu: &Gpu) -> Self {
-        if gpu.adapter().kind == "cpu" { Self::Whole } else { Self::Levels }
+        if gpu.tuning().wants_long_threads() { Self::Whole } else { Self::Levels }
     }
 }
 

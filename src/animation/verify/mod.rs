@@ -130,9 +130,9 @@ pub fn random_instances(case: u32, set: &ClipSet, count: usize) -> Vec<Instance>
         let clip = draw.word() % set.clips().len() as u32;
         let wrap = if draw.word().is_multiple_of(2) { Wrap::Loop } else { Wrap::Clamp };
         // Half of them start close to the clip.
-        let bone_radius = if draw.word().is_multiple_of(2) { 60.0 } else { 2.0 };
+        let latest = if draw.word().is_multiple_of(2) { 60.0 } else { 2.0 };
         let rate = [1.0, -1.0, 0.5, 1.75][draw.word() as usize % 4];
-        Instance::new(clip, wrap, draw.signed() * bone_radius, rate)
+        Instance::new(clip, wrap, draw.signed() * latest, rate)
     };
     (0..count).map(instance).collect()
 }

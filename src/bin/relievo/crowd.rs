@@ -28,8 +28,8 @@ use plan::Plan;
 /// Gates (--gate):
 ///   off          every bone that the clip moves
 ///   skip-period  A's rule: a bone skips one update each priority · Ω · --period seconds
-///   uniform      all bones of an instance, in a share Ω of the frames: what engines do
-///   random       a share Ω of the bones, by chance
+///   uniform      all bones of an instance, in a fraction Ω of the frames: what engines do
+///   random       a fraction Ω of the bones, by chance
 ///   budget       at most --budget bones a frame, those that have missed most on screen
 ///   bounded      bones that may show an error of more than --pixels: no point is ever further off
 ///
@@ -49,7 +49,7 @@ use plan::Plan;
 ///   "interpolated", "skipped": bones of instances, of all moving ones in all frames but the first, which is full
 ///   "fraction": interpolated / moving; "concatenated": bones whose matrices were computed; "concatenated_fraction": of all
 ///   "nanoseconds_per_bone" {"gate", "sample", "local_to_model", "total"}: medians over frames, divided by all bones of the
-///     crowd; gate is the search for phases, the decision and the lists; on the CPU the total alone
+///     crowd; gate is the search for clip clocks, the decision and the lists; on the CPU the total alone
 ///   "full_nanoseconds_per_bone" {"sample", "local_to_model", "total"}: the same crowd without a gate
 ///   "error" {"rms_metres", "p99_metres", "max_metres", "rms_pixels", "p99_pixels", "max_pixels", "points", "unseen"}:
 ///     over all points and frames; metres are the model's; points nearer than the near plane are unseen, and have no
@@ -89,7 +89,7 @@ use plan::Plan;
 /// {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period", "weights", "tall_pixels",
 /// "points", "verdicts"}, pareto_max.png, pareto_rms.png. Instances stand at one place, turned every way. A point is
 /// {"gate", "parameter", "cost", "concatenated_fraction", the fields of "error", "jump"}: "cost" is interpolated /
-/// moving, "parameter" what the gate sweeps: Ω of uniform, random and skip-period, the share of the moving bones of
+/// moving, "parameter" what the gate sweeps: Ω of uniform, random and skip-period, the fraction of the moving bones of
 /// budget, the pixels of bounded. Verdicts compare along these curves: "bounded_max_pixels" and "budget_rms_pixels"
 /// [{"cost", "gate", "uniform", "random", "ratio"}], errors at equal cost, ratio to the better rival;
 /// "bounded_cost" [{"max_pixels", "uniform", "bounded", "ratio"}], costs at equal largest error.
@@ -144,7 +144,7 @@ pub struct Crowd {
     /// Frames a second.
     #[arg(long, value_name = "HZ", default_value_t = 60.0, allow_hyphen_values = true)]
     rate: f64,
-    /// What computes; gpu reads the palettes back from the device.
+    /// What computes; gpu reads the model matrices back from the device.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
     /// Error against cost for every gate, on the CPU.

@@ -11,7 +11,7 @@ use crate::mesh::nearest::nearest_on_triangle;
 pub(crate) struct TrackedSamples {
     /// For each triangle, the samples assigned to it: numbers of removed points, and beyond those, numbers of
     /// midpoints.
-    collapsed: Vec<Vec<u32>>,
+    samples: Vec<Vec<u32>>,
     middles: Middles,
     /// The square of the largest distance allowed.
     most: f32,
@@ -38,7 +38,7 @@ struct Middles {
 
 impl TrackedSamples {
     pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
-        let mut collapsed = vec![Vec::new(); triangles];
+        let mut samples = vec![Vec::new(); triangles];
         let mut middles = Middles { places: Vec::new(), triangles: Vec::new() };
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
@@ -48,14 +48,14 @@ impl TrackedSamples {
                 let is_first = corners.iter().all(|other| point <= *other);
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
                 for ends in edge.into_iter().chain(is_first.then_some(&corners[..])) {
-                    collapsed[ring.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
+                    samples[ring.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
                     middles.places.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
                     middles.triangles.push(corners);
                 }
             }
         }
         let (found, triangles, below) = (Vec::new(), Vec::new(), Vec::new());
-        Self { collapsed, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
+        Self { samples, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
     }
 
     /// Sets the largest distance that is allowed from now on.
@@ -84,17 +84,16 @@ impl TrackedSamples {
                 if !ends.contains(&other) {
                     self.triangles.push((ring.triangle, [neighbor, ends[0], ends[1]]));
                 }
-                let middles = self.collapsed[ring.triangle as usize]
+                let middles = self.samples[ring.triangle as usize]
                     .iter()
-                    .filter_map(|collapsed| (*collapsed as usize).checked_sub(points.len()));
+                    .filter_map(|sample| (*sample as usize).checked_sub(points.len()));
                 self.below.extend(middles.map(|middle| self.middles.triangles[middle]));
             }
         }
-        let collapsed =
-            topology.around(point).iter().flat_map(|triangle| &self.collapsed[*triangle as usize]);
-        for collapsed in std::iter::once(&point).chain(collapsed) {
-            let Some(triangle) = self.nearest(points, *collapsed) else { return false };
-            self.found.push((*collapsed, triangle));
+        let samples = topology.around(point).iter().flat_map(|triangle| &self.samples[*triangle as usize]);
+        for sample in std::iter::once(&point).chain(samples) {
+            let Some(triangle) = self.nearest(points, *sample) else { return false };
+            self.found.push((*sample, triangle));
         }
         let is_near = self.triangles[..self.changed].iter().all(|(_, [to, next, last])| {
             let sides: [&[u32]; 3] = [&[*to, *next], &[*last, *to], &[*to, *next, *last]];
@@ -117,15 +116,15 @@ impl TrackedSamples {
 
     /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the
     /// limit.
-    fn nearest(&self, points: &Points, collapsed: u32) -> Option<u32> {
+    fn nearest(&self, points: &Points, sample: u32) -> Option<u32> {
         let place = |point: u32, pose: usize| -> Vec3 { points.place(point, pose).as_vec3() };
         let mut best = None;
         let mut least = self.most.next_up();
         for (triangle, corners) in &self.triangles {
             let mut most = 0.0_f32;
             for pose in 0..points.poses() {
-                let wanted = match (collapsed as usize).checked_sub(points.len()) {
-                    None => place(collapsed, pose),
+                let wanted = match (sample as usize).checked_sub(points.len()) {
+                    None => place(sample, pose),
                     Some(at) => self.middles.places[at * points.poses() + pose],
                 };
                 let found = nearest_on_triangle(wanted, corners.map(|corner| place(corner, pose)));
@@ -148,10 +147,10 @@ impl TrackedSamples {
             self.keeps_near(topology, points, point, neighbor);
         }
         for triangle in topology.around(point) {
-            self.collapsed[*triangle as usize].clear();
+            self.samples[*triangle as usize].clear();
         }
-        for (collapsed, triangle) in self.found.drain(..) {
-            self.collapsed[triangle as usize].push(collapsed);
+        for (sample, triangle) in self.found.drain(..) {
+            self.samples[triangle as usize].push(sample);
         }
     }
 }

@@ -96,7 +96,7 @@ impl TerrainScene {
             tiling: (tiles / f64::from(size - 1)) as f32,
         };
         let uniform = Uniform::new(gpu, "field", &params)?;
-        let places = Buffer::new(gpu, "cursors", fields.count as usize)?;
+        let places = Buffer::new(gpu, "places", fields.count as usize)?;
         let resources = [
             uniform.raw().as_entire_binding(),
             fields.heights.raw().as_entire_binding(),

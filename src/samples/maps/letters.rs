@@ -49,14 +49,13 @@ impl Line {
     }
 
     /// The distance to the nearest outline: positive inside the letters, negative outside. At points further
-    /// than `bone_radius` outside, a value just below −`bone_radius`.
-    pub fn depth_inside(&self, place: [f64; 2], bone_radius: f64) -> f64 {
+    /// than `margin` outside, a value just below −`margin`.
+    pub fn depth_inside(&self, place: [f64; 2], margin: f64) -> f64 {
         let near = |glyph: &&Glyph| {
-            (0..2).all(|axis| {
-                place[axis] > glyph.low[axis] - bone_radius && place[axis] < glyph.high[axis] + bone_radius
-            })
+            (0..2)
+                .all(|axis| place[axis] > glyph.low[axis] - margin && place[axis] < glyph.high[axis] + margin)
         };
-        self.glyphs.iter().filter(near).map(|glyph| glyph.depth_inside(place)).fold(-bone_radius, f64::max)
+        self.glyphs.iter().filter(near).map(|glyph| glyph.depth_inside(place)).fold(-margin, f64::max)
     }
 }
 

@@ -5,7 +5,7 @@ use glam::{Mat4, Vec3, Vec4};
 use super::is_mirrored;
 use super::texture::Surface;
 use crate::asset::Mesh;
-use crate::asset::material::{Alpha, dithered};
+use crate::asset::material::{Alpha, dither_threshold};
 use crate::asset::{Light, light::lambert};
 use crate::skinning::vertex::Vertex;
 use crate::surface::linear_image::LinearImage;
@@ -136,7 +136,7 @@ impl Canvas<'_> {
         let least = match surface.alpha {
             Alpha::Opaque => f32::NEG_INFINITY,
             Alpha::Mask(cutoff) => cutoff,
-            Alpha::Dithered => dithered(place),
+            Alpha::Dithered => dither_threshold(place),
         };
         if alpha < least {
             return;

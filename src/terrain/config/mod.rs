@@ -213,10 +213,10 @@ impl Config {
             bound += 2.0 * (self.range(level) + if additive { feature } else { 0.0 });
         }
         if bound > HEIGHT_LIMIT as f64 {
-            let apron = bound / HEIGHT_ONE;
+            let highest = bound / HEIGHT_ONE;
             let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
             let bound = format!(
-                "heights could reach {apron:.5} units with these ranges, corners and features; the bound is {most:.5}"
+                "heights could reach {highest:.5} units with these ranges, corners and features; the bound is {most:.5}"
             );
             return Err(InputError::new("scaleFactor", self.scale_factor, bound));
         }

@@ -63,7 +63,7 @@ pub fn clock(timed_by: TimedBy) -> &'static str {
 fn table(report: &AnimationReport) -> String {
     let mut text = format!(
         "{} × {} bones, {} of them move in {:?}; {}, {}; {} frames at {} Hz; times by {}, of all bones.\n\n\
-         | distance | Ω | interpolated | concatenated | gate + sample + concat, whole frame ns/bone | full | error rms, p99, max \
+         | distance | Ω | interpolated | concatenated | gate + sample + local to model, whole frame ns/bone | full | error rms, p99, max \
          px | max m | jump px |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
         report.instances,
         report.bones,
