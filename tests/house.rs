@@ -164,7 +164,7 @@ fn rooms(sources: &[Source]) -> BTreeMap<String, BTreeSet<String>> {
     rooms
 }
 
-/// Rooms that can be reached from themselves, each with the way back to it.
+/// The rooms that can be reached from themselves, each with the way back to it.
 fn circles(rooms: &BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
     let way_back = |start: &String| {
         let mut ways: Vec<Vec<&String>> = rooms[start].iter().map(|next| vec![next]).collect();
@@ -197,7 +197,7 @@ fn a_planted_arrow_is_found() {
         Source::new("terrain/height/pass.rs", "fn f() { crate::surface::map::f() }\n"),
         Source::new("gpu/buffer.rs", "use super::super::{animation::Crowd, error};\n"),
         Source::new("attic/mod.rs", ""),
-        // These may.
+        // These uses are allowed.
         Source::new("terrain/height/verify.rs", "use crate::samples::creature;\n"),
         Source::new("skinning/pose.rs", "use crate::animation::Frame; // crate::render::no\n"),
         Source::new("mesh/mod.rs", "#[cfg(test)]\nmod tests { use crate::samples::creature; }\n"),
