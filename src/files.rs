@@ -1,12 +1,12 @@
-//! Reports and pictures as files that appear whole or not at all, together: they are written beside their place, then
-//! renamed.
+//! Writes reports and pictures so that all files of a run appear together and complete, or not at all: files
+//! are written to a temporary folder beside their destination, and then renamed.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::Error;
 
-/// Files of one folder, staged until all are written. What is not published leaves nothing behind.
+/// Files of one folder, staged until all are written. Staged files that are never published are deleted.
 #[derive(Debug)]
 pub struct Staged {
     folder: PathBuf,
@@ -16,15 +16,15 @@ pub struct Staged {
 }
 
 impl Staged {
-    /// Stages files for `folder`, which is made when they are published.
+    /// Stages files for `folder`, which is created when they are published.
     ///
     /// # Errors
-    /// [`Error::File`] for what is no folder, [`Error::Output`] where nothing can be written.
+    /// [`Error::File`] if `folder` exists and is no folder, [`Error::Output`] if nothing can be written.
     pub fn new(folder: &Path) -> Result<Self, Error> {
         if folder.exists() && !folder.is_dir() {
             return Err(Error::file(folder, "is not a folder"));
         }
-        // In the folder or above it, on the same file system, so that renaming is atomic.
+        // The stage is in the folder or above it, on the same file system, so that renaming is atomic.
         let parent = folder.ancestors().find(|parent| parent.is_dir() || parent.as_os_str().is_empty());
         let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let stage = tempfile::Builder::new().prefix(".relievo-").tempdir_in(parent);
@@ -32,7 +32,7 @@ impl Staged {
         Ok(Self { folder: folder.to_owned(), stage, names: Vec::new(), removed: Vec::new() })
     }
 
-    /// Where to write the file that will be `name`.
+    /// The path to write to for the file that will be `name`.
     pub fn path(&mut self, name: impl Into<String>) -> PathBuf {
         let name = name.into();
         let path = self.stage.path().join(&name);
@@ -40,10 +40,10 @@ impl Staged {
         path
     }
 
-    /// Stages bytes.
+    /// Stages a file with these bytes.
     ///
     /// # Errors
-    /// [`Error::Output`].
+    /// [`Error::Output`] if the file cannot be written.
     pub fn write(&mut self, name: impl Into<String>, bytes: &[u8]) -> Result<(), Error> {
         write_bytes(&self.path(name), bytes)
     }
@@ -51,7 +51,7 @@ impl Staged {
     /// Stages a value as indented JSON.
     ///
     /// # Errors
-    /// [`Error::Output`].
+    /// [`Error::Output`] if the file cannot be written.
     pub fn write_json(
         &mut self,
         name: impl Into<String>,
@@ -63,10 +63,10 @@ impl Staged {
     /// Stages a picture as PNG.
     ///
     /// # Errors
-    /// [`Error::Output`].
+    /// [`Error::Output`] if the file cannot be written.
     pub fn write_png(&mut self, name: impl Into<String>, image: &image::RgbaImage) -> Result<(), Error> {
         let path = self.path(name);
-        // In memory first: the image crate forgets what the disk says about the last bytes.
+        // Encodes in memory first: the image crate drops the error of the last write.
         let mut bytes = std::io::Cursor::new(Vec::new());
         let written = image.write_to(&mut bytes, image::ImageFormat::Png);
         written.map_err(|error| Error::output(&path, error))?;
@@ -78,9 +78,10 @@ impl Staged {
         self.removed.push(name.to_owned());
     }
 
-    /// Removes those files of earlier runs that `ours` knows by name and this run does not replace.
+    /// When the others are published, removes those files of earlier runs whose names `ours` accepts and that
+    /// this run does not replace.
     pub fn remove_stale(&mut self, ours: impl Fn(&str) -> bool) {
-        // A folder that cannot be listed, or is not there yet, has no earlier run.
+        // A folder that cannot be listed, or does not exist yet, has no earlier run.
         let Ok(entries) = self.folder.read_dir() else { return };
         for name in entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()) {
             if ours(&name) && !self.names.contains(&name) && self.folder.join(&name).is_file() {
@@ -89,10 +90,11 @@ impl Staged {
         }
     }
 
-    /// Moves every file to its place. When one cannot be moved, those of an earlier run come back.
+    /// Moves every file to its destination. If one cannot be moved, the files of an earlier run are restored.
     ///
     /// # Errors
-    /// [`Error::File`] for a folder where a file belongs, [`Error::Output`].
+    /// [`Error::File`] if there is a folder in the place of a file, [`Error::Output`] if a file cannot be
+    /// moved.
     pub fn publish(self) -> Result<(), Error> {
         std::fs::create_dir_all(&self.folder).map_err(|error| Error::output(&self.folder, error))?;
         let kept = tempfile::tempdir_in(self.stage.path());
@@ -101,7 +103,7 @@ impl Staged {
         self.replace().inspect_err(|_| self.restore(kept.path()))
     }
 
-    /// Links what is about to go, so that it can come back.
+    /// Links the files that are about to be replaced or removed into `kept`, so that they can be restored.
     fn keep(&self, kept: &Path) -> Result<(), Error> {
         for name in self.names.iter().chain(&self.removed) {
             let (place, copy) = (self.folder.join(name), kept.join(name));
@@ -132,7 +134,7 @@ impl Staged {
         Ok(())
     }
 
-    /// Puts the folder back as it was, as far as the disk allows: the first error is what the user hears of.
+    /// Restores the folder as far as the disk allows. It reports no errors: the user sees the first one.
     fn restore(&self, kept: &Path) {
         for name in self.names.iter().chain(&self.removed) {
             let (place, copy) = (self.folder.join(name), kept.join(name));
@@ -141,10 +143,11 @@ impl Staged {
     }
 }
 
-/// Writes one file whole or not at all. What is no file, such as `/dev/stdout`, is written to, not replaced.
+/// Writes one file completely or not at all. A path that is no regular file, such as `/dev/stdout`, is
+/// written to and not replaced.
 ///
 /// # Errors
-/// [`Error::File`] for what cannot be a file, [`Error::Output`].
+/// [`Error::File`] if the path cannot be a file, [`Error::Output`] if it cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return write_bytes(path, bytes);
@@ -156,10 +159,10 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     staged.publish()
 }
 
-/// [`write_file`] of a value as indented JSON.
+/// Writes a value as indented JSON, as [`write_file`] writes bytes.
 ///
 /// # Errors
-/// As [`write_file`], and [`Error::Output`] for what JSON cannot say.
+/// As [`write_file`], and [`Error::Output`] for values that JSON cannot represent.
 pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Error> {
     write_file(path, &json(value)?)
 }
@@ -202,7 +205,7 @@ mod tests {
             staged.remove_stale(|name| name == "stale" || name == "a");
             staged
         };
-        // `b` was never written, so it cannot be moved, after `a` and `new` were.
+        // Publishing moves `a` and `new`, and then fails because `b` was never written.
         assert!(stage(false).publish().is_err());
         let old = || Some("old".to_owned());
         assert_eq!(["a", "b", "stale", "new"].map(|name| read(&out, name)), [old(), old(), old(), None]);

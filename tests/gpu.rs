@@ -133,7 +133,7 @@ fn a_buffer_beyond_the_limit_names_it() {
     let words = gpu.max_binding() as usize / 4;
     let error = Buffer::<u32>::new(&gpu, "huge", words + 1).expect_err("too large").to_string();
     assert!(error.contains("maxStorageBufferBindingSize") && error.ends_with("; split the batch"), "{error}");
-    // Who knows what the buffer is for says what helps.
+    // The caller knows what the buffer is for, and so can say what helps.
     let width = (words as f64).sqrt() as u32 + 1;
     let error = Fields::new(&gpu, "huge", width, 1).expect_err("too large").to_string();
     for part in ["maxStorageBufferBindingSize", "split the batch", "smaller patches", "--backend cpu"] {
@@ -185,7 +185,7 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
 }
 
-/// Watchdogs of operating systems end submissions of seconds.
+/// Operating systems abort submissions that take seconds, so long jobs are split.
 #[test]
 fn long_jobs_go_to_the_device_in_pieces() {
     let gpu = gpu();
@@ -246,7 +246,7 @@ fn a_frame_of_a_crowd_allocates_nothing() {
     for frame in 0..4 {
         let (known, _) = census(&instance, &gpu);
         place.set(&gpu, frame as f32 / 60.0).expect("set");
-        // wgpu's own staging of the write is not relievo's to avoid.
+        // wgpu stages the write in memory of its own, which relievo cannot avoid.
         let (_, memory) = census(&instance, &gpu);
         let mut encoder = gpu.encoder("frame");
         place.record(&mut encoder);
@@ -256,7 +256,7 @@ fn a_frame_of_a_crowd_allocates_nothing() {
         assert_eq!(census(&instance, &gpu), (known, memory), "frame {frame}");
         gpu.queue().submit([encoder.finish()]);
     }
-    // A buffer is seen, also when recorded work alone holds it.
+    // The census counts a buffer even if only recorded work holds it.
     let (known, memory) = census(&instance, &gpu);
     let buffer = Buffer::<u32>::new(&gpu, "seen", 1024).expect("allocated");
     assert_eq!(census(&instance, &gpu).0[0], known[0] + 1);

@@ -30,7 +30,7 @@ impl Source {
         Self { path: path.to_owned(), text: lines.collect::<Vec<_>>().join("\n") }
     }
 
-    /// `a`, `b` and `c` of `a/b/c.rs` and `a/b/c/mod.rs`.
+    /// The module path of a file: `a`, `b` and `c` for `a/b/c.rs` and `a/b/c/mod.rs`.
     fn module(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.path.trim_end_matches(".rs").split('/').collect();
         if names.last() == Some(&"mod") {
@@ -44,7 +44,7 @@ impl Source {
         self.module().iter().skip(1).any(|name| ["verify", "bench"].contains(name))
     }
 
-    /// The modules and items of this crate that it names, as far as they are written out.
+    /// The modules and items of this crate that the source names by written-out paths.
     fn paths(&self) -> Vec<Vec<String>> {
         let mut found = Vec::new();
         for start in ["crate::", "super::"] {
@@ -59,7 +59,7 @@ impl Source {
         found
     }
 
-    /// The paths that a text begins with: `crate::a::{b, c}` are two.
+    /// The paths at the beginning of a text: `crate::a::{b, c}` has two.
     fn resolved(&self, text: &str) -> Vec<Vec<String>> {
         let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(text.len());
         let names: Vec<&str> = text[..end].split("::").filter(|name| !name.is_empty()).collect();
@@ -78,7 +78,7 @@ impl Source {
     }
 }
 
-/// Every source below `src/`, but the program.
+/// Every source file below `src/` except those of the program.
 fn sources() -> Vec<Source> {
     fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(folder).expect("a readable folder") {
@@ -107,7 +107,7 @@ fn floor(name: &str) -> Option<usize> {
     FLOORS.iter().position(|floor| floor.contains(&name))
 }
 
-/// Uses of folders that do not lie below.
+/// The uses of folders that do not lie below the user's.
 fn arrows_upward(sources: &[Source]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for source in sources.iter().filter(|source| !source.is_case()) {
@@ -164,7 +164,7 @@ fn rooms(sources: &[Source]) -> BTreeMap<String, BTreeSet<String>> {
     rooms
 }
 
-/// Rooms that can be reached from themselves, each with the way back to it.
+/// The rooms that can be reached from themselves, each with the way back to it.
 fn circles(rooms: &BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
     let way_back = |start: &String| {
         let mut ways: Vec<Vec<&String>> = rooms[start].iter().map(|next| vec![next]).collect();
@@ -197,7 +197,7 @@ fn a_planted_arrow_is_found() {
         Source::new("terrain/height/pass.rs", "fn f() { crate::surface::map::f() }\n"),
         Source::new("gpu/buffer.rs", "use super::super::{animation::Crowd, error};\n"),
         Source::new("attic/mod.rs", ""),
-        // These may.
+        // These uses are allowed.
         Source::new("terrain/height/verify.rs", "use crate::samples::creature;\n"),
         Source::new("skinning/pose.rs", "use crate::animation::Frame; // crate::render::no\n"),
         Source::new("mesh/mod.rs", "#[cfg(test)]\nmod tests { use crate::samples::creature; }\n"),

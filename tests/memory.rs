@@ -18,7 +18,7 @@ use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;
 
-/// Uniforms, origins and neighbours: some hundred bytes a patch.
+/// Bytes of uniforms, origins and neighbours: a few hundred per patch.
 const SMALL: u64 = 64 << 10;
 
 const SIZE: u32 = 65;
@@ -53,7 +53,7 @@ fn list_bytes(gpu: &Gpu, recipe: &Recipe, apron: u32) -> u64 {
         return 0;
     }
     let width = SIZE + 2 * apron;
-    // Every level is at most half as wide as the next, and three points.
+    // Each level is at most half as wide as the next, plus three points.
     let widths: Vec<_> = (0..=6).map(|level| (width >> level) + 4).collect();
     let room = PATCHES.len() * 9 * recipe.features.len();
     FeatureIndex::new(gpu, &widths, PATCHES.len() as u32, room).expect("allocated").bytes()
@@ -84,7 +84,7 @@ fn most_allocated<T>(gpu: &Gpu, work: impl FnOnce() -> T) -> (T, Option<u64>, u6
 #[test]
 fn generation_holds_two_words_a_sample() {
     let points = PATCHES.len() as u64 * u64::from(SIZE).pow(2);
-    // All lists in one buffer, which a small binding would not hold.
+    // This device holds all lists in one buffer, which a small binding would not.
     let roomy = gpu_of_bindings(128 << 20);
     // Everything in one part, the windows in several as soon as they are larger than the patches, and the patches too.
     for binding in [128 << 20, 4 * points + 64, points] {

@@ -130,7 +130,7 @@ fn zone_weights_are_those_of_the_reference() {
     }
 }
 
-/// Integers to the bit.
+/// Integer results must be equal to the bit.
 #[test]
 fn terrain_offsets_are_those_of_the_reference_and_light_falls_as_the_cosine() {
     let words = run(&gpu(), "terrain", &[], None, &[0.0; 4], 18);
@@ -177,11 +177,11 @@ fn every_method_meets_a_flat_surface() {
             let slope = x / (1.0 - x * x).sqrt();
             let (way, height) = match method {
                 Method::Plain => (0.0, 1.0),
-                // Without the division by the cosine.
+                // This method lacks the division by the cosine.
                 Method::ParallaxLimited => (0.5 * x, 0.5),
                 _ => (0.5 * slope, 0.5),
             };
-            // Binary steps: 2^-17 of the way.
+            // The tolerance is that of the binary steps: 2^-17 of the way.
             assert_near(own, &[0.25 - 0.125 * way, height, 1.0], 2e-5);
         }
     }
@@ -190,7 +190,7 @@ fn every_method_meets_a_flat_surface() {
 /// Vertices and bones are passed in the kernels' layout, and come out where the bones' matrices take them.
 #[test]
 fn vertices_go_where_a_palette_of_dual_quaternions_takes_them() {
-    // A turn by 90 degrees, a mirror, an uneven stretch with shear, and a move.
+    // A rotation by 90 degrees, a mirror, a non-uniform scale with shear, and a translation.
     let bones = [
         [[0.0, -1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 2.0], [0.0, 0.0, 1.0, 3.0]],
         [[-1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -0.5]],

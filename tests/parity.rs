@@ -162,7 +162,7 @@ fn judged_shades() -> (HeightMap, March, ShadeView, Vec<ShadePoint>, Vec<JudgedS
     (map, march, view, points, judged)
 }
 
-/// What is left out is counted and said, and too much of it is a fault, whatever the rest is.
+/// What a comparison leaves out is counted and reported, and too much of it is a fault, whatever the rest is.
 #[test]
 fn comparisons_that_leave_out_too_much_fail() {
     let left_out = |count| LeftOut { count, of: 40, most: 2 };

@@ -150,7 +150,7 @@ fn links_lead_somewhere() {
     }
 }
 
-/// The README's Rust, with what it leaves out.
+/// Compiles the README's example of embedding, with the variables that it leaves out.
 #[allow(dead_code, reason = "it is compiled, not run")]
 fn embedding(
     (device, queue): (&wgpu::Device, &wgpu::Queue),
@@ -168,7 +168,7 @@ fn embedding(
     Ok(())
 }
 
-/// Likewise.
+/// Compiles the README's example of characters, with the variables that it leaves out.
 #[allow(dead_code, reason = "it is compiled, not run")]
 fn characters(
     (gpu, mut encoder, mut render_pass): (Gpu, wgpu::CommandEncoder, wgpu::RenderPass<'_>),
@@ -204,7 +204,7 @@ fn rust_is_compiled_as_it_stands_there() {
     }
 }
 
-/// As a fragment shader behind the module, on the device.
+/// Runs the README's WGSL as a fragment shader after the module, on the device.
 #[test]
 fn wgsl_is_compiled_as_it_stands_there() {
     let gpu = harness::gpu();

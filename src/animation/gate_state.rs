@@ -21,10 +21,10 @@ pub struct GateState {
 }
 
 impl GateState {
-    /// Room for a crowd that has not been looked at yet.
+    /// Allocates the state of a crowd that has not been sampled yet.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if the device has no room.
     pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
         let instances = crowd.len();
         Ok(Self {

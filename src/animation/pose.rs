@@ -1,4 +1,5 @@
-//! Where every bone is at a moment of a clip, on the host or, as a crowd of one, on the device.
+//! Computes the pose of a skeleton at one time of a clip, on the host or, as a crowd of one instance, on the
+//! device.
 
 use super::local_to_model::reference::local_to_model;
 use super::sample::reference::sample;
@@ -17,26 +18,26 @@ use {
     crate::gpu::Gpu,
 };
 
-/// The transforms of all bones at one moment.
+/// The transforms of all bones at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pose {
-    /// In the space of each bone's parent.
+    /// The transform of each bone in its parent's space.
     pub locals: Vec<Transform>,
-    /// In the model's space.
+    /// The model matrix of each bone: from the bone's space to the model's.
     pub model_matrices: Vec<Affine>,
 }
 
 impl Pose {
-    /// The pose at a time inside a clip ([`Wrap::inside`](super::Wrap::inside)).
+    /// Samples a clip at a time in seconds inside it ([`Wrap::inside`](super::Wrap::inside)), on the host.
     pub fn on_host(skeleton: &Skeleton, clip: &Clip, time: f32) -> Self {
         let locals = sample(clip, time, RotationPath::Slerp);
         Self { model_matrices: local_to_model(skeleton, &locals), locals }
     }
 
-    /// The same, equal within rounding. Waits for the device.
+    /// As [`Pose::on_host`], on the device; the results are equal within rounding. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for a clip of another skeleton; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a clip of another skeleton; [`crate::gpu::GpuError`] for errors of the device.
     #[cfg(feature = "gpu")]
     pub fn on_device(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Self, Error> {
         let crowd = posed(gpu, skeleton, clip, time)?;
@@ -44,7 +45,7 @@ impl Pose {
         Ok(Self { locals, model_matrices: crowd.model_matrices().read_blocking(gpu)? })
     }
 
-    /// Refuses model matrices that chains of large scales have driven out of the range of `f32`.
+    /// Refuses model matrices with values outside the range of `f32`, as chains of large scales produce.
     ///
     /// # Errors
     /// [`InputError`] that names the bone.
@@ -61,12 +62,12 @@ impl Pose {
     }
 }
 
-/// A crowd of one, sampled and concatenated at a time inside a clip.
+/// Samples and concatenates a crowd of one instance, at a time inside a clip.
 #[cfg(feature = "gpu")]
 pub(crate) fn posed(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Crowd, Error> {
     let set = ClipSet::new(&[clip])?;
     let clips = ClipBuffers::new(gpu, &set)?;
-    // The time is inside the clip already, and its end is not its start here.
+    // The time is inside the clip already; clamping keeps the clip's end apart from its start.
     let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
     let cursors = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
     let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;

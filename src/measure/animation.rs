@@ -1,4 +1,5 @@
-//! A crowd under a gate beside the same in full, over distances (A section 13): work, time, errors.
+//! Plays a crowd under a gate beside the same crowd in full, at several distances (A section 13), and
+//! measures bones, times and errors.
 
 use image::RgbaImage;
 use serde::Serialize;
@@ -21,13 +22,13 @@ use crate::gpu::{Gpu, TimedBy};
 /// What a gate saves and what it costs, by distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AnimationReport {
-    /// The device's adapter; none on the CPU.
+    /// The device's adapter; `None` on the CPU.
     pub adapter: Option<String>,
-    /// Its driver.
+    /// The device's driver; `None` on the CPU.
     pub driver: Option<String>,
-    /// What computed: `gpu` or `cpu`.
+    /// The processor that computed: `gpu` or `cpu`.
     pub backend: &'static str,
-    /// Whose clock took the times.
+    /// The clock that took the times.
     pub timed_by: TimedBy,
     /// The model's name.
     pub model: String,
@@ -35,84 +36,86 @@ pub struct AnimationReport {
     pub clip: String,
     /// The gate.
     pub gate: GateMode,
-    /// How many.
+    /// Number of instances.
     pub instances: usize,
-    /// How they stand.
+    /// How the instances are placed.
     pub layout: Layout,
-    /// What their places and moments are drawn by.
+    /// The seed of the instances' random positions and start times.
     pub seed: u32,
-    /// Bones of an instance.
+    /// Number of bones of an instance.
     pub bones: usize,
-    /// Those that the clip moves.
+    /// Number of bones of an instance that the clip moves.
     pub moving_bones: usize,
-    /// How it was looked at.
+    /// The units, the camera and the frames of the measurement.
     #[serde(flatten)]
     pub setting: Setting,
-    /// What vertices follow, where the crowd is drawn.
+    /// The influences that vertices follow; only of a crowd that is drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub skinning: Option<SkinningDetail>,
-    /// Which triangles meshes have, where the crowd is drawn.
+    /// The triangles that meshes have; only of a crowd that is drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshDetail>,
-    /// One a distance.
+    /// The measurements, one row per distance.
     pub distances: Vec<AnimationRow>,
 }
 
-/// A crowd at a distance. Bones are counted over all instances and all frames but the first, which is full.
+/// A crowd at one distance. Bones are counted over all instances and all frames but the first, which is
+/// evaluated in full.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AnimationRow {
-    /// Units to the nearest instance.
+    /// Distance from the camera to the nearest instance, in units.
     pub distance: f32,
-    /// Over instances.
+    /// The mean of Ω over the instances, 0 to 1.
     pub mean_omega: f64,
-    /// Bones that were interpolated.
+    /// Number of bones that were interpolated.
     pub interpolated: u64,
-    /// Moving bones that were not.
+    /// Number of moving bones that were not interpolated.
     pub skipped: u64,
-    /// Interpolated bones, of all that move.
+    /// Share of the moving bones that were interpolated, 0 to 1.
     pub fraction: f64,
-    /// Bones whose matrices were computed.
+    /// Number of bones whose matrices were computed.
     pub concatenated: u64,
-    /// The same, of all bones.
+    /// Share of all bones whose matrices were computed, 0 to 1.
     pub concatenated_fraction: f64,
-    /// With the gate, divided by all bones of the crowd.
+    /// Times of the gated crowd, in nanoseconds per bone of the crowd, moving or not.
     pub nanoseconds_per_bone: StageTimes,
-    /// Without.
+    /// Times of the same crowd without a gate, in nanoseconds per bone of the crowd.
     pub full_nanoseconds_per_bone: StageTimes,
-    /// Of points a bone's length from each bone, along its axes.
+    /// Errors of the points that lie one bone length from each bone's origin along its axes.
     pub error: Errors,
-    /// Of the same.
+    /// The largest change of these errors from one frame to the next.
     pub jump: Jump,
-    /// What [`drawn`] adds.
+    /// The measurements of the drawn crowd; only of [`drawn`].
     #[serde(flatten)]
     pub drawn: Option<DrawnRow>,
 }
 
-/// A drawn crowd at a distance, with the gate, and in full.
+/// A drawn crowd at one distance: with the gate, and in full.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DrawnRow {
-    /// Whose clock took the times of frames that are drawn.
+    /// The clock that took the times of the frames that are drawn.
     pub drawn_timed_by: TimedBy,
-    /// With the gate.
+    /// Costs and vertex errors with the gate.
     #[serde(flatten)]
     pub gated: FrameCost,
-    /// As [`FrameCost::nanoseconds_per_vertex`], of the same crowd without a gate, fully skinned.
+    /// As [`FrameCost::nanoseconds_per_vertex`], for the same crowd without a gate, fully skinned.
     pub full_nanoseconds_per_vertex: f64,
-    /// As [`FrameCost::frame_nanoseconds`].
+    /// As [`FrameCost::frame_nanoseconds`], for the crowd without a gate.
     pub full_frame_nanoseconds: f64,
-    /// As [`FrameCost::compute_nanoseconds`].
+    /// As [`FrameCost::compute_nanoseconds`], for the crowd without a gate.
     pub full_compute_nanoseconds: f64,
-    /// As [`FrameCost::draw_nanoseconds`].
+    /// As [`FrameCost::draw_nanoseconds`], for the crowd without a gate.
     pub full_draw_nanoseconds: f64,
 }
 
-/// Plays a crowd under a gate and the same in full, on the device, or without one by the references on the CPU.
+/// Plays a crowd under a gate and the same crowd in full: on the device, or, if `gpu` is `None`, on the CPU by the
+/// references.
 ///
-/// The times are medians over some forty frames of the run. The camera does not move.
+/// The times are medians over about forty frames of the run. The camera does not move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a
-/// point at rest; what the device reports.
+/// [`InputError`](crate::InputError) for options out of their ranges, a clip that the model lacks, and a model whose
+/// bones all lie in one point at rest; errors of the device.
 pub fn animation(
     gpu: Option<&Gpu>,
     subject: Subject<'_>,
@@ -124,8 +127,9 @@ pub fn animation(
     measured(gpu, &stage, options, listener)
 }
 
-/// As [`animation`] on the device, and draws both crowds with their meshes, each frame timed with its drawing. A picture
-/// of the last frame under the gate comes with each distance: 1920 × 1080, with materials (clay of two colours where a
+/// As [`animation`] on the device, but draws both crowds with their meshes and times each frame with its
+/// drawing. Each distance comes with a picture of the last frame under the gate: 1920 × 1080 pixels, with
+/// materials (clay of two colours where a mesh has none).
 /// mesh has none).
 ///
 /// # Errors
@@ -170,7 +174,7 @@ fn drawn_row(drawn_timed_by: TimedBy, full: FrameCost, gated: FrameCost) -> Draw
     }
 }
 
-/// The frames of all distances.
+/// Makes the progress counter of the frames at all distances.
 pub(crate) fn steps<'a>(options: &LodOptions, part: &'static str, listener: Listener<'a>) -> Steps<'a> {
     let frames = u64::from(options.crowd.frames + 1);
     Steps::new(listener, part, options.distances.len() as u64 * frames)
@@ -208,7 +212,7 @@ fn measured(
     })
 }
 
-/// `gates` are the one that is measured, and [`GateMode::Off`].
+/// Measures one distance. `gates` holds the gate that is measured, and [`GateMode::Off`].
 fn row(
     gpu: Option<&Gpu>,
     stage: &Stage<'_>,

@@ -1,8 +1,8 @@
-//! Checks of options.
+//! Range checks of options.
 
 use crate::InputError;
 
-/// Refuses a value that is not in these bounds, or no number.
+/// Refuses a value that lies outside the range, and NaN.
 pub(crate) fn check(
     field: &str,
     value: f64,

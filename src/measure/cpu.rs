@@ -1,4 +1,4 @@
-//! The crowd on the CPU, by the references.
+//! Plays a crowd on the CPU, by the references.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use crate::animation::{Gate, Lod};
 use crate::asset::Affine;
 use crate::{Error, InputError};
 
-/// The crowd under a gate, and the same in full.
+/// The crowd under a gate, and the same crowd in full.
 pub(crate) struct Cpu<'a> {
     gated: Crowd<'a>,
     full: Crowd<'a>,

@@ -1,4 +1,4 @@
-//! The crowd on the device.
+//! Plays a crowd on the device.
 
 use super::gates::{PATH, frame};
 use super::play::{FrameTimes, Play, Played, Times, Timing};
@@ -13,7 +13,7 @@ use crate::animation::{Gate, Lod};
 use crate::asset::Affine;
 use crate::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
 
-/// Both crowds.
+/// The crowd under a gate, and the same crowd in full.
 pub(crate) struct Device {
     gpu: Gpu,
     timer: Timer,
@@ -30,7 +30,7 @@ pub(crate) struct Gated {
     pub(crate) frame: GatedFrame,
 }
 
-/// Everything of everybody.
+/// The crowd in full: every bone of every instance is sampled and concatenated.
 pub(crate) struct Full {
     pub(crate) crowd: Crowd,
     cursors: KeyframeCursorJob,
@@ -52,12 +52,12 @@ impl Device {
         })
     }
 
-    /// What clock takes the times.
+    /// The clock that takes the times.
     pub(crate) fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
         Ok(Timer::new(gpu)?.timed_by())
     }
 
-    /// Chooses the frame that is recorded next.
+    /// Sets the frame that is recorded next.
     pub(crate) fn set(&self, number: u32) -> Result<(), Error> {
         let (frame, elapsed) = frame(number, self.rate);
         self.gated.frame.set(&self.gpu, &frame, elapsed)?;
@@ -69,7 +69,7 @@ impl Device {
         Ok(self.timer.measure(&self.gpu, record)?.nanoseconds)
     }
 
-    /// Both crowds, whole frames.
+    /// Plays a frame of both crowds and times each as a whole.
     fn play_whole(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
         let frame = &gated.frame;
@@ -79,7 +79,7 @@ impl Device {
         })
     }
 
-    /// Both crowds, stage by stage.
+    /// Plays a frame of both crowds and times each stage.
     fn play_stages(&self) -> Result<Times, Error> {
         let Self { gated, full, .. } = self;
         let frame = &gated.frame;

@@ -1,4 +1,4 @@
-//! How far stale points lie from fresh ones.
+//! Measures how far the points of a gated crowd lie from those of the same crowd in full.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -8,56 +8,57 @@ use super::tally::Tally;
 use crate::animation::Projection;
 use crate::asset::Affine;
 
-/// How far points lie from where full evaluation puts them, over all frames. Metres are the model's; percentiles are at
-/// most a 64th too large.
+/// How far points lie from where full evaluation puts them, over all frames. Metres are the model's units.
+/// The percentiles are too large by 1/64 of their value at most.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Errors {
-    /// The root of the mean square.
+    /// The root mean square, in metres.
     pub rms_metres: f64,
-    /// What 99 of 100 are at most.
+    /// The 99th percentile, in metres.
     pub p99_metres: f64,
-    /// The largest.
+    /// The largest error, in metres.
     pub max_metres: f64,
-    /// As in metres, on screen.
+    /// The root mean square on screen, in pixels.
     pub rms_pixels: f64,
-    /// As in metres, on screen.
+    /// The 99th percentile on screen, in pixels.
     pub p99_pixels: f64,
-    /// As in metres, on screen.
+    /// The largest error on screen, in pixels.
     pub max_pixels: f64,
-    /// Points in all frames.
+    /// Number of points, summed over the frames.
     pub points: u64,
-    /// Those nearer than the near plane, which have no pixels; of vertices, those of instances out of view too.
+    /// Number of points nearer than the near plane, which have no error in pixels; among vertices, also those
+    /// of instances out of view.
     pub unseen: u64,
 }
 
-/// The largest change of a point's error from one frame to the next.
+/// The largest change of a point's error vector from one frame to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Jump {
-    /// In the model's metres.
+    /// In metres of the model.
     pub max_metres: f64,
-    /// On screen, as if across the line of sight.
+    /// In pixels, as if the change were perpendicular to the line of sight.
     pub max_pixels: f64,
 }
 
-/// Collects errors frame by frame, of the ends of all bones' axes.
+/// Collects, frame by frame, the errors of points on the axes of all bones.
 pub(crate) struct Meter<'a> {
-    /// For each bone, how far along its axes.
+    /// For each bone, the distance of its points from its origin in metres.
     radii: &'a [f32],
     projection: Projection,
     placements: &'a Placements,
-    /// Each of some instances in turn.
+    /// The instances in order, split into parts that are measured in parallel.
     parts: Vec<Part>,
-    /// Instances of a part.
+    /// Number of instances of a part.
     each: usize,
 }
 
-/// What is known of some instances.
+/// The measurements of some of the instances.
 struct Part {
     metres: Tally,
     pixels: Tally,
     jump: Jump,
     unseen: u64,
-    /// Of each bone: stale minus fresh in the frame before.
+    /// For each bone, its stale matrix minus its fresh matrix in the frame before.
     last: Vec<Affine>,
 }
 
@@ -76,7 +77,7 @@ impl<'a> Meter<'a> {
         Self { radii, projection, placements, parts, each }
     }
 
-    /// Adds a frame; both lists are `instance · bones + bone`.
+    /// Adds a frame. Both slices hold model matrices at `instance · bones + bone`.
     pub(crate) fn add(&mut self, stale: &[Affine], fresh: &[Affine]) {
         let Self { radii, projection, placements, each, .. } = *self;
         let pairs = each * radii.len();
@@ -119,7 +120,7 @@ impl Errors {
 }
 
 impl Part {
-    /// The ends of a bone's axes, `radius` out.
+    /// Adds the points on a bone's axes, `radius` metres from its origin.
     fn add(&mut self, pair: usize, placement: &Placement, radius: f32, stale: &Affine, fresh: &Affine) {
         let off: Affine =
             std::array::from_fn(|row| std::array::from_fn(|column| stale[row][column] - fresh[row][column]));
@@ -157,7 +158,7 @@ pub(crate) fn length([x, y, z]: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// One bone, a metre long, ten metres before a projection of 1000 pixels, moved sideways, up and away.
+    /// One bone, a metre long, ten metres before a projection of 1000 pixels, is moved sideways, up and away.
     #[test]
     fn errors_are_projected_and_jumps_seen() {
         let projection = Projection { focal_pixels: 1000.0, near: 0.1 };
@@ -176,7 +177,8 @@ mod tests {
         // The nearest point is 9 m away.
         assert!((errors.max_pixels - 100.0 / 9.0).abs() < 1e-4 && (errors.rms_metres - 0.1).abs() < 1e-6);
         assert!((jump.max_metres - 0.1).abs() < 1e-6 && errors.points == 6);
-        // Toward the camera a point on the axis does not move on screen, one a metre beside it does a little.
+        // When the bone moves towards the camera, a point on the optical axis keeps its place on screen, and
+        // one a metre beside the axis moves a little.
         let (errors, _) = run(&[[0.0, 0.0, 0.1]]);
         assert!((errors.max_pixels - 1000.0 * (1.0 / 9.9 - 0.1)).abs() < 1e-3, "{errors:?}");
         let (errors, jump) = run(&[[0.0, 0.1, 0.0], [0.0, -0.1, 0.0], [0.0, -0.1, 0.0]]);

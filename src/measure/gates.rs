@@ -1,4 +1,4 @@
-//! The gates that are measured, by name, with what they decide by.
+//! The gates that can be measured, by name, with their parameters.
 
 use serde::Serialize;
 
@@ -10,38 +10,39 @@ use crate::animation::{AnimatedBones, BoundTable, ClipSet, ExpectationTable, Fra
 use crate::asset::keyframe::RotationPath;
 use crate::asset::{Clip, Skeleton};
 
-/// Ticks a second.
+/// Ticks per second.
 pub(crate) const TICKS: u32 = 1 << 16;
 
-/// How rotations are sampled.
+/// The rotation path along which rotations are sampled.
 pub(crate) const PATH: RotationPath = RotationPath::Slerp;
 
-/// A gate, with what it is set by.
+/// A gate with its parameters. Ω, from 0 to 1, is the level of detail of an instance at its distance: 1 is full
+/// detail.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(tag = "mode", rename_all = "kebab-case")]
 pub enum GateMode {
-    /// Every bone that the clip moves.
+    /// Samples every bone that the clip moves.
     Off,
     /// A's rule (section 12.10): a bone skips one update each priority · Ω · period.
     SkipPeriod {
         /// Seconds between two skipped updates at priority 1 and Ω = 1, in 0..=65535.
         period: f64,
-        /// Of the terms that make a bone's priority.
+        /// Weights of the terms that make a bone's priority.
         weights: Weights,
     },
-    /// All bones of an instance, in a fraction Ω of the frames.
+    /// Samples all bones of an instance together, in a fraction Ω of the frames.
     Uniform,
-    /// A fraction Ω of the bones, by chance.
+    /// Samples a random fraction Ω of the bones.
     Random,
-    /// Those bones that have missed most on screen.
+    /// Samples the bones that have missed most motion on screen.
     Budget {
-        /// The most bones a frame, over the whole crowd.
+        /// The largest number of bones in a frame, over the whole crowd.
         #[serde(rename = "budget")]
         bones: u32,
     },
-    /// Bones that may show an error.
+    /// Samples the bones whose error could become visible.
     Bounded {
-        /// The largest error that may show, in 0..=1e6.
+        /// The largest error that may show, in pixels, in 0..=1e6.
         pixels: f32,
     },
 }
@@ -60,11 +61,11 @@ pub enum GateName {
 }
 
 impl GateName {
-    /// All of them.
+    /// All names, in the order of the variants.
     pub const ALL: [Self; 6] =
         [Self::Off, Self::SkipPeriod, Self::Uniform, Self::Random, Self::Budget, Self::Bounded];
 
-    /// As command lines and reports have it.
+    /// The name as command lines and reports have it.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Off => "off",
@@ -90,10 +91,10 @@ impl GateMode {
         }
     }
 
-    /// Checks what the gate is set by.
+    /// Checks the gate's parameters.
     ///
     /// # Errors
-    /// [`InputError`] for a period, weights or pixels out of their bounds.
+    /// [`InputError`] for a period, weights or pixels out of their ranges.
     pub fn validate(&self) -> Result<(), InputError> {
         match self {
             Self::SkipPeriod { period, weights } => {
@@ -105,24 +106,24 @@ impl GateMode {
         }
     }
 
-    /// The error that may show.
+    /// The error that may show, in pixels.
     pub(crate) fn pixels(&self) -> f32 {
         if let Self::Bounded { pixels } = *self { pixels } else { 0.0 }
     }
 }
 
-/// What gates are made from.
+/// The model, the clip and the tables that gates are made from.
 pub(crate) struct Source<'a> {
     pub skeleton: &'a Skeleton,
     pub clip: &'a Clip,
     pub order: &'a Order,
     pub set: &'a ClipSet,
-    /// For each bone, how far points that follow it lie from its origin.
+    /// For each bone, the largest distance of points that follow it from its origin, in metres.
     pub radii: &'a [f32],
 }
 
 impl Source<'_> {
-    /// The gate with its table.
+    /// Makes the gate with its table.
     pub(crate) fn gate(&self, mode: &GateMode) -> Result<Gate, InputError> {
         let Self { skeleton, clip, order, set, radii } = self;
         let clips = [*clip];
@@ -146,7 +147,7 @@ impl Source<'_> {
     }
 }
 
-/// When a frame is, at a rate; and its seconds.
+/// The ticks of a frame at a rate in frames per second, and its time in seconds.
 pub(crate) fn frame(number: u32, rate: f64) -> (Frame, f32) {
     let seconds = |number: u32| f64::from(number) / rate;
     let ticks = |number: u32| (seconds(number) * f64::from(TICKS)).round() as u64 as u32;

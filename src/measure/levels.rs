@@ -6,19 +6,19 @@ use crate::InputError;
 use crate::asset::{Mesh, Model};
 use crate::skinning::{MeshLevels, add_levels, level_errors, own_levels};
 
-/// A model whose meshes have levels.
+/// A model whose meshes have levels of detail.
 pub(crate) struct Levelled {
     pub model: Model,
-    /// One a mesh.
+    /// The levels of each mesh.
     pub levels: Vec<MeshLevels>,
-    /// How far all of it may be off at levels 1, 2 … of an instance.
+    /// The largest error over all meshes at levels 1, 2 … of an instance, in metres.
     pub errors: Vec<f32>,
-    /// Of each mesh, for each level of an instance its own.
+    /// For each mesh, its own level at each level of an instance.
     pub own: Vec<Vec<u32>>,
 }
 
 impl Levelled {
-    /// For one of a model's clips, looked at in so many poses.
+    /// Makes levels for one of a model's clips, whose error is measured in `poses` poses.
     pub(crate) fn new(model: &Model, clip: usize, poses: usize) -> Result<Self, InputError> {
         let mut model = model.clone();
         let levels = add_levels(&mut model, &[clip], poses)?;
@@ -28,22 +28,22 @@ impl Levelled {
     }
 }
 
-/// A level of detail of a mesh that instances have.
+/// A level of detail of a mesh that instances use.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LevelReport {
-    /// How many it has.
+    /// Number of triangles of the level.
     pub triangles: usize,
-    /// How many they have.
+    /// Number of vertices of the level.
     pub vertices: usize,
-    /// How far it may be off the mesh, in the model's metres.
+    /// The largest distance between the level and the mesh, in metres of the model.
     pub error_metres: f32,
-    /// Units from which on it is used.
+    /// The distance from which on the level is used, in units.
     pub from: f32,
 }
 
 impl LevelReport {
-    /// Of a mesh's levels that are used: `own` has the mesh's level at each of an instance, and `begins` the metres from
-    /// which on instances have levels 1, 2 ….
+    /// Reports the levels of a mesh that are used. `own` holds the mesh's level at each level of an instance,
+    /// and `begins` the distances in metres from which on instances have levels 1, 2 ….
     pub(crate) fn of_mesh(mesh: &Mesh, own: &[u32], begins: &[f32], metres_a_unit: f32) -> Vec<Self> {
         let used = own.windows(2).zip(begins).filter(|(pair, _)| pair[0] < pair[1]);
         let report = |(pair, begin): (&[u32], &f32)| {

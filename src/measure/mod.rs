@@ -1,25 +1,27 @@
-//! What level of detail costs and shows, for the caller's own models: errors against full evaluation, and times, beside
-//! each other. The library's own figures are made with these (`relievo crowd`). [`relief`] measures surface mapping on the
-//! caller's own maps.
+//! Measures what level of detail saves and what error it causes, for the caller's own models: times and
+//! errors against full evaluation of the same crowd. The library's own figures are made with these functions
+//! (`relievo crowd`). [`relief`] measures surface mapping on the caller's own maps.
 //!
 //! | call | what is compared | where |
 //! |---|---|---|
-//! | [`animation()`] | a gated crowd with the same in full, over distances (A section 13): bones that were interpolated and concatenated, nanoseconds by stage, errors of points around each bone | GPU or CPU |
-//! | [`drawn`] | the same with their meshes on screen: whole frames, errors of every vertex | GPU |
-//! | [`scene()`] | whole frames without level of detail, with it in animation, in skinning (A section 8.4), in both, and in the meshes too | GPU |
-//! | [`pareto()`] | every gate at many settings: errors against bones interpolated, and the gates' curves with each other | CPU |
+//! | [`animation()`] | a gated crowd with the same crowd in full, at several distances (A section 13): bones that were interpolated and concatenated, nanoseconds by stage, errors of points around each bone | GPU or CPU |
+//! | [`drawn`] | the same crowds with their meshes on screen: whole frames, errors of every vertex | GPU |
+//! | [`scene()`] | whole frames without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
+//! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
 //!
-//! # What is held still
+//! # What stays the same
 //!
-//! Every instance plays the same clip, in a loop, from a moment of its own, drawn from a seed. The camera does not move: it
-//! looks at the crowd's centre at half its height, so that instances keep their distances, and a gate's levels do not change
-//! during a run. The picture has 1080 lines and a vertical field of view of 60 degrees.
+//! Every instance plays the same clip in a loop, from its own start time, which is drawn from a seed. The camera
+//! does not move: it looks at the crowd's centre at half its height, so that instances keep their distances, and
+//! a gate's levels of detail do not change during a run. The picture has 1080 lines and a vertical field of view
+//! of 60 degrees.
 //!
 //! # Units
 //!
-//! Distances are in *units*, of which the largest extent of the model at rest counts [`CrowdOptions::size`]: so models of all
-//! sizes compare, and A's 200 to 1700 hold. What is called metres is the model's own unit; pixels are those of the picture;
-//! times are nanoseconds. Times are medians and depend on the machine; all else is the same in every run on one.
+//! Distances are in *units*: the largest extent of the model at rest is [`CrowdOptions::size`] units long. Models
+//! of all sizes can thus be compared, and the distances 200 to 1700 of A apply. Metres stand for the model's own
+//! unit; pixels are those of the picture; times are in nanoseconds. Times are medians and depend on the machine;
+//! all other values are the same in every run on one machine.
 //!
 //! # An example
 //!

@@ -1,4 +1,4 @@
-//! What is measured, and how: checked before anything is.
+//! The options of all measurements, with their ranges.
 
 use std::fmt;
 
@@ -10,28 +10,28 @@ use crate::InputError;
 use crate::animation::{Range, Weights};
 use crate::asset::{Clip, Model};
 
-/// The near plane, in units.
+/// Distance of the near plane, in units.
 pub(crate) const NEAR: f32 = 1.0;
 
-/// The most frames: 32 bits of ticks hold them at any rate.
+/// The largest number of frames: 32 bits of ticks hold them at any rate.
 const MAX_FRAMES: u32 = 100_000;
 
-/// Distances of the default sweep.
+/// Number of distances of the default sweep.
 const SWEEP: u32 = 7;
 
-/// What plays.
+/// The model and the clip that are measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Subject<'a> {
-    /// What reports call it.
+    /// The model's name in reports.
     pub name: &'a str,
     /// The model.
     pub model: &'a Model,
-    /// Which of its clips.
+    /// The index of the clip among the model's clips.
     pub clip: usize,
 }
 
 impl<'a> Subject<'a> {
-    /// The clip.
+    /// The clip, if the model has it.
     pub(crate) fn clip(&self) -> Result<&'a Clip, InputError> {
         let clips = &self.model.clips;
         let bound = || format!("must be below {}, as many clips as the model has", clips.len());
@@ -45,28 +45,29 @@ impl<'a> Subject<'a> {
 pub enum Layout {
     /// Rows and columns that face the camera.
     Grid,
-    /// Anywhere in the same square, turned any way.
+    /// Random positions and angles, in the same square.
     Random,
 }
 
-/// A crowd of one model in one clip. A *unit* is what [`size`](Self::size) makes it.
+/// A crowd of one model in one clip. [`size`](Self::size) defines how long a *unit* is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrowdOptions {
-    /// How many, in 1..=100000. Default: 100.
+    /// Number of instances, in 1..=100000. Default: 100.
     pub instances: usize,
-    /// How they stand. Default: [`Layout::Grid`].
+    /// How instances are placed. Default: [`Layout::Grid`].
     pub layout: Layout,
-    /// Another number gives other places and moments. Default: 0.
+    /// Seed of random positions and start times; another number gives another crowd. Default: 0.
     pub seed: u32,
-    /// Units that the largest extent of the model at rest counts, in 0.001..=1e6. Default: 180, a person in centimetres.
+    /// Number of units in the largest extent of the model at rest, in 0.001..=1e6. Default: 180, so that the
+    /// units of a person are centimetres.
     pub size: f32,
-    /// Between neighbours of a grid, in sizes of the model, in 0..=1000. Default: 0.5.
+    /// The gap between neighbours in a grid, in multiples of the model's size, in 0..=1000. Default: 0.5.
     pub spacing: f32,
-    /// Units between which Ω falls from 1 to 0. Default: 200 to 1700, as A has it.
+    /// The distances in units between which Ω falls from 1 to 0. Default: 200 to 1700, as in A.
     pub range: Range,
-    /// Frames that are measured, after a first one that is full, in 1..=100000. Default: 240.
+    /// Number of frames to measure, after a first frame in full, in 1..=100000. Default: 240.
     pub frames: u32,
-    /// Frames a second, in 1..=1000. Default: 60.
+    /// Frames per second, in 1..=1000. Default: 60.
     pub rate: f64,
 }
 
@@ -86,10 +87,10 @@ impl Default for CrowdOptions {
 }
 
 impl CrowdOptions {
-    /// Checks all of it.
+    /// Checks all options.
     ///
     /// # Errors
-    /// [`InputError`] for what is out of its bounds.
+    /// [`InputError`] for an option out of its range.
     pub fn validate(&self) -> Result<(), InputError> {
         check("size", self.size.into(), 1e-3..=1e6)?;
         check("spacing", self.spacing.into(), 0.0..=1e3)?;
@@ -99,7 +100,7 @@ impl CrowdOptions {
         self.range.validate()
     }
 
-    /// Seven distances in units, from one end of the range to the other.
+    /// Seven distances in units, evenly spaced from one end of the range to the other.
     pub fn sweep(&self) -> Vec<f32> {
         let Range { min, max } = self.range;
         let at = |step: u32| min + (max - min) * step as f32 / (SWEEP - 1) as f32;
@@ -112,9 +113,10 @@ impl CrowdOptions {
 pub struct LodOptions {
     /// The crowd.
     pub crowd: CrowdOptions,
-    /// Who decides. Default: [`GateMode::Bounded`] with one pixel.
+    /// The gate to measure. Default: [`GateMode::Bounded`] with one pixel.
     pub gate: GateMode,
-    /// Units from the camera to the nearest instance, each in 1..=1e6; at least one. Default: [`CrowdOptions::sweep`].
+    /// Distances from the camera to the nearest instance in units, each in 1..=1e6; at least one. Default:
+    /// [`CrowdOptions::sweep`].
     pub distances: Vec<f32>,
 }
 
@@ -126,10 +128,10 @@ impl Default for LodOptions {
 }
 
 impl LodOptions {
-    /// Checks all of it.
+    /// Checks all options.
     ///
     /// # Errors
-    /// [`InputError`] for what is out of its bounds.
+    /// [`InputError`] for an option out of its range.
     pub fn validate(&self) -> Result<(), InputError> {
         self.crowd.validate()?;
         self.gate.validate()?;
@@ -142,21 +144,22 @@ impl LodOptions {
     }
 }
 
-/// Which bones vertices follow.
+/// Which influences vertices follow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SkinningDetail {
-    /// All of theirs.
+    /// All influences of each vertex.
     Full,
-    /// The strongest alone.
+    /// Only the strongest influences.
     Truncate {
-        /// How many, 1 to 4.
+        /// Number of influences, 1 to 4.
         max_influences: u32,
     },
-    /// All at the first of the [`range`](CrowdOptions::range)'s distances, one from the second on.
+    /// Fades: all influences up to the first distance of the [`range`](CrowdOptions::range), one from the
+    /// second on.
     Fade,
-    /// As many as it takes for no vertex to be further off.
+    /// Fades only as far as no vertex is further off than a number of pixels.
     Bounded {
-        /// How far, in 0..=1e6.
+        /// The largest error of a vertex in pixels, in 0..=1e6.
         pixels: f32,
     },
 }
@@ -164,11 +167,11 @@ pub enum SkinningDetail {
 /// Which triangles meshes have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MeshDetail {
-    /// All of theirs.
+    /// All triangles of each mesh.
     Full,
-    /// As few as it takes for no surface to be further off.
+    /// The coarsest level of detail whose surface is no further off than a number of pixels.
     Bounded {
-        /// How far, in 0..=1e6.
+        /// The largest error of the surface in pixels, in 0..=1e6.
         pixels: f32,
     },
 }
@@ -176,9 +179,9 @@ pub enum MeshDetail {
 /// How a crowd is skinned and drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawnOptions {
-    /// Default: half a pixel.
+    /// The influences that vertices follow. Default: those that keep the error below half a pixel.
     pub skinning: SkinningDetail,
-    /// Default: half a pixel.
+    /// The triangles that meshes have. Default: those that keep the error below half a pixel.
     pub mesh: MeshDetail,
 }
 
@@ -190,10 +193,10 @@ impl Default for DrawnOptions {
 }
 
 impl DrawnOptions {
-    /// Checks both.
+    /// Checks both options.
     ///
     /// # Errors
-    /// [`InputError`] for pixels or influences out of their bounds.
+    /// [`InputError`] for pixels or a number of influences out of their ranges.
     pub fn validate(&self) -> Result<(), InputError> {
         match self.skinning {
             SkinningDetail::Truncate { max_influences } => {
@@ -209,16 +212,16 @@ impl DrawnOptions {
     }
 }
 
-/// Every gate at every setting, of instances at one place.
+/// Options of the comparison of every gate at many settings, with all instances at one place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParetoOptions {
-    /// The crowd, whose layout, spacing and range do not matter. Default: 25 instances.
+    /// The crowd; its layout, spacing and range are not used. Default: 25 instances.
     pub crowd: CrowdOptions,
-    /// Seconds of [`GateMode::SkipPeriod`], in 0..=65535. Default: 1.
+    /// Period of [`GateMode::SkipPeriod`] in seconds, in 0..=65535. Default: 1.
     pub period: f64,
-    /// Of the same. Default: all alike.
+    /// Weights of the priorities of [`GateMode::SkipPeriod`]. Default: all equal.
     pub weights: Weights,
-    /// Pixels that the model's largest extent takes, in 1..=10000. Default: 100.
+    /// Size on screen of the model's largest extent in pixels, in 1..=10000. Default: 100.
     pub tall_pixels: f32,
 }
 
@@ -230,10 +233,10 @@ impl Default for ParetoOptions {
 }
 
 impl ParetoOptions {
-    /// Checks all of it.
+    /// Checks all options.
     ///
     /// # Errors
-    /// [`InputError`] for what is out of its bounds.
+    /// [`InputError`] for an option out of its range.
     pub fn validate(&self) -> Result<(), InputError> {
         self.crowd.validate()?;
         GateMode::SkipPeriod { period: self.period, weights: self.weights }.validate()?;

@@ -1,4 +1,4 @@
-//! Where instances stand, seen from a camera: x right, y up, z ahead, in metres.
+//! Where instances stand in the camera's space: x right, y up, z ahead, in metres.
 
 use std::f32::consts::TAU;
 
@@ -7,14 +7,15 @@ use crate::animation::Projection;
 use crate::animation::gate::reference::scramble;
 use crate::asset::Affine;
 
-/// Where all instances stand.
+/// The placements of all instances.
 pub(crate) struct Placements {
     pub origins: Vec<[f32; 3]>,
-    /// Sine and cosine of the turn about the vertical axis; 0 faces the camera.
+    /// For each instance, the sine and cosine of its angle about the vertical axis; an instance at angle 0
+    /// faces the camera.
     pub turns: Vec<[f32; 2]>,
 }
 
-/// An instance as the camera has it.
+/// The placement of one instance in the camera's space.
 pub(crate) struct Placement {
     pub origin: [f32; 3],
     pub turn: [f32; 2],
@@ -22,8 +23,8 @@ pub(crate) struct Placement {
 }
 
 impl Placements {
-    /// The layout, its nearest instance `distance` metres before the camera, which looks at `middle` metres above
-    /// the model's origin.
+    /// Places instances by the layout. The nearest instance is `distance` metres before the camera, which
+    /// looks at the height of `middle` metres above the model's origin.
     pub(crate) fn of_layout(options: &CrowdOptions, metres_a_unit: f32, middle: f32, distance: f32) -> Self {
         let CrowdOptions { instances: count, layout, seed, .. } = *options;
         let columns = (count as f64).sqrt().ceil() as usize;
@@ -48,18 +49,18 @@ impl Placements {
         }
     }
 
-    /// All instances at one place, turned every way.
+    /// Places all instances at one place, each turned by another angle.
     pub(crate) fn at_one_place(count: usize, origin: [f32; 3]) -> Self {
         let turns = (0..count).map(|at| around(at as f32 / count as f32));
         Self { origins: vec![origin; count], turns: turns.collect() }
     }
 
-    /// One of them.
+    /// The placement of one instance.
     pub(crate) fn get(&self, instance: usize, projection: Projection) -> Placement {
         Placement { origin: self.origins[instance], turn: self.turns[instance], projection }
     }
 
-    /// From the model's space to a world whose z comes towards the camera.
+    /// The transforms from the model's space to a world whose z axis points towards the camera.
     pub(crate) fn transforms(&self) -> Vec<Affine> {
         let place = |([x, y, z], [sine, cosine]): (&[f32; 3], &[f32; 2])| {
             [[*cosine, 0.0, *sine, *x], [0.0, 1.0, 0.0, *y], [-sine, 0.0, *cosine, -z]]
@@ -69,14 +70,14 @@ impl Placements {
 }
 
 impl Placement {
-    /// A direction of the model's in the camera's space.
+    /// Turns a direction from the model's space into the camera's.
     fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [sine, cosine] = self.turn.map(f64::from);
         [x * cosine + z * sine, y, x * sine - z * cosine]
     }
 
-    /// Pixels between a point and another, `offset` from it; and pixels of a metre there. Nothing nearer than the near
-    /// plane.
+    /// The distance in pixels between a point and another at `offset` from it, and the number of pixels of a
+    /// metre there; `None` if the point is nearer than the near plane.
     pub(crate) fn pixels(&self, point: [f64; 3], offset: [f64; 3]) -> Option<[f64; 2]> {
         let (turned, offset) = (self.turned(point), self.turned(offset));
         let [x, y, z]: [f64; 3] = std::array::from_fn(|i| turned[i] + f64::from(self.origin[i]));
@@ -84,18 +85,18 @@ impl Placement {
         let (near, focal) = (f64::from(self.projection.near), f64::from(self.projection.focal_pixels));
         let is_seen = z > near && z2 > near;
         let [right, up] = [x2 / z2 - x / z, y2 / z2 - y / z];
-        // Not hypot, which takes most of the time.
+        // `hypot` would take most of the measurement's time.
         is_seen.then(|| [focal * (right * right + up * up).sqrt(), focal / z])
     }
 }
 
-/// 0 to below 1: a number of an instance.
+/// A random number from 0 to below 1 for an instance; `of` selects one of several.
 pub(crate) fn chance(seed: u32, instance: u32, of: u32) -> f32 {
     let word = scramble(scramble(scramble(seed).wrapping_add(instance)).wrapping_add(of));
     (word >> 8) as f32 / (1 << 24) as f32
 }
 
-/// Sine and cosine of a part of a whole turn.
+/// Sine and cosine of an angle, given as a part of a full turn.
 fn around(turns: f32) -> [f32; 2] {
     let (sine, cosine) = (turns * TAU).sin_cos();
     [sine, cosine]

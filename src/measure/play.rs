@@ -1,4 +1,4 @@
-//! Playing a crowd: what a frame does and takes, on the device or the CPU.
+//! Plays a crowd and counts and times the work of each frame, on the device or the CPU.
 
 use serde::Serialize;
 
@@ -8,17 +8,17 @@ use super::stage::Stage;
 use crate::Error;
 use crate::asset::Affine;
 
-/// Frames of a run that are timed.
+/// Largest number of frames of a run that are timed.
 const TIMED: u32 = 40;
 
-/// What a frame did.
+/// What a frame computed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Played {
-    /// Bones that were sampled.
+    /// Number of bones that were sampled.
     pub interpolated: usize,
-    /// Bones whose matrices were computed.
+    /// Number of bones whose matrices were computed.
     pub concatenated: usize,
-    /// What it took, where that was asked for.
+    /// The times of the frame, if it was timed.
     pub times: Option<Times>,
 }
 
@@ -26,14 +26,15 @@ pub(crate) struct Played {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Timing {
     None,
-    /// In one piece, as a renderer records it.
+    /// Times the frame as a whole, as a renderer records it.
     Whole,
-    /// Each stage by itself, which costs more: they cannot share a compute pass.
+    /// Times each stage separately. The sum exceeds the whole, because the stages cannot share a compute
+    /// pass.
     Stages,
 }
 
 impl Timing {
-    /// Frames that are timed take turns.
+    /// The timing of a frame; timed frames alternate between the two kinds.
     fn of(number: u32, frames: u32) -> Self {
         let every = frames.div_ceil(TIMED);
         match number / every % 2 {
@@ -44,16 +45,16 @@ impl Timing {
     }
 }
 
-/// Nanoseconds of a frame.
+/// The times of a frame, in nanoseconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Times {
-    /// With the gate.
+    /// The crowd under the gate.
     pub gated: FrameTimes,
-    /// Without.
+    /// The crowd in full.
     pub full: FrameTimes,
 }
 
-/// What was measured of a frame.
+/// The times that were measured of a frame, in nanoseconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FrameTimes {
     pub gate: Option<f64>,
@@ -62,44 +63,45 @@ pub(crate) struct FrameTimes {
     pub whole: Option<f64>,
 }
 
-/// Nanoseconds by stage, and of whole frames; on the CPU the latter alone. Medians over the frames that were timed.
+/// Times by stage and of the whole frame, in nanoseconds; on the CPU only the whole is measured. Medians over
+/// the frames that were timed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StageTimes {
-    /// The search for clip clocks, the decision and the lists.
+    /// The search for clip clocks, the decision of the gate, and the lists of active bones.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gate: Option<f64>,
-    /// Keyframes' interpolation.
+    /// The interpolation between keyframes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample: Option<f64>,
-    /// From local transforms to the model's space.
+    /// The concatenation of local transforms to model matrices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub local_to_model: Option<f64>,
-    /// The whole frame, recorded in one piece.
+    /// The whole frame, recorded as one piece.
     pub total: f64,
 }
 
-/// A crowd under a gate, and the same in full.
+/// A crowd under a gate, and the same crowd in full.
 pub(crate) trait Play {
-    /// Brings both to a frame.
+    /// Advances both crowds to a frame.
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error>;
-    /// The gated crowd's model matrices.
+    /// Model matrices of the gated crowd.
     fn stale(&self) -> &[Affine];
-    /// The full crowd's.
+    /// Model matrices of the crowd in full.
     fn fresh(&self) -> &[Affine];
 }
 
-/// What a run found.
+/// The measurements of a run.
 pub(crate) struct Found {
     pub interpolated: u64,
     pub concatenated: u64,
     pub errors: Errors,
     pub jump: Jump,
-    /// Medians.
+    /// Median times of the crowd under the gate.
     pub gated: StageTimes,
     pub full: StageTimes,
 }
 
-/// Plays all frames, and measures all but the first. `step` is called after each.
+/// Plays all frames, and measures all but the first. Calls `step` after each frame.
 pub(crate) fn play(
     crowds: &mut impl Play,
     stage: &Stage<'_>,
@@ -127,7 +129,7 @@ pub(crate) fn play(
     Ok(Found { interpolated, concatenated, errors, jump, gated, full })
 }
 
-/// The median, where there is one.
+/// The median of the times; `None` without times.
 pub(crate) fn middle(mut times: Vec<f64>) -> Option<f64> {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied()
@@ -137,20 +139,20 @@ fn medians(times: &[FrameTimes]) -> StageTimes {
     let median = |of: &dyn Fn(&FrameTimes) -> Option<f64>| middle(times.iter().filter_map(of).collect());
     let [gate, sample, local_to_model] =
         [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.local_to_model)];
-    // The stages' sum where no whole frame was timed.
+    // If no whole frame was timed, the sum of the stages stands for it.
     let sum = [gate, sample, local_to_model].into_iter().flatten().sum();
     StageTimes { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
 }
 
 impl FrameTimes {
-    /// Of a frame in one piece.
+    /// The times of a frame that was timed only as a whole.
     pub(crate) fn of_whole(nanoseconds: f64) -> Self {
         Self { whole: Some(nanoseconds), ..Self::default() }
     }
 }
 
 impl StageTimes {
-    /// Divided by so many bones.
+    /// Divides all times by the number of bones.
     pub(crate) fn a_bone(&self, bones: usize) -> Self {
         let each = |time: Option<f64>| time.map(|time| time / bones as f64);
         Self {

@@ -1,22 +1,22 @@
-//! How far a measurement is.
+//! The progress of a measurement.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// How far a part of a measurement is.
+/// How far one part of a measurement has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being done, in a word.
+    /// The name of the part.
     pub part: &'static str,
-    /// Steps that are done; 0 when it begins.
+    /// Number of steps that are done; 0 when the part begins.
     pub done: u64,
-    /// Of how many; none of work in one piece.
+    /// Number of all steps; `None` if the part has no steps.
     pub of: Option<u64>,
 }
 
-/// Who hears of it, from whichever thread did a step.
+/// A function that is called at each step, from the thread that did the step.
 pub type Listener<'a> = &'a (dyn Fn(Progress) + Sync);
 
-/// Counts the steps of a part.
+/// Counts the steps of a part, and calls the listener.
 pub(crate) struct Steps<'a> {
     listener: Listener<'a>,
     part: &'static str,
@@ -25,20 +25,20 @@ pub(crate) struct Steps<'a> {
 }
 
 impl<'a> Steps<'a> {
-    /// A part that begins.
+    /// Begins a part of `of` steps.
     pub(crate) fn new(listener: Listener<'a>, part: &'static str, of: u64) -> Self {
         listener(Progress { part, done: 0, of: Some(of) });
         Self { listener, part, done: AtomicU64::new(0), of }
     }
 
-    /// One more is done.
+    /// Counts one step.
     pub(crate) fn step(&self) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         (self.listener)(Progress { part: self.part, done, of: Some(self.of) });
     }
 }
 
-/// Says what is done in one piece, and does it.
+/// Calls the listener with a part that has no steps, and does the work.
 pub(crate) fn during<T>(listener: Listener<'_>, part: &'static str, work: impl FnOnce() -> T) -> T {
     listener(Progress { part, done: 0, of: None });
     work()

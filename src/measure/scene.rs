@@ -1,5 +1,5 @@
-//! The whole frame against distance: without level of detail, with it in animation, in skinning, in both, and in these
-//! and the meshes.
+//! Times the whole frame against distance: without level of detail; with it in animation, in skinning, and in
+//! both; and in these and the meshes.
 
 use image::RgbaImage;
 use serde::Serialize;
@@ -22,9 +22,9 @@ use crate::gpu::{Gpu, TimedBy};
 pub struct SceneReport {
     /// The device's adapter.
     pub adapter: String,
-    /// Its driver.
+    /// The device's driver.
     pub driver: String,
-    /// Whose clock took the times.
+    /// The clock that took the times.
     pub timed_by: TimedBy,
     /// The model's name.
     pub model: String,
@@ -32,66 +32,68 @@ pub struct SceneReport {
     pub clip: String,
     /// The gate.
     pub gate: GateMode,
-    /// What vertices follow.
+    /// The influences that vertices follow.
     pub skinning: SkinningDetail,
-    /// For each mesh, units from which on it fades, and from which on it is rigid, where it does.
+    /// For each mesh, the distances in units at which its fade begins and at which it is rigid; `None` if it
+    /// never fades.
     pub fade: Vec<Option<[f32; 2]>>,
-    /// For each mesh, how far the whole fade takes a vertex, in the model's metres.
+    /// For each mesh, the largest distance by which the complete fade moves a vertex, in metres of the model.
     pub stray_metres: Vec<f32>,
-    /// Which triangles meshes have.
+    /// The triangles that meshes have.
     pub mesh: MeshDetail,
-    /// For each mesh, its levels that are used.
+    /// For each mesh, those of its levels of detail that are used.
     pub levels: Vec<Vec<LevelReport>>,
-    /// How many.
+    /// Number of instances.
     pub instances: usize,
-    /// How they stand.
+    /// How the instances are placed.
     pub layout: Layout,
-    /// What their places and moments are drawn by.
+    /// The seed of the instances' random positions and start times.
     pub seed: u32,
-    /// Bones of an instance.
+    /// Number of bones of an instance.
     pub bones: usize,
-    /// Vertices of an instance.
+    /// Number of vertices of an instance.
     pub vertices: usize,
-    /// How it was looked at.
+    /// The units, the camera and the frames of the measurement.
     #[serde(flatten)]
     pub setting: Setting,
-    /// One a distance.
+    /// The measurements, one row per distance.
     pub distances: Vec<SceneRow>,
 }
 
-/// A drawn crowd at a distance, in ways that differ in nothing but their level of detail.
+/// A drawn crowd at one distance, in ways that differ in nothing but their level of detail.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SceneRow {
-    /// Units to the nearest instance.
+    /// Distance from the camera to the nearest instance, in units.
     pub distance: f32,
-    /// Pixels that the nearest instance's largest extent takes.
+    /// Size on screen of the nearest instance's largest extent, in pixels.
     pub tall_pixels: f32,
-    /// Over instances.
+    /// The mean of Ω over the instances, 0 to 1.
     pub mean_omega: f64,
-    /// All bones, influences and triangles.
+    /// Without level of detail: all bones, influences and triangles.
     pub off: FrameCost,
-    /// The gate's bones.
+    /// With the gate, which chooses the bones that are sampled.
     pub animation: FrameCost,
-    /// The influences of the options.
+    /// With the influences of [`DrawnOptions::skinning`](super::DrawnOptions::skinning).
     pub skinning: FrameCost,
-    /// Both of these.
+    /// With the gate and with these influences.
     pub both: FrameCost,
-    /// These and the triangles of the options, where these are not full.
+    /// With both, and the triangles of [`DrawnOptions::mesh`](super::DrawnOptions::mesh); `None` if the
+    /// meshes are full.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub all: Option<FrameCost>,
-    /// `off` divided by `both`.
+    /// The times of `off` divided by those of `both`.
     pub cheaper: Cheaper,
-    /// `off` divided by `all`.
+    /// The times of `off` divided by those of `all`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub all_cheaper: Option<Cheaper>,
 }
 
-/// A time divided by another.
+/// The ratios of two ways' times; above 1 the second is faster.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cheaper {
-    /// Of whole frames.
+    /// The ratio of the times of whole frames.
     pub frame: f64,
-    /// Of what precedes the drawing.
+    /// The ratio of the times of what precedes the drawing.
     pub compute: f64,
 }
 
@@ -105,10 +107,10 @@ impl Cheaper {
 }
 
 impl SceneRow {
-    /// What reports and plots call the ways of [`costs`](Self::costs).
+    /// The names that reports and plots give to the entries of [`costs`](Self::costs).
     pub const NAMES: [&str; 5] = ["off", "animation", "skinning", "both", "all"];
 
-    /// In the order of [`NAMES`](Self::NAMES).
+    /// The costs in the order of [`NAMES`](Self::NAMES).
     pub fn costs(&self) -> impl Iterator<Item = &FrameCost> {
         [&self.off, &self.animation, &self.skinning, &self.both].into_iter().chain(&self.all)
     }
@@ -131,15 +133,15 @@ impl SceneRow {
     }
 }
 
-/// Draws a crowd at each distance in four or five ways, and times whole frames. A picture of the last frame comes with each
-/// distance, the last way's: 1920 × 1080.
+/// Draws a crowd at each distance in four or five ways, and times whole frames. Each distance comes with a picture of
+/// the last frame of the last way, 1920 × 1080 pixels.
 ///
-/// The times are medians; ways take turns, so that what else the machine does falls on all of them. The camera does not
-/// move.
+/// The times are medians. The ways take turns, so that other load of the machine affects all of them alike. The camera
+/// does not move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their bounds, fewer than 11 frames, a clip that the model lacks or
-/// of more than an hour, and a model without meshes; what the device reports.
+/// [`InputError`](crate::InputError) for options out of their ranges, fewer than 11 frames, a clip that the
+/// model lacks or that lasts more than an hour, and a model without meshes; errors of the device.
 pub fn scene(
     gpu: &Gpu,
     subject: Subject<'_>,
@@ -166,7 +168,7 @@ pub fn scene(
     Ok((report(gpu, &stage, options, drawn, rows)?, pictures))
 }
 
-/// In the order of [`SceneRow::NAMES`].
+/// The variants in the order of [`SceneRow::NAMES`].
 fn variants(drawn: &DrawnOptions) -> Vec<Variant> {
     let all = Variant { animation: Animation::Gated, ..Variant::of(drawn) };
     let mut variants = vec![

@@ -1,25 +1,25 @@
-//! What all reports over distances say of how a crowd was looked at.
+//! The part of the reports over distances that describes units, camera and frames.
 
 use serde::Serialize;
 
 use super::stage::Stage;
 
-/// How a crowd was looked at.
+/// The units, the camera and the frames of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Setting {
-    /// Units that the model's largest extent counts.
+    /// Number of units in the model's largest extent.
     pub size: f32,
-    /// The model's metres that a unit is.
+    /// Length of a unit in metres of the model.
     pub metres_a_unit: f32,
-    /// Between neighbours of a grid, in sizes of the model.
+    /// The gap between neighbours in a grid, in multiples of the model's size.
     pub spacing: f32,
-    /// Units up to which Ω is 1, and from which on it is 0.
+    /// Distances in units: up to the first Ω is 1, from the second on it is 0.
     pub range: [f32; 2],
-    /// Frames that were measured, after a first one that is full.
+    /// Number of frames that were measured, after a first frame in full.
     pub frames: u32,
-    /// Frames a second.
+    /// Frames per second.
     pub rate: f64,
-    /// Pixels that a metre at a distance of one metre takes: 1080 lines, 60 degrees.
+    /// The focal length: the size in pixels of a metre at a distance of one metre (1080 lines, 60 degrees).
     pub focal_pixels: f32,
 }
 

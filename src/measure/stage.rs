@@ -1,4 +1,4 @@
-//! A crowd before a camera, with what all gates need.
+//! A crowd before a camera, with the tables that all gates need.
 
 use super::gates::{GateMode, Source};
 use super::levels::Levelled;
@@ -14,36 +14,37 @@ use crate::animation::{ClipSet, Gate, Lod, Projection};
 use crate::asset::{Affine, Clip, Model, bone_radii};
 use crate::skinning::{Extent, poses_of};
 
-/// Lines of the picture.
+/// Height of the picture, in pixels.
 pub(crate) const LINES: u32 = 1080;
 
-/// Radians, vertical.
+/// The vertical field of view, in radians.
 pub(crate) const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
 
-/// A crowd, its clip, and what all gates need.
+/// A crowd, its clip, and the tables that all gates need.
 pub(crate) struct Stage<'a> {
     pub subject: Subject<'a>,
     pub clip: &'a Clip,
     pub options: &'a CrowdOptions,
     pub order: Order,
     pub set: ClipSet,
-    /// Metres from each bone, along its axes, where errors are measured: its length.
+    /// For each bone, the distance in metres from its origin at which errors are measured: its length.
     pub radii: Vec<f32>,
-    /// How far gates keep watch: as far, and where the crowd is drawn, to the last vertex.
+    /// For each bone, the radius that gates bound: that of `radii`, or, if the crowd is drawn, of its
+    /// furthest vertex.
     watched: Vec<f32>,
     pub instances: Vec<Instance>,
     pub metres_a_unit: f32,
     pub projection: Projection,
-    /// What each mesh does in the clip, where the crowd is drawn.
+    /// The motion of each mesh in the clip, if the crowd is drawn.
     pub extents: Vec<Extent>,
-    /// The model with levels of detail, where the crowd is drawn with these.
+    /// The model with levels of detail, if the crowd is drawn with them.
     pub levelled: Option<Levelled>,
-    /// The middle of the model's height at rest, metres.
+    /// The height above its origin of the middle of the model at rest, in metres.
     middle: f32,
 }
 
 impl<'a> Stage<'a> {
-    /// With its meshes where it is drawn.
+    /// Prepares the crowd; its meshes too if it is drawn.
     pub(crate) fn new(
         subject: Subject<'a>,
         options: &'a CrowdOptions,
@@ -61,7 +62,7 @@ impl<'a> Stage<'a> {
         }
         let metres_a_unit = (extent / f64::from(options.size)) as f32;
         let starts = (0..options.instances as u32).map(|at| clip.duration() * chance(options.seed, at, 0));
-        // Up, so that it reaches all the points.
+        // Rounded up, so that the radius reaches all the points.
         let radii: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
         let meshes = if drawn.is_some() { &subject.model.meshes[..] } else { &[] };
         let vertices = bone_radii(skeleton.len(), &subject.model.skins, meshes);
@@ -83,7 +84,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// The model, with levels of detail or without.
+    /// The model with levels of detail if the meshes are bounded, else the original.
     pub(crate) fn model(&self, mesh: MeshDetail) -> &Model {
         match (mesh, &self.levelled) {
             (MeshDetail::Bounded { .. }, Some(levelled)) => &levelled.model,
@@ -91,36 +92,37 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// A gate of the clip.
+    /// Makes a gate for the clip.
     pub(crate) fn gate(&self, mode: &GateMode) -> Result<Gate, InputError> {
         let Self { subject, clip, order, set, watched, .. } = self;
         Source { skeleton: &subject.model.skeleton, clip, order, set, radii: watched }.gate(mode)
     }
 
-    /// Bones of all instances.
+    /// Number of bones of all instances.
     pub(crate) fn pairs(&self) -> usize {
         self.instances.len() * self.set.bones()
     }
 
-    /// The layout, so many units before the camera.
+    /// The placements of the layout, `distance` units before the camera.
     pub(crate) fn placements(&self, distance: f32) -> Placements {
         let Self { options, metres_a_unit, middle, .. } = *self;
         Placements::of_layout(options, metres_a_unit, middle, distance * metres_a_unit)
     }
 
-    /// All instances at one place on the axis, so many pixels large, turned every way.
+    /// Places all instances at one point of the optical axis, each turned by another angle, so far away that
+    /// they are `tall_pixels` large.
     pub(crate) fn line_up(&self, tall_pixels: f32) -> Placements {
         let extent = self.options.size * self.metres_a_unit;
         let depth = extent * self.projection.focal_pixels / tall_pixels;
         Placements::at_one_place(self.instances.len(), [0.0, -self.middle, depth])
     }
 
-    /// What gates know of instances, with errors of so many pixels allowed.
+    /// The level of detail of each instance, with errors of `pixels` allowed.
     pub(crate) fn lods(&self, placements: &Placements, gate: &Gate, pixels: f32) -> Vec<Lod> {
         let depth = |origin: &[f32; 3]| origin[2].max(self.projection.near);
         let nearest = placements.origins.iter().map(depth).fold(f32::INFINITY, f32::min);
         let lod = |origin: &[f32; 3]| {
-            // On the ground: the camera's height is no distance.
+            // The distance on the ground: the camera's height does not count.
             let distance = origin[0].hypot(origin[2]) / self.metres_a_unit;
             let allowed = match gate {
                 Gate::Bounded(table) if table.radius() > 0.0 => {
@@ -134,7 +136,8 @@ impl<'a> Stage<'a> {
         placements.origins.iter().map(lod).collect()
     }
 
-    /// Metres from where on a mesh fades and from where on it is rigid, if it ever is.
+    /// The distances in metres at which a mesh begins to fade and at which it is rigid; `None` if it never
+    /// fades.
     pub(crate) fn fade(&self, skinning: SkinningDetail, mesh: usize) -> Option<[f32; 2]> {
         let range = self.options.range;
         match skinning {
@@ -146,7 +149,7 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Metres from where on a mesh is as at levels 1, 2 … of the character.
+    /// The distances in metres from which on a mesh is drawn at levels 1, 2 … of the character.
     pub(crate) fn level_begins(&self, detail: MeshDetail, mesh: usize) -> Vec<f32> {
         match (detail, &self.levelled) {
             (MeshDetail::Bounded { pixels }, Some(levelled)) => {
@@ -162,12 +165,12 @@ pub(crate) fn mean_omega(lods: &[Lod]) -> f64 {
     lods.iter().map(|lod| f64::from(lod.omega)).sum::<f64>() / (lods.len() as f64 * f64::from(OMEGA_ONE))
 }
 
-/// Bones of an instance that its clip moves.
+/// Number of bones of an instance that its clip moves.
 pub(crate) fn moving_bones(gate: &Gate) -> usize {
     gate.animated_bones().count(0)
 }
 
-/// What each of so many meshes does in the clip.
+/// The motion of the first `meshes` meshes in the clip.
 fn extents(
     subject: Subject<'_>,
     clip: &Clip,
@@ -182,7 +185,7 @@ fn extents(
     during(listener, "measuring", || (0..meshes).map(extent).collect())
 }
 
-/// The model with levels, where these are drawn.
+/// The model with levels of detail, if the crowd is drawn with them.
 fn levelled(
     subject: Subject<'_>,
     clip: &Clip,
@@ -198,13 +201,13 @@ fn levelled(
     }
 }
 
-/// The corners of a box around bones and as far as they are long.
+/// The corners of a box around all bones, each taken as a sphere around its origin.
 fn corners(models: &[Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
     let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for (model, length) in models.iter().zip(lengths) {
         for (axis, row) in model.iter().enumerate() {
             let extent = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
-            // A bone points somewhere: half its length is its middle.
+            // The direction of a bone is unknown: the sphere around its origin has half its length as radius.
             corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - extent / 2.0);
             corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + extent / 2.0);
         }

@@ -1,15 +1,15 @@
-//! Many values, of which the mean square, a percentile and the largest are asked for.
+//! A histogram of many values, for their root mean square, a percentile and the largest value.
 
-/// Bits of an `f32` below those that choose a bin: 64 bins an octave.
+/// Number of low bits of an `f32` that do not count for its bin: there are 64 bins per octave.
 const BIN_SHIFT: u32 = 17;
 
-/// Values, counted by size: percentiles are at most a 64th too large.
+/// Values counted by size. Percentiles are too large by 1/64 of their value at most.
 #[derive(Clone)]
 pub(crate) struct Tally {
     pub(crate) count: u64,
     squares: f64,
     pub(crate) max: f64,
-    /// Of all but zeros.
+    /// The number of values in each bin, zeros excepted.
     bins: Vec<u64>,
 }
 
@@ -38,7 +38,7 @@ impl Tally {
         (self.squares / self.count.max(1) as f64).sqrt()
     }
 
-    /// A value that a fraction of all are at most.
+    /// The value that a share `fraction` of all values does not exceed.
     pub(crate) fn percentile(&self, fraction: f64) -> f64 {
         let mut above = (self.count as f64 * (1.0 - fraction)) as u64;
         for (bin, count) in self.bins.iter().enumerate().rev() {

@@ -1,4 +1,4 @@
-//! How far drawn vertices lie from fresh ones, and what a drawn crowd takes.
+//! Measures how far drawn vertices lie from those of the crowd in full, and what drawing a crowd costs.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -12,27 +12,30 @@ use crate::skinning::MeshLevels;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::Vertex;
 
-/// What a crowd takes to be animated, skinned and drawn: medians over the frames that were timed; and its vertices' errors in
-/// these.
+/// The cost of animating, skinning and drawing a crowd, as medians over the frames that were timed; and the
+/// errors of its vertices in these frames.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FrameCost {
-    /// Gate, places, sampling, concatenation, who is seen, skinning, and the drawing, in one submission.
+    /// The time of gate, placements, sampling, concatenation, visibility, skinning and drawing in one
+    /// submission.
     pub frame_nanoseconds: f64,
-    /// What precedes the drawing, alone.
+    /// The time of all that precedes the drawing, submitted alone.
     pub compute_nanoseconds: f64,
-    /// The drawing, alone.
+    /// The time of the drawing, submitted alone.
     pub draw_nanoseconds: f64,
-    /// Palettes, the choice of clusters and vertices, divided by all vertices of the crowd.
+    /// The time of palettes, the choice of clusters and the skinning of vertices, divided by the number of
+    /// all vertices of the crowd.
     pub nanoseconds_per_vertex: f64,
-    /// Clusters that were skinned, of all.
+    /// Share of all clusters that were skinned, 0 to 1.
     pub skinned_fraction: f64,
-    /// Triangles that were drawn, of all meshes in full.
+    /// Number of triangles that were drawn, divided by those of all meshes at level 0.
     pub triangle_fraction: f64,
-    /// From all vertices of the full crowd to those drawn, or where a mesh lacks them, to its surface.
+    /// The distance of each vertex of the full crowd from the vertex that was drawn or, if a coarser mesh
+    /// lacks the vertex, from the surface that was drawn.
     pub vertex_error: Errors,
 }
 
-/// Collects distances between vertices.
+/// Collects the distances between the vertices of two crowds.
 #[derive(Clone)]
 pub(crate) struct VertexMeter {
     metres: Tally,
@@ -50,38 +53,39 @@ impl Default for VertexMeter {
 #[derive(Clone, Copy)]
 pub(crate) struct Skinned<'a> {
     pub vertices: &'a [Vertex],
-    /// Where each of the mesh's lies among an instance's.
+    /// For each vertex of the mesh, its index among the vertices of an instance.
     pub places: &'a [u32],
 }
 
 impl Skinned<'_> {
-    /// Of an instance whose vertices alone are here.
+    /// The position of a vertex, if `vertices` holds those of one instance only.
     fn position(&self, vertex: u32) -> Vec3 {
         Vec3::from(self.vertices[self.places[vertex as usize] as usize].position)
     }
 }
 
-/// What instances have of a mesh.
+/// Which level of a mesh each instance is drawn with.
 #[derive(Clone, Copy)]
 pub(crate) struct Seen<'a> {
-    /// One an instance; those that are out of view are not skinned.
+    /// The level of detail of each instance; those that are out of view are not skinned.
     pub instance_lods: &'a [InstanceLod],
-    /// Of a mesh that has levels of detail: for each level of an instance its own.
+    /// For a mesh with levels of detail: the levels, and the mesh's own level at each level of an instance.
     pub levels: Option<(&'a MeshLevels, &'a [u32])>,
 }
 
 impl Seen<'_> {
-    /// What an instance has of a mesh: its levels, and which of them, from 0 on, where it is not the mesh itself.
+    /// The levels of the mesh and the index in them of the level that an instance is drawn with; `None` for
+    /// the mesh itself.
     fn level(&self, instance: usize) -> Option<(&MeshLevels, usize)> {
         let (levels, own) = self.levels?;
         let own = own.get(self.instance_lods[instance].mesh_lod as usize).or(own.last())?;
-        // Its own level 1 is the first of its levels.
+        // The mesh's own level 1 is the first of its coarser levels.
         Some((levels, (*own as usize).checked_sub(1)?))
     }
 }
 
 impl VertexMeter {
-    /// Adds a frame of a mesh: how far what is drawn lies from each of the mesh's vertices.
+    /// Adds a frame of a mesh: the distance of each of its vertices from what is drawn.
     pub(crate) fn add(
         &mut self,
         (placements, projection): (&Placements, Projection),
@@ -91,7 +95,7 @@ impl VertexMeter {
     ) {
         let count = placements.origins.len();
         let vertices = fresh.places.len().max(1);
-        // As many instances as make a part of the work a processor.
+        // The instances are split into as many parts as there are threads.
         let each = count.div_ceil(rayon::current_num_threads());
         let lists =
             stale.vertices.par_chunks(each * vertices).zip(fresh.vertices.par_chunks(each * vertices));
@@ -122,7 +126,7 @@ impl VertexMeter {
         }
     }
 
-    /// The vertices of one instance.
+    /// Adds the vertices of one instance.
     fn add_instance(
         &mut self,
         placement: &Placement,

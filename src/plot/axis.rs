@@ -1,32 +1,32 @@
-//! An axis of a chart: where values lie on it, and which of them are labelled.
+//! The axis of a chart: the positions of values on it, and the values that are labelled.
 
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-/// How much room above and below the values, as a fraction of the axis.
+/// Margin below the least and above the largest value, as a share of the axis.
 const MARGIN: f64 = 0.04;
 
-/// Decades between the least value above zero and the place of zero on a logarithmic axis.
+/// Distance on a logarithmic axis between the least value above zero and the position of zero, in decades.
 const ZERO_GAP: f64 = 0.5;
 
-/// A linear or logarithmic axis. Places are values, or their decadic logarithms.
+/// A linear or logarithmic axis. Positions on it are the values, or their decadic logarithms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     log: bool,
-    /// The lowest and highest place.
+    /// The lowest and the highest position.
     pub range: [f64; 2],
-    /// Where zero is drawn, if a logarithmic axis must.
+    /// The position at which a logarithmic axis draws zero, if there are such values.
     zero: Option<f64>,
-    /// Places with a label.
+    /// The positions that have a label.
     pub ticks: Vec<f64>,
-    /// Places with a thin line.
+    /// The positions that have a thin line.
     minor: Vec<f64>,
 }
 
 impl Axis {
-    /// An axis that shows all of `values` that are finite. A logarithmic one draws zero, and what is less, at its
-    /// lower end.
+    /// Makes an axis that shows all finite values of `values`. A logarithmic axis draws values that are not
+    /// above zero at its lower end.
     pub fn new(values: impl Iterator<Item = f64> + Clone, log: bool) -> Self {
         let shown = || values.clone().filter(|value| value.is_finite() && (!log || *value > 0.0));
         let least = shown().fold(f64::INFINITY, f64::min);
@@ -76,7 +76,7 @@ impl Axis {
         Self { log: true, range, zero, ticks, minor }
     }
 
-    /// Where a value lies; nothing if it is not finite.
+    /// The position of a value; `None` if the value is not finite.
     pub fn place(&self, value: f64) -> Option<f64> {
         match self.log {
             _ if !value.is_finite() => None,
@@ -86,12 +86,12 @@ impl Axis {
         }
     }
 
-    /// Whether a value is drawn at the place of zero for want of a logarithm.
+    /// Whether a value is drawn at the position of zero because it has no logarithm.
     pub fn is_zero(&self, value: f64) -> bool {
         self.log && value <= 0.0
     }
 
-    /// The label of a place.
+    /// The label at a position.
     pub fn label(&self, place: f64) -> String {
         if self.zero == Some(place) {
             return "0".to_owned();
@@ -125,7 +125,7 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
-/// A number with at most three digits that count.
+/// Formats a number with at most three significant digits.
 fn number(value: f64) -> String {
     let size = value.abs();
     if size < 1e-12 {
@@ -144,7 +144,7 @@ fn number(value: f64) -> String {
     text.replace(".0e", "e")
 }
 
-/// The next of 1, 2, 5, 10, 20, … that is no less.
+/// The least of 1, 2, 5, 10, 20, … that is not below `step`.
 fn round_step(step: f64) -> f64 {
     let decade = 10.0_f64.powf(step.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * decade).find(|round| *round >= step).unwrap_or(step)

@@ -1,13 +1,15 @@
-//! Text in pictures, from a typeface that is part of the program: no font of the system is needed.
+//! Draws text into pictures, in a typeface that is a part of the program, so that no font of the system is
+//! needed.
 
 use ab_glyph::{Font as _, FontRef, Glyph, PxScale, ScaleFont as _, point};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// What drawing gives.
+/// The result of drawing.
 pub type Drawn<'a> = Result<(), DrawingAreaErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
 
-/// Where a text lies from its place: to the right, around it, or to the left. Vertically around it.
+/// Where a text lies relative to its position: to the right, centred, or to the left. Vertically it is
+/// centred.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     Left,
@@ -34,7 +36,7 @@ impl Letters {
         text.chars().map(|letter| font.h_advance(font.glyph_id(letter))).sum::<f32>().ceil() as i32
     }
 
-    /// Draws a text of `size` pixels an em; `upwards`: turned to the left.
+    /// Draws a text of `size` pixels per em; `upwards` turns it by 90 degrees, to be read from below upwards.
     pub fn write<'b>(
         &self,
         area: &DrawingArea<BitMapBackend<'b>, Shift>,
@@ -51,7 +53,7 @@ impl Letters {
             Align::Center => -0.5 * width,
             Align::Right => -width,
         };
-        // Capitals of Hack are 0.73 em high.
+        // Capitals of Hack are 0.73 em high: half of it centres them.
         let baseline = 0.365 * size as f32;
         for letter in text.chars() {
             let id = font.glyph_id(letter);

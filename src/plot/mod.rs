@@ -1,4 +1,5 @@
-//! Charts as pictures: series of points against two axes, linear or logarithmic, one chart or a grid of them.
+//! Draws charts as pictures: series of points against two axes, linear or logarithmic, one chart or a grid of
+//! them.
 
 mod axis;
 mod letters;
@@ -12,45 +13,47 @@ use crate::InputError;
 use axis::Axis;
 use picture::Picture;
 
-/// Pixels drawn for each that is shown, in each direction: plotters does not smooth polygons.
+/// Number of pixels that are drawn for each pixel of the picture, along each axis: plotters does not
+/// antialias polygons.
 const FINER: u32 = 2;
 
-/// Pixels that a panel needs.
+/// The least width and height of a panel, in pixels.
 const LEAST: (u32, u32) = (240, 180);
 
-/// Points of one kind, joined in their order.
+/// A series of points, which are joined by lines in their order.
 #[derive(Debug, Clone, Default)]
 pub struct Series {
-    /// What the legend calls it. Series of one name look alike in every panel.
+    /// The name in the legend. Series of one name look alike in every panel.
     pub name: String,
-    /// Points (x, y). One that is not finite is left out; one that has no logarithm is drawn hollow at the low end.
+    /// Points (x, y). A point that is not finite is left out; one without a logarithm is drawn hollow at the
+    /// axis's low end.
     pub points: Vec<(f64, f64)>,
-    /// Texts beside the points, in their order; there may be fewer.
+    /// Texts beside the points, in the order of the points; there may be fewer.
     pub labels: Vec<String>,
 }
 
-/// A chart.
+/// A chart of several series against two axes.
 #[derive(Debug, Clone, Default)]
 pub struct Chart {
-    /// Above it.
+    /// The title above the chart.
     pub title: String,
-    /// Below the x axis.
+    /// The label below the x axis.
     pub x_label: String,
-    /// Beside the y axis.
+    /// The label beside the y axis.
     pub y_label: String,
     /// Whether the x axis is logarithmic.
     pub log_x: bool,
     /// Whether the y axis is logarithmic.
     pub log_y: bool,
-    /// What it shows.
+    /// The series that the chart shows.
     pub series: Vec<Series>,
 }
 
 impl Chart {
-    /// Draws the chart with its legend.
+    /// Draws the chart with its legend, as a picture of `size` pixels.
     ///
     /// # Errors
-    /// [`InputError`] for a size that nothing can be read at.
+    /// [`InputError`] for a size at which nothing could be read.
     #[cfg(test)]
     pub fn draw(&self, size: (u32, u32)) -> Result<RgbImage, InputError> {
         grid("", std::slice::from_ref(self), 1, size)
@@ -66,11 +69,11 @@ impl Chart {
     }
 }
 
-/// Draws charts in rows of `columns`, all with the same axes (logarithmic as the first chart says), under one title
-/// and above one legend.
+/// Draws charts in rows of `columns`, under one title and above one legend. All have the same axes, which are
+/// logarithmic if those of the first chart are.
 ///
 /// # Errors
-/// [`InputError`] for no columns, and for a size that nothing can be read at.
+/// [`InputError`] for 0 columns, and for a size at which nothing could be read.
 pub fn grid(title: &str, charts: &[Chart], columns: usize, size: (u32, u32)) -> Result<RgbImage, InputError> {
     if columns == 0 {
         return Err(InputError::new("columns", columns, "must be at least 1"));
@@ -102,7 +105,7 @@ mod tests {
         Series { name: name.to_owned(), points: points.to_vec(), labels: Vec::new() }
     }
 
-    /// Pixels near a colour, as a mean place and a number.
+    /// The mean position and the number of the pixels near a colour.
     fn middle(image: &RgbImage, color: RGBColor, rows: std::ops::Range<u32>) -> (f64, f64, usize) {
         let near = |pixel: &image::Rgb<u8>| {
             [color.0, color.1, color.2].into_iter().zip(pixel.0).all(|(a, b)| a.abs_diff(b) < 12)
@@ -123,7 +126,7 @@ mod tests {
             let chart =
                 Chart { series: vec![frame, series("", &[]), series("p", &[(x, y)])], ..Chart::default() };
             let image = chart.draw((600, 400)).expect("a chart");
-            // The legend's mark lies in the last rows.
+            // The last rows of the picture are left out: the legend's mark is there.
             let (x, y, pixels) = middle(&image, COLORS[1], 0..370);
             assert!(pixels > 20, "no mark at {x}, {y}");
             (x, y)

@@ -1,4 +1,4 @@
-//! Draws charts, with plotters.
+//! Draws charts by plotters.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -11,7 +11,8 @@ const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(205, 205, 205);
 const FAINT: RGBColor = RGBColor(236, 236, 236);
 
-/// Colours that the colour-blind can tell apart (Okabe and Ito 2008), without the yellow.
+/// Colours that people with colour vision deficiencies can distinguish (Okabe and Ito 2008), without the
+/// yellow.
 pub const COLORS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -23,20 +24,21 @@ pub const COLORS: [RGBColor; 8] = [
     RGBColor(150, 40, 40),
 ];
 
-/// Regular polygons: corners, and the direction of the first in degrees clockwise from the right.
+/// Regular polygons: number of corners, and the direction of the first corner in degrees clockwise from the
+/// right.
 const SHAPES: [(u32, f64); 8] =
     [(24, 0.0), (4, 45.0), (3, -90.0), (4, 0.0), (3, 90.0), (6, 0.0), (5, -90.0), (3, 0.0)];
 
 type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 type Plane<'a> = DrawingArea<BitMapBackend<'a>, Cartesian2d<Axis, Axis>>;
 
-/// What all panels share.
+/// The drawing state that all panels share.
 pub struct Picture<'a> {
     charts: &'a [Chart],
     names: Vec<&'a str>,
     axes: [Axis; 2],
     letters: Letters,
-    /// Size of ordinary text, in fine pixels; the measure of everything else.
+    /// Size of ordinary text in fine pixels; all other sizes are derived from it.
     text: i32,
 }
 
@@ -82,7 +84,7 @@ impl<'a> Picture<'a> {
         self.letters.write(area, text, place, (fraction * f64::from(self.text), align, false), color)
     }
 
-    /// Lines of the legend: which name at which place.
+    /// The lines of the legend: for each entry the index of its name and its horizontal position.
     fn legend(&self, width: i32) -> Vec<Vec<(usize, i32)>> {
         let mut lines: Vec<Vec<(usize, i32)>> = Vec::new();
         let mut left = width;
@@ -128,7 +130,7 @@ impl<'a> Picture<'a> {
         self.points(chart, plane, whole)
     }
 
-    /// Axes, their labels, and the title.
+    /// Draws the axes, their labels and the title.
     fn frame<'b>(&self, chart: &Chart, plane: &Plane<'b>, whole: &Area<'b>) -> Drawn<'b> {
         let [x, y] = &self.axes;
         let (columns, rows) = plane.get_pixel_range();
@@ -157,7 +159,7 @@ impl<'a> Picture<'a> {
         self.letters.write(whole, &chart.y_label, beside, (size, Align::Center, true), INK)
     }
 
-    /// Marks, and above all of them their labels.
+    /// Draws the marks, and then their labels, so that no mark covers a label.
     fn points<'b>(&self, chart: &Chart, plane: &Plane<'b>, whole: &Area<'b>) -> Drawn<'b> {
         let [x, y] = &self.axes;
         for series in &chart.series {
@@ -190,7 +192,8 @@ impl<'a> Picture<'a> {
         color(index).stroke_width(2 * FINER)
     }
 
-    /// The mark of a series around a pixel: a shape and a colour of its own. Hollow ones are white inside.
+    /// Draws the mark of a series around a pixel; each series has its own shape and colour. Hollow marks are
+    /// white inside.
     fn mark<'b>(&self, index: usize, filled: bool, place: (i32, i32), area: &Area<'b>) -> Drawn<'b> {
         let shape = SHAPES[index % SHAPES.len()];
         // Triangles are smaller than other shapes in the same circle.
@@ -200,7 +203,8 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Fills a regular polygon. Plotters rounds corners to whole pixels, which shows in shapes as small as these.
+/// Fills a regular polygon. Plotters would round its corners to whole pixels, which shows in shapes as small
+/// as marks.
 fn fill<'b>(
     area: &Area<'b>,
     (sides, turn): (u32, f64),

@@ -1,5 +1,5 @@
-//! A whole model at a moment of a clip on the device: where its vertices are, and a picture of them. What the command line
-//! draws.
+//! Computes the vertices of a whole model at one time of a clip on the device, and draws a picture of them,
+//! for the command line.
 
 use image::{Rgba, RgbaImage};
 
@@ -19,11 +19,12 @@ use crate::surface::linear_image::LinearImage;
 use crate::surface::mips::Mips;
 use crate::{Error, srgb};
 
-/// [`PosedModel::on_host`] on the device, equal within rounding. Waits for it.
+/// Computes the same as [`PosedModel::on_host`] on the device; the results are equal within rounding. Waits
+/// for the device.
 ///
 /// # Errors
-/// [`crate::InputError`] for vertices that large scales have driven out of range, and a material or an image that the model
-/// lacks; [`crate::gpu::GpuError`].
+/// [`crate::InputError`] for vertices outside the range of `f32`, as large scales produce, and for a material
+/// or an image that the model lacks; [`crate::gpu::GpuError`] for errors of the device.
 pub fn on_device(
     gpu: &Gpu,
     moment: &PosedModel<'_>,

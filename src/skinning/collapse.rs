@@ -1,19 +1,22 @@
-//! Fewer bones for characters that are far away (A sections 8.8 and 9.6): bones collapse one by one into the nearest
-//! bone above them that is kept, first those whose collapse moves skinned vertices least. The result is a whole
-//! [`Model`], which every pass takes as it takes the original.
+//! Fewer bones for characters that are far away (A sections 8.8 and 9.6): bones collapse one by one into the
+//! nearest kept bone above them; the bone whose collapse moves skinned vertices least goes first. The result
+//! is a whole [`Model`], which every pass takes as it takes the original.
 //!
 //! # What becomes of a collapsed bone
 //!
-//! - **Its motion** is folded into the tracks of the kept bones below it. These are where they were: at all key times
-//!   within rounding; between keys within about a thousandth of the model's size (half of the diagonal of a box around it),
-//!   since keys are added where linear interpolation would be further off. Where the collapsed bone does not move in a
-//!   clip, the tracks keep their keys, their interpolation and their tangents.
-//! - **Its vertices** follow the kept bone, as they do at rest. Influences of bones that take a vertex to the same place
-//!   are added up, so skins get fewer joints; where a skin was not bound at rest, joints stay apart.
+//! - **Its motion** is folded into the tracks of the kept bones below it. These keep their model-space
+//!   transforms: within rounding at all key times, and within about a thousandth of the model's size (half
+//!   the diagonal of its bounding box) between keys, because keys are added where linear interpolation would
+//!   be further off. Where the collapsed bone does not move in a clip, the tracks keep their keys, their
+//!   interpolation and their tangents.
+//! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same place,
+//!   their influences are added up, so that skins get fewer joints; if a skin was not bound at rest, its
+//!   joints remain separate.
 //!
-//! A bone that scales unevenly stays while bones below it are kept: a translation, rotation and scale of these could not
-//! hold the shear. Materials, images, morph targets and their weights, and levels of detail stay as they are. So does
-//! what root motion is taken from: roots, and the uppermost bones that a clip moves, never collapse.
+//! A bone with non-uniform scale is kept as long as bones below it are kept, because a translation, rotation
+//! and scale of these could not represent the shear. Materials, images, morph targets and their weights, and
+//! levels of detail do not change. The bones from which root motion is taken, roots and the uppermost bones
+//! that a clip moves, never collapse.
 
 mod bind;
 mod choice;
@@ -30,9 +33,9 @@ use rest::Rest;
 /// How many bones [`collapse_bones`] leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KeptBones {
-    /// So many, 1 to all.
+    /// This number of bones, from 1 to that of the model.
     Count(usize),
-    /// This part of all, above 0 to 1; rounded up.
+    /// This fraction of the model's bones, above 0 and up to 1; rounded up.
     Fraction(f32),
 }
 
@@ -49,57 +52,60 @@ impl KeptBones {
     }
 }
 
-/// What [`collapse_bones`] does.
+/// How many bones [`collapse_bones`] leaves, and which of them never collapse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollapseOptions {
-    /// How many bones are left; more, where bones that scale unevenly stay.
+    /// The number of bones that are left; it is exceeded if bones with non-uniform scale must be kept.
     pub bones: KeptBones,
-    /// Names of bones that stay, every bone of a name: those that things are attached to, for instance.
+    /// Names of bones to keep, such as those that objects are attached to. A name keeps every bone that bears
+    /// it.
     pub keep: Vec<String>,
-    /// Whether bones without children stay, the ends of fingers and feet (A section 9.6.1).
+    /// Whether bones without children, such as the ends of fingers and feet, are kept (A section 9.6.1).
     pub keep_end_effectors: bool,
 }
 
 impl CollapseOptions {
-    /// So many bones; end effectors stay.
+    /// Leaves this number of bones, and keeps end effectors.
     pub fn new(bones: KeptBones) -> Self {
         Self { bones, keep: Vec::new(), keep_end_effectors: true }
     }
 }
 
-/// How far a collapsed model is off, in the model's units: in every clip 60 times a second, its start and its end
-/// included; at rest, where there are no clips. Blended linearly, with the weights of morph targets that the clips have.
+/// How far a collapsed model is from the original, in the model's units. Both are sampled 60 times a second
+/// in every clip, start and end included, or at rest if there are no clips. Vertices are blended linearly,
+/// with the clips' weights of morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollapseError {
-    /// The largest distance of a vertex from where the original has it.
+    /// The largest distance of a vertex from its place in the original.
     pub largest: f32,
-    /// The root of the mean of the squares of the distances, over all vertices in all poses.
+    /// The root mean square of these distances, over all vertices in all poses.
     pub rms: f32,
-    /// The largest distance of a kept bone's origin from where the original has it.
+    /// The largest distance of a kept bone's origin from its place in the original.
     pub kept_bones: f32,
 }
 
-/// A model of fewer bones.
+/// A model with fewer bones, and its distance from the original.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collapsed {
     /// The model. Its clips, skins, meshes, materials and images are as many as the original's, in the same order.
     pub model: Model,
-    /// For each bone of the original the bone of [`Collapsed::model`] that it became, or that it collapsed into.
+    /// For each bone of the original, the index of the bone of [`Collapsed::model`] that it became or
+    /// collapsed into.
     pub remap: Vec<u32>,
-    /// How far it is off.
+    /// The distance of the model from the original.
     pub error: CollapseError,
 }
 
-/// A model with fewer bones.
+/// Collapses bones of a model.
 ///
-/// Which bones collapse is decided in up to 64 poses of each clip, evenly spaced: always the bone whose vertices,
-/// together with those of bones that collapsed into it, stray least from where they should be, at the one that strays
-/// most. Of bones whose collapse is not seen, as in models without clips, those go first whose vertices lie nearest to
-/// their origin. The same model gives the same result.
+/// The bones are chosen in up to 64 poses of each clip, evenly spaced. A bone's cost is the largest distance by which
+/// its collapse displaces one of its vertices, or of the vertices of bones that collapsed into it; the bone with the
+/// least cost collapses next. Of bones whose collapse displaces no vertex, as in models without clips, the bone whose
+/// vertices lie nearest to its origin goes first. The same model gives the same result.
 ///
 /// # Errors
-/// [`InputError`] for a number of bones out of range, or below that of bones that stay, names that no bone has, clips longer than an hour, and a model
-/// whose parts do not fit.
+/// [`InputError`] for a number of bones out of range or below that of the bones that are kept, names that no
+/// bone has, clips longer than an hour, and a model whose parts do not fit together.
 pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collapsed, InputError> {
     validate(model)?;
     let count = options.bones.count(model.skeleton.len())?;
@@ -132,7 +138,8 @@ fn validate(model: &Model) -> Result<(), InputError> {
     model.meshes.iter().try_for_each(|mesh| mesh.validate(&model.skins))
 }
 
-/// The kept bones, each below the nearest kept bone above it. A joint that collapsed makes that bone a joint.
+/// The skeleton of the kept bones, each below the nearest kept bone above it. If a joint collapsed, the bone
+/// that it collapsed into becomes a joint.
 fn reduced(skeleton: &Skeleton, remap: &Remap) -> Result<Skeleton, InputError> {
     let indices = remap.indices();
     let bone = |bone: usize| {

@@ -1,5 +1,5 @@
-//! A whole model at a moment of a clip: where its vertices are, and a picture of them. What the command line draws without
-//! a GPU; `render::posed` has the same on the device.
+//! Computes the vertices of a whole model at one time of a clip on the host, and draws a picture of them, for
+//! the command line; `render::posed` does the same on the device.
 
 use image::RgbaImage;
 
@@ -17,40 +17,41 @@ use crate::asset::Light;
 use crate::asset::mesh::COORDINATE_LIMIT;
 use crate::asset::{Mesh, Model};
 
-/// A model at a moment.
+/// A model at one time of a clip, and how it is skinned.
 #[derive(Debug, Clone, Copy)]
 pub struct PosedModel<'a> {
     /// The model.
     pub model: &'a Model,
-    /// Which of its clips plays.
+    /// The index of the clip among the model's clips.
     pub clip: usize,
-    /// Seconds, inside the clip.
+    /// Time inside the clip, in seconds.
     pub time: f32,
-    /// Which influences count.
+    /// The influences that vertices follow.
     pub instance_lod: InstanceLod,
-    /// How they are blended.
+    /// The way in which influences are blended.
     pub blend: Blend,
 }
 
-/// How a square picture of a model is drawn.
+/// The camera, size and colours of a square picture of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Portrait {
-    /// Pixels along an edge.
+    /// Width and height of the picture, in pixels.
     pub edge: u32,
-    /// Samples along a pixel's edge.
+    /// Number of samples per pixel along each axis.
     pub finer: u32,
-    /// Linear colour behind the model.
+    /// Colour behind the model, in linear light.
     pub background: [f32; 3],
-    /// Linear colour of meshes without a material.
+    /// Colour of meshes without a material, in linear light.
     pub clay: [f32; 3],
 }
 
 impl PosedModel<'_> {
-    /// The vertices of each mesh in its order, in the model's space, and a picture of them all in the middle.
+    /// Skins every mesh, and draws all of them in the middle of a picture. Returns the vertices of each mesh
+    /// in its own order, in the model's space, and the picture.
     ///
     /// # Errors
-    /// [`InputError`] for vertices that large scales have driven out of range, and a material or an image that the model
-    /// lacks.
+    /// [`InputError`] for vertices outside the range of `f32`, as large scales produce, and for a material or
+    /// an image that the model lacks.
     pub fn on_host(&self, portrait: &Portrait) -> Result<(Vec<Vec<Vertex>>, RgbaImage), InputError> {
         let vertices = self.vertices()?;
         let scene = Scene {
@@ -82,13 +83,13 @@ impl PosedModel<'_> {
         Ok(skinned)
     }
 
-    /// The weights of a mesh's morph targets.
+    /// The weights of a mesh's morph targets at the time.
     pub(crate) fn weights(&self, mesh: &Mesh) -> Vec<f32> {
         mesh.weights_at(self.clip, self.time)
     }
 }
 
-/// Refuses vertices that large scales have driven out of range.
+/// Refuses vertices outside the range of `f32`, as large scales produce.
 pub(crate) fn check_range(mesh: usize, vertices: &[Vertex]) -> Result<(), InputError> {
     let is_good = |value: &f32| value.abs() <= COORDINATE_LIMIT;
     match vertices.iter().position(|vertex| !vertex.position.iter().all(is_good)) {

@@ -1,4 +1,4 @@
-//! The colour maps of a batch of patches, seen from above, on the host or on the device.
+//! Computes the colour maps of a batch of patches, seen from above, on the host or on the device.
 
 use rayon::prelude::*;
 
@@ -14,19 +14,21 @@ use {
     crate::gpu::{Buffer, Gpu},
 };
 
-/// What colour maps are drawn with. A map has a pixel a sample, RGBA with red lowest, sRGB.
+/// The zones, textures and light of colour maps. A map has one sRGB pixel per sample, as RGBA with red in the
+/// lowest byte.
 #[derive(Debug, Clone, Copy)]
 pub struct ColorMaps<'a> {
-    /// Zones, and the distance between samples.
+    /// The configuration: its zones, and the distance between samples.
     pub config: &'a Config,
-    /// A texture for each of the zones: its mean colour counts.
+    /// One texture per zone; only its mean colour is used.
     pub textures: &'a [Texture],
-    /// Light and weights.
+    /// The light, and how zone weights are blended.
     pub shading: &'a Shading,
 }
 
 impl ColorMaps<'_> {
-    /// The maps of windows of heights with one sample of margin, made in parallel; `progress` hears of each.
+    /// Computes the maps of windows of heights with one sample of margin, in parallel; `progress` is called
+    /// for each map.
     pub fn on_host(&self, windows: &[Vec<i32>], progress: &(dyn Fn() + Sync)) -> Vec<Vec<u32>> {
         let zones = map_zones(&self.config.zones, self.textures);
         let width = self.config.patch_size as usize + 2;
@@ -38,10 +40,10 @@ impl ColorMaps<'_> {
         windows.par_iter().map(map).collect()
     }
 
-    /// The maps of fields with one sample of margin. Waits for the device.
+    /// Computes the maps of fields with one sample of margin on the device, and waits for it.
     ///
     /// # Errors
-    /// As [`BlendPass::prepare`].
+    /// The errors of [`BlendPass::prepare`].
     #[cfg(feature = "gpu")]
     pub fn on_device(&self, gpu: &Gpu, parts: &[Fields]) -> Result<Vec<Vec<u32>>, Error> {
         let pass = BlendPass::new(gpu)?;

@@ -1,5 +1,5 @@
-//! Heights in files: raw `i32`, 16-bit PNG (written and read), SHA-256 hashes, features sampled from a PNG, and all files
-//! of a batch of patches.
+//! Stores heights in files: as raw `i32` and as 16-bit PNG (written and read), with SHA-256 hashes; samples
+//! features from a PNG; and writes all files of a batch of patches.
 
 use std::io::{BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -85,41 +85,41 @@ pub fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -
     writer.finish().map_err(|error| failed(&error))
 }
 
-/// The heights of some patches, as files.
+/// The heights of several patches, to be written as files.
 #[derive(Debug, Clone, Copy)]
 pub struct Batch<'a> {
-    /// What they were made with.
+    /// The configuration that the heights were computed from.
     pub config: &'a Config,
-    /// Their coordinates.
+    /// Coordinates of the patches: column and row.
     pub patches: &'a [[i32; 2]],
-    /// patchSize² heights of each.
+    /// The heights of each patch, patchSize² of them in 1/65536 height units.
     pub heights: &'a [Vec<i32>],
-    /// What black and white stand for in all of their PNGs.
+    /// The heights that black and white stand for in all PNGs.
     pub range: HeightRange,
-    /// Whether each is written as a mesh too.
+    /// Whether each patch is also written as a mesh.
     pub obj: bool,
 }
 
-/// What was written of a patch.
+/// The report of a patch that was written.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct PatchReport {
-    /// Its column.
+    /// The patch's column.
     pub px: i32,
-    /// Its row.
+    /// The patch's row.
     pub py: i32,
-    /// Samples along an edge.
+    /// Number of samples along an edge.
     pub size: u32,
-    /// Of its heights, little-endian.
+    /// SHA-256 of the little-endian heights, as hexadecimal digits.
     pub sha256: String,
 }
 
 impl Batch<'_> {
-    /// Writes `heights_<px>_<py>.png` ([`write_png`]) and `heights_<px>_<py>.i32` ([`to_bytes`]) of each patch, and of
-    /// those with meshes `patch_<px>_<py>.obj`, at its place in the world. `place` says where the file of a name goes;
-    /// `progress` hears of each patch.
+    /// Writes `heights_<px>_<py>.png` ([`write_png`]) and `heights_<px>_<py>.i32` ([`to_bytes`]) for each
+    /// patch, and, if meshes are asked for, `patch_<px>_<py>.obj` at the patch's place in the world. `place`
+    /// returns the path for a file name; `progress` is called for each patch.
     ///
     /// # Errors
-    /// [`Error::Output`].
+    /// [`Error::Output`] if a file cannot be written.
     pub fn write(
         &self,
         mut place: impl FnMut(String) -> PathBuf,
@@ -168,18 +168,18 @@ impl Batch<'_> {
 /// The samples of a 16-bit greyscale PNG, and its mapping if the file states one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightImage {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
     /// Samples, row by row.
     pub samples: Vec<u16>,
-    /// The mapping, if relievo wrote the file.
+    /// The mapping to heights, if relievo wrote the file.
     pub range: Option<HeightRange>,
 }
 
 impl HeightImage {
-    /// Reads a PNG.
+    /// Reads a 16-bit greyscale PNG.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read or is not a 16-bit greyscale PNG.

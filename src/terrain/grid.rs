@@ -1,23 +1,23 @@
-//! Rectangles of patches: which there are, the memory that they take, and their colour maps as one image.
+//! Rectangles of patches: the patches in them, the memory that they take, and their colour maps as one image.
 
 use image::{Rgba, RgbaImage};
 
 use crate::InputError;
 
-/// Columns and rows of patches.
+/// A rectangle of patches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Grid {
     /// Coordinates of the north-western patch.
     pub first: [i32; 2],
-    /// Columns and rows.
+    /// Number of columns and rows of patches.
     pub size: [u32; 2],
 }
 
 impl Grid {
-    /// The patches' coordinates, row by row.
+    /// The coordinates of the patches, row by row.
     ///
     /// # Errors
-    /// [`InputError`] that names `origin` where one does not fit `i32`.
+    /// [`InputError`] that names `origin` if a coordinate does not fit `i32`.
     pub fn patches(&self) -> Result<Vec<[i32; 2]>, InputError> {
         let coordinate = |index: u32, axis: usize| {
             let first = self.first[axis];
@@ -30,23 +30,26 @@ impl Grid {
         places.map(|(x, y)| Ok([coordinate(x, 0)?, coordinate(y, 1)?])).collect()
     }
 
-    /// Samples of all patches, each in a window of `width`² samples.
+    /// Number of samples of all patches, if each is computed in a window of `width`² samples.
     pub fn samples(&self, width: u32) -> u128 {
         self.size.into_iter().chain([width; 2]).map(u128::from).fold(1, u128::saturating_mul)
     }
 
-    /// About how many bytes it takes the host to make the patches in windows of `width`² samples, with so many injected
-    /// points, and to write them.
+    /// About how many bytes the host needs to compute the patches in windows of `width`² samples, with
+    /// `features` injected points, and to write them.
     pub fn bytes(&self, width: u32, features: u64) -> u128 {
-        // Two windows while it is made; heights, map and files' bytes while it is written. The index of features
-        // has eight bytes for every 32 points of every level, on the host and on the device.
+        // While a patch is computed there are two windows; while it is written, heights, map and the files'
+        // bytes. The index of features has eight bytes for every 32 points of every level, on the host and on
+        // the device.
         let bytes_a_point = if features == 0 { 24 } else { 25 };
-        // The list that is read, the tree that it is sorted into, and its values in a few windows and levels.
+        // The features take a list as they are read, a sorted tree, and their values in a few windows and
+        // levels.
         self.samples(width).saturating_mul(bytes_a_point).saturating_add(u128::from(features) * 128)
     }
 
-    /// The colour maps of all patches, `patch_size`² pixels each in the order of [`Grid::patches`], as one image: north up,
-    /// one pixel a sample. Neighbours share a row or column of pixels.
+    /// The colour maps of all patches as one image, north up, one pixel per sample. Each map has
+    /// `patch_size`² pixels; maps are in the order of [`Grid::patches`]. Neighbours share a row or column of
+    /// pixels.
     pub fn mosaic(&self, patch_size: u32, maps: &[Vec<u32>]) -> RgbaImage {
         let edge = patch_size - 1;
         let mut image = RgbaImage::new(self.size[0] * edge + 1, self.size[1] * edge + 1);

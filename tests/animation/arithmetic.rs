@@ -10,8 +10,8 @@ use crate::shader::called;
 
 const EDGES: [u32; 9] = [0, 1, 2, 0xffff, 0x1_0000, 0x1_0001, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff];
 
-/// Combinations of extreme values, and random words of every length; `last` makes the last word of each from
-/// the others.
+/// Combinations of extreme values, and random words of every length; `last` maps the last word of each
+/// element into the range that the test needs.
 fn given(case: u32, last: impl Fn(u32) -> u32) -> Vec<[u32; 4]> {
     let mut draw = Draw::new(case);
     let mut given = Vec::new();

@@ -55,7 +55,8 @@ impl Run<'_> {
             let seconds = step(&mut lazy.instances);
             elapsed += seconds;
             full.instances.clone_from(&lazy.instances);
-            // Sometimes by more or less than a frame, back in time, or not at all.
+            // The time ahead is sometimes more or less than a frame, sometimes back in time, and sometimes
+            // zero.
             let ahead = [1.0, 0.0, 2.0, 1.0, 0.3, -1.0][number as usize % 6] * seconds;
             let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
             lazy.advance(&frame, elapsed);

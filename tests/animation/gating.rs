@@ -18,7 +18,7 @@ use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Skeleton};
 use relievo::samples::creature;
 
-/// What a test plays.
+/// The skeleton, clips and tables that a test plays.
 struct Stage {
     skeleton: Skeleton,
     clips: Vec<Clip>,
@@ -115,7 +115,7 @@ fn bounded_run(stage: &Stage, path: RotationPath, allowed: f32, times: u32, case
     let (mut elapsed, mut worst, mut sampled) = (0.0, 0.0_f64, 0);
     let frames = 150;
     for number in 0..frames {
-        // 1 to 100 ms, and now and then many turns at once.
+        // Frames last 1 to 100 ms, and now and then many turns of the clip.
         let leap = if draw.word().is_multiple_of(40) { 29.0 } else { 0.0 };
         elapsed += leap + 0.001 + 0.099 * (draw.word() % 1000) as f32 / 1000.0;
         if draw.word().is_multiple_of(8) {
@@ -173,7 +173,7 @@ fn nothing_allowed_is_nothing_missed() {
     }
 }
 
-/// Full evaluation of moving bones alone is full evaluation.
+/// Sampling only the bones that move equals full evaluation.
 #[test]
 fn bones_that_never_move_are_sampled_once() {
     let stage = Stage::creature();
@@ -209,7 +209,7 @@ fn uniform_and_random_take_their_share_of_the_bones() {
             let mean = done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / 120.0;
             let found = mean / moving as f64;
             assert!((found - fraction).abs() < 0.01, "{}: {found} of {fraction}", gate.name());
-            // Together, or each for itself.
+            // Instances update all bones together, or each bone for itself.
             let is_whole = |work: &Work| work.pairs.len() == work.instances.len() * moving / 20;
             let whole = done[1..].iter().all(is_whole);
             let is_together = matches!(gate, Gate::Uniform(_)) || fraction == 0.0 || fraction == 1.0;
@@ -239,7 +239,7 @@ fn skip_period_skips_once_a_period() {
     let of = |clip| Priorities::new(&stage.skeleton, clip, true, &Weights::default(), &user).expect("fits");
     let priorities: Vec<_> = stage.clips.iter().map(of).collect();
     let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
-    // A second, of 65,536 ticks.
+    // The period of a second has 65,536 ticks.
     let gate = Gate::SkipPeriod { table, period: 65536 };
     let fraction = |omega: u32| {
         let done = pairs_a_frame(&stage, &gate, Lod { omega, ..Lod::FULL }, 241);
@@ -355,7 +355,7 @@ fn tables_refuse_what_does_not_fit() {
     }
     let (clips, path) = (stage.clips(), RotationPath::Slerp);
     assert_eq!(field(AnimatedBones::new(&stage.order, &stage.set, &clips[..1])), "clips.len");
-    // As many clips, but in another order, or another one among them.
+    // The same number of clips, but in another order, or with another clip among them.
     let slow: Vec<BoneKeys> = (0..stage.skeleton.len()).map(|_| BoneKeys::default()).collect();
     let slow = Clip::new("slow", &stage.skeleton, &slow, clips[1].duration()).expect("valid");
     for (others, wrong) in

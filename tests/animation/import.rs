@@ -28,7 +28,7 @@ fn place(affine: &Affine) -> [f32; 3] {
 #[test]
 fn bones_above_and_between_joints_count() {
     let mut scene = Scene::new();
-    // 3 (moves) ─ 2 (joint) ─ 0 (no joint, scaled) ─ 1 (joint), and an unrelated node.
+    // The nodes: 3 (moves) ─ 2 (joint) ─ 0 (no joint, scaled) ─ 1 (joint), and an unrelated node.
     scene.push("nodes", json!({"name": "between", "scale": [2.0, 2.0, 2.0], "children": [1, 4]}));
     scene.push("nodes", json!({"name": "tip", "translation": [0.0, 1.0, 0.0]}));
     scene.push("nodes", json!({"name": "root", "translation": [1.0, 0.0, 0.0], "children": [0]}));
@@ -44,7 +44,7 @@ fn bones_above_and_between_joints_count() {
     assert_eq!(model.skeleton.joints(), [3, 1]);
     assert_eq!(model.skeleton.joint_parents(), [Some(1), None]);
     assert_eq!(place(&pose(&model, 0, 0.5)[3]), [1.0, 2.0, 4.0]);
-    // No inverse bind matrices: identity.
+    // Without inverse bind matrices they are the identity.
     assert_eq!(model.skins[0].inverse_binds, vec![glam::Mat4::IDENTITY.to_cols_array(); 2]);
 }
 
@@ -93,7 +93,7 @@ fn interpolations_names_and_durations() {
     let step = scene.animate(0, "translation", "STEP", times, vectors);
     scene.json["animations"][step]["name"] = json!("hop");
     scene.animate(1, "scale", "CUBICSPLINE", times, spline);
-    // Channels of a node that is not a bone, and of no node: both count only for the duration.
+    // Channels of a node that is not a bone, and of no node, count only for the duration.
     scene.push("nodes", json!({"name": "lamp"}));
     let late = scene.floats("SCALAR", &[0.0, 9.0]);
     scene.json["animations"][0]["samplers"]
@@ -136,7 +136,7 @@ fn normalized_integers_are_fractions() {
     for (kind, signed, bytes) in [(5120, true, 1), (5121, false, 1), (5122, true, 2), (5123, false, 2)] {
         let one: i32 = if signed { (1 << (8 * bytes - 1)) - 1 } else { (1 << (8 * bytes)) - 1 };
         let lowest = if signed { -one - 1 } else { 0 };
-        // Two quaternions and 4 bytes of something else behind each.
+        // Two quaternions, each followed by 4 unrelated bytes.
         let mut buffer = Vec::new();
         for component in [0, 0, 0, one, lowest, 0, 0, one] {
             buffer.extend(&component.to_le_bytes()[..bytes]);
@@ -224,7 +224,7 @@ fn unknown_chunks_are_skipped() {
     assert!(Model::from_gltf(&bytes, None).is_ok());
 }
 
-/// A thousand bones in one chain: no recursion.
+/// A chain of a thousand bones is imported without recursion.
 #[test]
 fn chains_may_be_long() {
     let mut scene = Scene::new();
@@ -234,7 +234,7 @@ fn chains_may_be_long() {
         scene.push("nodes", json!({"children": children, "translation": [0.0, 1.0, 0.0]}));
     }
     scene.push("skins", json!({"joints": [bones - 1, 0]}));
-    // Empty lists are not allowed.
+    // glTF does not allow empty lists.
     scene.json["nodes"][bones - 1].as_object_mut().expect("an object").remove("children");
     let model = read(&scene);
     let models = local_to_model(&model.skeleton, &model.skeleton.rest());

@@ -107,6 +107,6 @@ fn layers_fold_upwards() {
         [Layer::new(vec![plays(1)], vec![0.5]), Layer::new(vec![plays(2)], vec![0.25]).masked(vec![0.5])];
     let found = cursors(&set, &all_instances(&[plays(0)], &layers), 0.0);
     let pose = sample_layers(&set, &[plays(0)], &layers, &found, RotationPath::Slerp);
-    // 0 → 4 → 4 + 96/8.
+    // The sum grows from 0 to 4, and then to 4 + 96/8.
     assert_eq!(pose[0].translation, [16.0, 0.0, 0.0]);
 }

@@ -1,4 +1,4 @@
-//! Skeletons, clips, their import and their sampling, against code of its own in double precision.
+//! Skeletons and clips, their import and their sampling, compared with independent code in double precision.
 
 #[cfg(feature = "verify")]
 mod arithmetic;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::sampling::noise;
 use crate::scene::Scene;
 
-/// A document with every kind of thing in it.
+/// A document that has every kind of element.
 fn full() -> Scene {
     let mut scene = Scene::of_two_bones();
     scene.push("nodes", json!({"name": "mesh", "skin": 0}));
@@ -177,7 +177,7 @@ fn animations() {
     refused("/animations/0/channels/2/target", twice, "animations[0].channels[2].target", &["two"]);
 }
 
-/// Key times and values straight in the buffer.
+/// Key times and values are changed directly in the buffer.
 #[test]
 fn keys() {
     for (accessor, index, value, field) in [

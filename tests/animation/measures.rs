@@ -11,7 +11,7 @@ use relievo::measure::{
 
 use crate::harness::gpu;
 
-/// As far as places on screen round.
+/// The rounding of positions on screen, in pixels.
 const ROUNDING: f64 = 1e-3;
 
 fn model() -> Model {
@@ -76,7 +76,7 @@ fn curves_fall_and_points_keep_what_they_promise() {
     let [strictest, laxest] = [bounded[0], bounded[bounded.len() - 1]];
     assert!(laxest.cost < strictest.cost && laxest.error.rms_pixels > strictest.error.rms_pixels);
     for point in of(GateName::Uniform) {
-        // All bones in a share Ω of the frames: as many, up to one turn of each instance.
+        // All bones are sampled in a share Ω of the frames, up to one turn of each instance.
         assert!((point.cost - point.parameter).abs() <= 1.0 / 24.0 + 1e-9, "{point:?}");
     }
     for rows in [&report.comparisons.bounded_max_pixels, &report.comparisons.budget_rms_pixels] {
@@ -105,7 +105,7 @@ fn the_device_measures_as_the_cpu_does_and_draws() {
     assert!((a.error.rms_pixels - b.error.rms_pixels).abs() < ROUNDING);
     let (report, pictures) = drawn(&gpu, subject(&model), &options, &quarter, &|_| ()).expect("measured");
     let row = report.distances[0].drawn.expect("it is drawn");
-    // The gate's pixels, and a quarter each for influences and triangles.
+    // The bound is the sum of the gate's pixels and a quarter pixel each for influences and triangles.
     assert!(row.gated.vertex_error.max_pixels <= 1.5 + ROUNDING, "{row:?}");
     assert!(row.gated.frame_nanoseconds > 0.0 && row.full_frame_nanoseconds > 0.0);
     assert_eq!((pictures.len(), pictures[0].dimensions()), (1, (1920, 1080)));
@@ -129,7 +129,7 @@ fn progress_counts_the_frames() {
     assert_eq!(told, expected.collect::<Vec<_>>());
 }
 
-/// The field that is refused.
+/// The path of the field that is refused.
 fn refused<T>(measured: Result<T, Error>) -> String {
     match measured {
         Err(Error::Input(error)) => error.path,

@@ -83,7 +83,7 @@ fn a_mesh_is_read() {
     // glTF's handedness has the opposite sign.
     assert_eq!(mesh.tangents[..2], [[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 1.0]]);
     assert_eq!(mesh.uv[1], [1.0, 1.0]);
-    // A strip.
+    // The primitive is a triangle strip.
     assert_eq!(mesh.indices, [0, 1, 2, 2, 1, 3]);
     assert_eq!((weights(&mesh, 0), weights(&mesh, 1)), (vec![(0, 1.0)], vec![(1, 0.75), (0, 0.25)]));
     // Solved tangents agree with the file's convention: v points down here, against +Y.
@@ -214,7 +214,7 @@ fn targets_are_sparse_and_animated() {
     skinned.refused("nodes[2].weights.len", "must be 2");
 }
 
-/// Targets, their keys, indices, texture coordinates, tangents, a texture.
+/// A document with morph targets, their keys, indices, texture coordinates, tangents and a texture.
 fn full() -> Scene {
     let mut skinned = Skinned::new();
     let delta = skinned.0.floats("VEC3", &[0.5; 12]);
@@ -243,7 +243,7 @@ fn skin_all(model: &Model) {
     use relievo::skinning::skin::reference::skin;
     use relievo::skinning::vertex::Blend;
     let models = local_to_model(&model.skeleton, &model.skeleton.rest());
-    // Scales may move positions out of range, which is the pose's fault.
+    // Scales may move positions out of range; that is a property of the pose and not of the import.
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
     assert_eq!(bone_radii(model.skeleton.len(), &model.skins, &model.meshes).len(), model.skeleton.len());
     for mesh in &model.meshes {

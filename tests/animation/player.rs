@@ -36,7 +36,7 @@ pub fn wide<const N: usize>(values: [f32; N]) -> [f64; N] {
     values.map(f64::from)
 }
 
-/// Row by row.
+/// The matrix of a translation, rotation and scale, row by row.
 pub fn matrix(t: [f64; 3], q: [f64; 4], s: [f64; 3]) -> Matrix {
     let [x, y, z, w] = q;
     let rows = [

@@ -35,7 +35,7 @@ fn read(scene: &Scene) -> Model {
     model
 }
 
-/// The bones, and of each mesh its name and the bone that it follows.
+/// The names of the bones, and for each mesh its name and the bone that it follows.
 fn followed(model: &Model) -> (Vec<&str>, Vec<(&str, &str)>) {
     let bones: Vec<&str> = model.skeleton.bones().iter().map(|bone| &*bone.name).collect();
     let of = |mesh: &relievo::asset::Mesh| {
@@ -65,10 +65,10 @@ fn the_lowest_node_that_may_move_is_followed() {
     assert_eq!(followed(&model), (vec!["root", "tip"], vec![("sword_0", "tip")]));
     let bind = &model.skins[1].inverse_binds[0];
     assert_eq!((bind[0], bind[5], bind[13]), (2.0, 2.0, 2.0));
-    // A joint with a mesh of its own.
+    // A joint may have a mesh of its own.
     scene.json["nodes"][0]["mesh"] = json!(0);
     assert_eq!(followed(&read(&scene)).1, [("root_0", "root"), ("sword_0", "tip")]);
-    // What a clip moves becomes a bone.
+    // A node that a clip moves becomes a bone.
     move_node(&mut scene, grip);
     let model = read(&scene);
     assert_eq!(followed(&model).0, ["root", "tip", "grip"]);
@@ -110,7 +110,7 @@ fn skinned_meshes_come_first() {
     let model = read(&scene);
     assert_eq!(model.meshes.iter().map(|mesh| &*mesh.name).collect::<Vec<_>>(), ["body_0", "stone_0"]);
     assert_eq!(model.meshes.iter().map(|mesh| mesh.skin).collect::<Vec<_>>(), [0, 1]);
-    // A mesh that names joints, and a node that has none to follow.
+    // The node has a mesh with joint indices, but no skin whose joints they could name.
     scene.json["nodes"][2]["mesh"] = json!(1);
     let model = read(&scene);
     assert_eq!(model.meshes[1].influences.of(0).len(), 1);

@@ -70,7 +70,7 @@ fn distance(a: &DAffine3, b: &DAffine3) -> f64 {
     points.iter().map(|p| a.transform_point3(*p).distance(b.transform_point3(*p))).fold(0.0, f64::max)
 }
 
-/// Motion · pose in place = pose.
+/// Checks that root motion times the pose in place equals the pose.
 fn check(skeleton: &Skeleton, clip: &Clip, taken: Taken, bound: f64) {
     let (in_place, motion) = RootMotion::extract(skeleton, clip, 1, taken).expect("extracted");
     let above = wide(&sample_bone(clip, 0, 0.0, RotationPath::Slerp));
@@ -80,7 +80,7 @@ fn check(skeleton: &Skeleton, clip: &Clip, taken: Taken, bound: f64) {
         let [pose, placed] = [clip, &in_place].map(|clip| sample(clip, time, RotationPath::Slerp));
         assert_eq!((pose[0], pose[2], pose[1].scale), (placed[0], placed[2], placed[1].scale));
         let moved = delta(&motion, Wrap::Clamp, 0.0, time.into()) * above * wide(&placed[1]);
-        // In metres: the armature's points are centimetres.
+        // The armature's points are in centimetres; this converts to metres.
         let metres = DAffine3::from_scale(DVec3::splat(100.0));
         worst = worst.max(distance(&(moved * metres), &(above * wide(&pose[1]) * metres)));
     }
@@ -123,7 +123,7 @@ fn in_place_means_in_place() {
     }
 }
 
-/// Two metres a second along z, a hop, for one second.
+/// A root that moves two metres a second along z, with a hop, for one second.
 fn straight() -> (Skeleton, Clip) {
     let bone = Bone { name: "root".to_owned(), parent: None, rest: Transform::IDENTITY };
     let skeleton = Skeleton::of_joints(vec![bone]).expect("valid");
@@ -161,11 +161,11 @@ fn loops_clamps_and_reverse_play() {
         assert_eq!(moved(Wrap::Loop, start, rate, from, to), looped, "{start} {rate} {from} {to}");
         assert_eq!(moved(Wrap::Clamp, start, rate, from, to), clamped, "{start} {rate} {from} {to}");
     }
-    // After eleven days a frame is still a frame.
+    // After eleven days, a frame still moves by the length of a frame.
     assert!((moved(Wrap::Loop, 0.0, 1.0, 1e6, 1e6 + 1.0 / 64.0) - 1.0 / 32.0).abs() < 1e-6);
 }
 
-/// Deltas join without a gap wherever loops end, and lead back.
+/// Deltas join without a gap wherever loops end, and their sum leads back to the start.
 #[test]
 fn deltas_add_up() {
     for (case, interpolation) in [Interpolation::Linear, Interpolation::CubicSpline].into_iter().enumerate() {
@@ -184,7 +184,7 @@ fn deltas_add_up() {
                 assert!(distance(&(first * back), &DAffine3::IDENTITY) < 2e-5, "{wrap:?} {t:?}");
             }
         }
-        // Whole loops, one by one and at once.
+        // Several loops in one step equal the same loops one by one.
         let one = delta(&motion, Wrap::Loop, 0.7, 2.7);
         assert!(distance(&(one * one * one), &delta(&motion, Wrap::Loop, 0.7, 6.7)) < 2e-5);
         assert!(distance(&(one * one).inverse(), &delta(&motion, Wrap::Loop, 4.7, 0.7)) < 2e-5);
@@ -202,7 +202,7 @@ fn four_left_turns_lead_back() {
             vec![[5.0, 1.0, 0.0, 0.0], [5.0, 1.0, 1.0, 0.0]],
             Interpolation::Linear,
         ),
-        // The same turn with the other sign.
+        // The same rotation, with the quaternions' sign reversed.
         rotation: keys(
             &[0.0, 1.0],
             vec![[0.0, 0.0, 0.0, 1.0], [0.0, -half, 0.0, -half]],
@@ -239,7 +239,7 @@ fn what_has_no_motion_stays() {
         assert!(distance(&wrap, &DAffine3::IDENTITY) < 1e-5, "{}", clip.name());
         assert_eq!((in_place.name(), in_place.duration()), (clip.name(), clip.duration()));
     }
-    // One key, no keys, and no time.
+    // Clips with one key, without keys, and without duration.
     let (skeleton, _) = straight();
     let one =
         BoneKeys { translation: keys(&[0.0], vec![[1.0; 4]], Interpolation::Linear), ..BoneKeys::default() };
@@ -288,9 +288,9 @@ fn what_cannot_be_taken_is_refused() {
     assert_eq!(refused(&skeleton, &clip, 1, Taken { horizontal: false, vertical: true, yaw: true }), "taken");
     assert_eq!(refused(&skeleton, &clip, 3, YAW), "bone");
     assert_eq!(refused(&straight().0, &clip, 0, YAW), "clip.bones");
-    // The bone above moves.
+    // The bone above the root moves.
     assert_eq!(refused(&skeleton, &clip, 2, YAW), "clip.bones[1]");
-    // Scales above the root: uneven, mirrored, none.
+    // Scales above the root that are non-uniform, mirrored, or zero.
     for (scale, yaw, is_refused) in [
         ([1.0, 2.0, 1.0], true, true),
         ([1.0, 2.0, 1.0], false, false),

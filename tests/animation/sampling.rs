@@ -49,7 +49,7 @@ fn slerp_is_within_its_bound_of_acos_and_sin() {
     let mut worst = (0.0_f64, 0.0_f64);
     for (case, chunk) in words.chunks_exact(8).enumerate() {
         let a: [f32; 4] = std::array::from_fn(|i| chunk[i]);
-        // From identical to opposite: the second lies ever further from the first.
+        // The second rotation lies ever further from the first, from identical to opposite.
         let far = (case % 40) as f32 / 39.0;
         let b: [f32; 4] = std::array::from_fn(|i| (1.0 - far) * chunk[i] + far * chunk[4 + i]);
         if a.map(f32::abs).iter().sum::<f32>() < 0.1 || b.map(f32::abs).iter().sum::<f32>() < 0.1 {
@@ -90,7 +90,7 @@ fn opposite_quaternions_are_the_same_rotation() {
             assert!(player::angle(rotation_of(&straight, time), rotation_of(&other, time)) < 1e-6);
         }
     }
-    // Between q and −q nothing turns.
+    // Between q and −q there is no rotation.
     let still = clip(vec![b, minus(b), b]);
     assert!(player::angle(rotation_of(&still, 0.5), wide(b)) < 1e-6);
 }
@@ -207,7 +207,7 @@ fn one_key_zero_length_and_repeated_times() {
     let none = linear(&[0.0, 0.0], &[1.0, 2.0]);
     assert_eq!((none.duration(), x(&none, 0.0)), (0.0, 2.0));
     assert_eq!(inside_clip(Wrap::Loop, none.duration(), 5.0), 0.0);
-    // At a jump the last of equal times counts, also at the ends.
+    // At a jump the last of several equal times counts, at the ends too.
     let jump = linear(&[1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0], &[0.0, 1.0, 2.0, 9.0, 4.0, 6.0, 8.0]);
     for (time, expected) in
         [(0.5, 0.0), (1.0, 1.0), (1.5, 1.5), (2.0, 4.0), (2.5, 5.0), (3.0, 8.0), (4.0, 8.0)]
@@ -272,7 +272,7 @@ fn times_wrap_in_float_as_in_double() {
     }
 }
 
-/// Linear, step and spline, with and without keys, each on one of two timelines.
+/// A clip of linear, step and spline tracks, with and without keys, each on one of two timelines.
 fn mixed(bones: usize) -> Clip {
     let keys = |case: usize, is_rotation: bool| {
         let interpolation =

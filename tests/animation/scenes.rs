@@ -41,7 +41,7 @@ fn meshes(model: &Model) -> Vec<&str> {
     model.meshes.iter().map(|mesh| &*mesh.name).collect()
 }
 
-/// Where vertices of each mesh are.
+/// The positions of each mesh's vertices.
 fn places(model: &Model, models: &[Affine]) -> Vec<Vec<[f32; 3]>> {
     use relievo::skinning::morph::reference::morph;
     use relievo::skinning::palette::reference::palette_for;
@@ -152,7 +152,8 @@ fn rigid_parts_need_no_skin() {
     let clip = &model.clips[0];
     let locals = sample(clip, 1.0, relievo::asset::keyframe::RotationPath::Slerp);
     let found = places(&model, &local_to_model(&model.skeleton, &locals));
-    // Half way: the wagon has gone 2, the wheel has turned a quarter about its own axle, at (1, −1) of the wagon.
+    // Half way, the wagon has moved by 2, and the wheel has turned by a quarter about its axle, at (1, −1) of
+    // the wagon.
     let near = |found: [f32; 3], wanted: [f32; 3]| {
         assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?} for {wanted:?}");
     };
@@ -178,7 +179,7 @@ fn what_never_moves_is_imported_too() {
     let locals = sample(&at_rest, 0.0, relievo::asset::keyframe::RotationPath::Slerp);
     assert_eq!(locals, model.skeleton.rest());
     assert_eq!(places(&model, &local_to_model(&model.skeleton, &locals))[0][1], [4.0, 2.0, 0.0]);
-    // Nothing that could be shown.
+    // The scene has nothing that could be drawn.
     scene.json["nodes"] = json!([{"name": "lamp"}]);
     refused(&scene, "nodes", "must have a mesh, a skin or an animated node");
 }
@@ -218,12 +219,12 @@ fn compressed_meshes_are_left_out_and_their_bones_are_not() {
     scene.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     let model = read(&scene);
     assert_eq!((bones(&model), model.meshes.len()), (vec!["door"], 0));
-    // Without Draco these are zeros.
+    // Without Draco these accessors are zeros.
     scene.json["extensionsRequired"] = json!([]);
     assert_eq!(read(&scene).meshes[0].positions, [[0.0; 3]; 3]);
 }
 
-/// Extensions of materials and images do not matter to an import that reads neither, nor do textures without an
+/// An import that reads neither materials nor images ignores their extensions, and textures without an image.
 /// image.
 #[test]
 fn who_reads_no_images_needs_none() {
@@ -241,7 +242,7 @@ fn who_reads_no_images_needs_none() {
     skinned.0.json["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
     assert_eq!(bare(&skinned.0).expect("valid").meshes.len(), 1);
     refused(&skinned.0, "textures[0].source", "must be given");
-    // Of a material that no mesh has.
+    // The material is one that no mesh has.
     skinned.0.json["materials"].as_array_mut().expect("a list").push(json!({}));
     skinned.primitive()["material"] = json!(1);
     assert_eq!(read(&skinned.0).materials.len(), 1);

@@ -69,7 +69,7 @@ fn mirrored() -> Surface {
     Surface::new(positions.as_flattened(), &[[0.0, 0.0, 1.0]; 6], uv.as_flattened(), &indices)
 }
 
-/// Numbers of tests/animation/mikktspace.json, whose neighbour says what made them.
+/// The numbers of tests/animation/mikktspace.json; the file beside it says how they were made.
 fn numbers<const N: usize>(document: &Value, list: &str) -> Vec<[f32; N]> {
     let vectors = document[list].as_array().expect("a list").iter();
     let number = |value: &Value| value.as_f64().expect("a number") as f32;
@@ -111,7 +111,7 @@ fn corners_with_tangents_of_their_own_become_vertices() {
     let mesh = surface.read().expect("valid");
     assert_eq!(mesh.vertices(), 8);
     assert_eq!(mesh.indices, [0, 2, 3, 0, 3, 1, 6, 4, 5, 6, 5, 7]);
-    // glTF's handedness is the other one: +1 where the texture is upright.
+    // glTF's handedness has the opposite sign of MikkTSpace's: +1 where the texture is upright.
     for (vertex, tangent) in mesh.tangents.iter().enumerate() {
         let wanted = if vertex < 4 { [1.0, 0.0, 0.0, -1.0] } else { [-1.0, 0.0, 0.0, 1.0] };
         assert_eq!(*tangent, wanted, "{vertex}");
@@ -122,11 +122,11 @@ fn corners_with_tangents_of_their_own_become_vertices() {
     let target = &mesh.targets[0];
     assert_eq!(target.vertices, [2, 3, 4, 5, 6, 7]);
     assert_eq!(target.deltas[4..], target.deltas[..2]);
-    // The file's own tangents are kept.
+    // Tangents of the file are kept.
     surface.attribute("TANGENT", "VEC4", &[0.0, 1.0, 0.0, 1.0].repeat(6));
     let given = surface.read().expect("valid");
     assert_eq!(given.tangents, vec![[0.0, 1.0, 0.0, -1.0]; 6]);
-    // But without normals they are meaningless.
+    // Without normals, the file's tangents are meaningless.
     surface.primitive()["attributes"].as_object_mut().expect("an object").remove("NORMAL");
     assert_eq!(surface.read().expect("valid").tangents, mesh.tangents);
 }
@@ -150,13 +150,15 @@ fn copies_follow_the_same_bones() {
     assert_ne!(mesh.influences.of(6), mesh.influences.of(7));
 }
 
-/// The normal texture's coordinates count, before any transform; otherwise those of the base colour.
+/// Tangents follow the texture coordinates of the normal texture, before any transform, or else those of the
+/// base colour.
 #[test]
 fn tangents_go_along_the_normal_texture() {
     let mut surface = square();
     let tangent = |surface: &Surface| surface.read().expect("valid").tangents[0];
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
-    // A quarter of a turn, as another set and as a transform of the base colour's.
+    // These coordinates are turned by a quarter, once as another set and once as a transform of the base
+    // colour's set.
     surface.attribute("TEXCOORD_1", "VEC2", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0]);
     surface.primitive()["material"] = json!(0);
     surface.scene.json["images"] = json!([{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=="}]);
@@ -170,7 +172,7 @@ fn tangents_go_along_the_normal_texture() {
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
     surface.scene.json["materials"][0].as_object_mut().expect("an object").remove("normalTexture");
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
-    // A set that there is not.
+    // The normal texture names a set of coordinates that does not exist.
     surface.scene.json["materials"] = json!([{"normalTexture": {"index": 1, "texCoord": 5}}]);
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
 }
@@ -200,7 +202,7 @@ fn a_globe_has_tangents_along_its_latitudes() {
         if radius > 0.1 {
             let along = [z / radius, -x / radius];
             let cosine = tangent[0] * along[0] + tangent[2] * along[1];
-            // East; half a column off where the seam ends.
+            // The tangent points east; at the end of the seam it may be off by half a column.
             assert!(cosine > 0.99 && tangent[3] == -1.0, "{tangent:?} at {x} {z}");
         }
     }
@@ -210,7 +212,7 @@ fn a_globe_has_tangents_along_its_latitudes() {
 fn nothing_has_to_have_an_area() {
     let mut surface = square();
     let points = [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
-    // No area in space, none in the texture, a vertex of no triangle.
+    // Triangles without area in space, triangles without area in the texture, and a vertex without triangles.
     for uv in [[[0.5; 2]; 4], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]] {
         let indices = [0, 1, 2, 1, 2, 3, 2, 2, 2];
         assert_eq!(
@@ -238,7 +240,7 @@ fn crowded_vertices_are_solved() {
     wheel(100_000);
 }
 
-/// So many triangles, or one less, around a middle.
+/// Solves a fan of `one_ring` − 1 triangles around a central vertex.
 fn wheel(one_ring: u32) {
     let rim = (0..one_ring).map(|ring| std::f32::consts::TAU * ring as f32 / one_ring as f32);
     let positions: Vec<[f32; 3]> =

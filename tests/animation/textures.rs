@@ -22,7 +22,7 @@ fn encoded(image: &RgbaImage, format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// Three texels and three more, of which one can be seen through.
+/// Two rows of three texels, one of which is transparent.
 fn picture() -> RgbaImage {
     RgbaImage::from_fn(3, 2, |x, y| Rgba([80 * x as u8, 200 * y as u8, 7, if x + y == 3 { 9 } else { 255 }]))
 }
@@ -153,7 +153,7 @@ fn images_lie_where_gltf_lets_them() {
         assert_eq!(found.images, [decoded]);
         skinned.refused("images[0].uri", "has no folder");
     }
-    // Grey, of 16 bits.
+    // A greyscale image of 16 bits.
     let grey = image::DynamicImage::ImageLuma16(image::ImageBuffer::from_pixel(1, 1, image::Luma([0x8000])));
     let mut bytes = Cursor::new(Vec::new());
     grey.write_to(&mut bytes, ImageFormat::Png).expect("encoded");
@@ -173,7 +173,7 @@ fn texture_coordinates_are_those_of_the_texture() {
     skinned.refused("meshes[0].primitives[0].attributes.TEXCOORD_1", "must be given");
     skinned.attribute("TEXCOORD_1", second);
     assert_eq!(skinned.read().expect("valid").uv[0], [0.5, 0.25]);
-    // A quarter of a turn: what pointed right points up.
+    // After a quarter turn, what pointed right points up.
     let quarter = std::f32::consts::FRAC_PI_2;
     texture(
         &mut skinned,

@@ -9,10 +9,10 @@ use std::process::Command;
 const OUT_DIR: &str = env!("OUT_DIR");
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// As it must be.
+/// A bind group that compiles.
 const RIGHT: &str = "Group { march, heights, acceleration, rays: rays.slice(), hits: hits.slice() }";
 
-/// Compiles a source as a library that uses others; what the compiler says, when it refuses.
+/// Compiles a source as a library that uses others; an error is the compiler's message.
 fn compile(folder: &Path, name: &str, source: &str, others: &[&str]) -> Result<(), String> {
     let file = folder.join(format!("{name}.rs"));
     std::fs::write(&file, source).expect("written");
@@ -46,7 +46,7 @@ fn bound(group: &str) -> Result<(), String> {
     compile(folder.path(), "scratch", &source, &["glam", "wgpu"])
 }
 
-/// What stands in for wgpu.
+/// Stubs of wgpu's types.
 const RESOURCES: &str = "
     #[derive(Debug)] pub struct Buffer;
     #[derive(Debug)] pub struct TextureView;
@@ -57,7 +57,7 @@ const RESOURCES: &str = "
     }
 ";
 
-/// What stands in for glam.
+/// Stubs of glam's types.
 fn vectors() -> String {
     let of = |name: &str| format!("#[derive(Debug, Clone, Copy, PartialEq)] pub struct {name};\n");
     ["Vec", "IVec", "UVec"]

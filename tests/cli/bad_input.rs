@@ -7,7 +7,7 @@ use crate::terrain::Bench;
 
 const GOOD: &str = r#"{"patchSize": 33, "scaleFactor": 40.0, "seed": "any text"}"#;
 
-/// Runs `terrain` and checks that it is refused with a line that says all of `words`.
+/// Runs `terrain` and checks that it is refused with one line that contains all of `words`.
 fn refused(config: &str, arguments: &[&str], words: &[&str]) {
     let bench = Bench::new(config);
     std::fs::write(bench.path("f.json"), FEATURES).expect("writable");
@@ -17,7 +17,7 @@ fn refused(config: &str, arguments: &[&str], words: &[&str]) {
     image::RgbImage::new(4, 4).save(bench.path("rgb.png")).expect("writable");
     let (config, out) = (bench.path("config.json"), bench.path("out"));
     let mut all: Vec<String> = ["terrain", "--config", &config, "--out", &out].map(str::to_owned).to_vec();
-    // `@name` is a file of the folder.
+    // `@name` stands for a file of the folder.
     all.extend(
         arguments.iter().map(|word| word.strip_prefix('@').map_or(word.to_string(), |name| bench.path(name))),
     );
@@ -126,7 +126,7 @@ fn an_adapter_that_does_not_exist_is_named_with_those_that_do() {
     );
 }
 
-/// The machine is at fault, not the input.
+/// If an output cannot be written, the machine is at fault and not the input.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_written_is_no_bad_input() {

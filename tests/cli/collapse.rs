@@ -6,7 +6,7 @@ use crate::harness::relievo;
 
 const MOMENT: [&str; 6] = ["--model", "builtin", "--clip", "walk", "--time", "0.3"];
 
-/// What is said, and where the vertices are.
+/// What the command prints, and the positions of the vertices that it writes.
 fn skinned(more: &[&str]) -> (String, Vec<[f32; 3]>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().to_str().expect("UTF-8");
@@ -35,7 +35,7 @@ fn vertices_are_off_as_little_as_is_said() {
             a.iter().zip(b).map(distance).fold(0.0, f32::max)
         };
         assert!(off(&gpu, &cpu) < 1e-5);
-        // The moment need not be the worst.
+        // The error at this time need not be the largest.
         assert!((0.05 * largest..=1.01 * largest).contains(&off(&gpu, &full)), "{said}");
     }
 }

@@ -57,7 +57,7 @@ const GATES: [&[&str]; 6] = [
     &["--gate", "bounded", "--pixels", "2"],
 ];
 
-/// The device decides as the references do; its results differ by rounding only.
+/// The device decides as the references do; its other results differ only by rounding.
 #[test]
 fn backends_decide_alike_and_reports_add_up() {
     for gate in GATES {
@@ -89,7 +89,7 @@ fn backends_decide_alike_and_reports_add_up() {
     }
 }
 
-/// Near the camera everything is interpolated, and beyond the range nothing; `bounded` stays within its bound.
+/// Near the camera everything is interpolated, and beyond the range nothing; `bounded` keeps its error bound.
 #[test]
 fn gates_save_and_err_as_they_say() {
     let cpu = |gate: &[&str]| report(&[gate, &["--backend", "cpu"]].concat());

@@ -20,7 +20,7 @@ fn run(arguments: &[&str]) -> (Run, PathBuf, tempfile::TempDir) {
     (run, out, folder)
 }
 
-/// The rows of a report, of a run at 300 and 2000 units.
+/// The rows of a report at 300 and 2000 units.
 fn rows(name: &str, arguments: &[&str]) -> ([Value; 2], PathBuf, tempfile::TempDir) {
     let (run, out, folder) = run(&[&["--distance", "300,2000"], arguments].concat());
     assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
@@ -84,7 +84,7 @@ fn scenes_compare_five_ways() {
         assert_eq!(worst(row, "off"), 0.0);
         let bound = 0.5 * 1.001;
         assert!(worst(row, "animation") > 0.0 && worst(row, "animation") <= bound, "{row}");
-        // Stale bones move no vertex further, whichever bone it follows.
+        // Stale bones add no more than their bound to the error of a vertex, whichever bone it follows.
         assert!(worst(row, "both") <= worst(row, "skinning") + bound, "{row}");
         for way in ["off", "animation", "skinning", "both", "all"] {
             assert!(number(&row[way]["frame_nanoseconds"]) > 0.0, "{way}");
@@ -98,7 +98,7 @@ fn scenes_compare_five_ways() {
     assert!(number(&far["tall_pixels"]) < 100.0 && number(&far["mean_omega"]) == 0.0);
     assert!(image::open(out.join("scene.png")).expect("a PNG").width() >= 600);
     assert!(out.join("crowd_300.png").is_file());
-    // A fade's end is the strongest bone alone.
+    // The end of a fade leaves only the strongest bone.
     let ([truncated_near, truncated], ..) =
         rows("scene.json", &[&gate[..], &["--skinning", "truncate:1", "--mesh", "full"]].concat());
     assert_eq!((&truncated["all"], &truncated["all_cheaper"]), (&Value::Null, &Value::Null));
@@ -128,7 +128,7 @@ fn levels_of_detail_keep_their_pixels() {
     assert!((0.001..0.1).contains(&number(&report["stray_metres"][0])));
     for row in [&near, &far] {
         let worst = |way: &str| number(&row[way]["vertex_error"]["max_pixels"]);
-        // As far as places of the picture round.
+        // Each bound has a slack of 0.001 pixels for the rounding of positions in the picture.
         assert!(worst("animation") <= 0.501 && worst("skinning") <= 0.501 && worst("both") <= 1.002, "{row}");
         assert!(worst("all") <= 1.503 && worst("skinning") > 0.03 && worst("both") >= 0.03, "{row}");
     }
@@ -153,14 +153,14 @@ fn growing() -> Vec<u8> {
     scene.gltf()
 }
 
-/// Morph targets move whatever the gate decides, each instance's at its own time.
+/// Morph targets move whatever the gate decides, and each instance has a clip time of its own.
 #[test]
 fn morph_targets_move_in_crowds() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("growing.gltf");
     std::fs::write(&path, growing()).expect("writable");
     let [model, out] = [path, folder.path().join("out")].map(|path| path.to_str().expect("UTF-8").to_owned());
-    // Quarters of the clip after each other: Ω is 0, no bone moves.
+    // The pictures are a quarter of the clip apart; Ω is 0, so no bone moves.
     let drawn = |quarter: u32| {
         let frames = (30 * quarter).to_string();
         let run =
@@ -182,7 +182,8 @@ fn morph_targets_move_in_crowds() {
         assert_eq!(number(&row["vertex_error"]["max_metres"]), 0.0);
         covered(&image::open(folder.path().join("out/crowd_2000.png")).expect("a PNG").into_rgba8()) as f64
     };
-    // One instance begins anywhere, and somewhere the clip begins anew: of three steps two are of a quarter of the way.
+    // The instance starts anywhere in the clip and passes its end once: two of three steps are a quarter of
+    // the way.
     let areas = [1, 2, 3, 4].map(drawn);
     let steps: Vec<f64> = areas.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let grown: Vec<f64> = steps.iter().copied().filter(|step| *step > 0.0).collect();

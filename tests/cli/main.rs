@@ -21,7 +21,8 @@ mod terrain;
 
 use serde_json::json;
 
-/// Refused for its input: exit code 2, one line that contains these words, and nothing on the standard output.
+/// Checks that the input was refused: exit code 2, one line that contains these words, and nothing on
+/// standard output.
 fn assert_refused(run: &harness::Run, arguments: &[&str], words: &[&str]) {
     let found = (run.code, run.stderr.trim().lines().count());
     assert_eq!(found, (Some(2), 1), "{arguments:?}: {}", run.stderr);

@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 use crate::harness::relievo;
 use crate::scene::Scene;
 
-/// A folder with `model.gltf`: two joints below a node that is none, and a clip that lifts the upper one.
+/// A folder with `model.gltf`: two joints below a node that is no joint, and a clip that lifts the upper
+/// joint.
 struct Bench(tempfile::TempDir);
 
 impl Bench {

@@ -25,7 +25,7 @@ fn the_table_is_sorted_and_adds_up() {
     for more in [&[][..], &["--weights", "analyze"], &chosen, &["--wrap", "clamp"]] {
         let (text, json) = run(more);
         let keys = json["keys"].as_array().expect("a list");
-        // Two lines of heading.
+        // The table has a heading of two lines.
         assert_eq!(text.lines().count(), keys.len() + 2);
         assert!(keys.len() > 1000);
         let weights = json["weights"].as_object().expect("an object");

@@ -107,7 +107,7 @@ fn rays_hits_and_errors_fit_together() {
     }
 }
 
-/// Both backends, every shadow and address: the same hits, and pictures alike.
+/// Both backends find the same hits and draw like pictures, for every shadow and address mode.
 #[test]
 fn backends_draw_the_same() {
     let bench = Bench::new();
@@ -181,7 +181,7 @@ fn normal_maps_say_what_heights_say() {
     for (name, green) in [("up", -1.0), ("down", 1.0)] {
         let normals = image::RgbImage::from_fn(128, 128, |x, y| {
             let at = |dx: i32, dy: i32| map.texel(x as i32 + dx, y as i32 + dy, Address::Wrap);
-            // Depth 0.1 of 128 texels, over two texels.
+            // The depth is 0.1 of 128 texels, 12.8; the difference spans two texels.
             let [x, y] = [at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1)].map(|rise| -0.5 * 12.8 * rise);
             let length = (x * x + y * y + 1.0).sqrt();
             let byte = |part: f32| ((part / length * 0.5 + 0.5) * 255.0).round() as u8;

@@ -41,7 +41,7 @@ impl Bench {
         serde_json::from_slice(&std::fs::read(out).expect("written")).expect("JSON")
     }
 
-    /// The places of the vertices, as they are written.
+    /// The positions of the vertices, as the file has them.
     fn skin(&self, model: &str, more: &[&str]) -> Vec<String> {
         let out = self.path("out");
         let run = relievo(&[&["skin", "--model", &self.path(model), "--out", &out], more].concat());

@@ -41,7 +41,7 @@ impl Bench {
         self.0.path().join(name).to_str().expect("UTF-8").to_owned()
     }
 
-    /// The lines of mesh.obj; where nothing has a skin, of attached.obj.
+    /// The lines of mesh.obj or, if nothing has a skin, of attached.obj.
     fn skin(&self, model: &str, more: &[&str]) -> Vec<String> {
         let out = self.path("out");
         let run = relievo(&[&["skin", "--model", model, "--out", &out], more].concat());
@@ -49,7 +49,7 @@ impl Bench {
         assert_eq!(run.stdout.is_empty(), !more.contains(&"--within"), "{}", run.stdout);
         assert!(run.stderr.is_empty());
         let picture = image::open(Path::new(&out).join("skin.png")).expect("a picture").to_rgb8();
-        // Something is seen, in the middle of something else.
+        // The picture shows something in its middle that differs from its corner.
         let corner = picture.get_pixel(0, 0);
         let covered = picture.pixels().filter(|pixel| *pixel != corner).count() as f64;
         let fraction = covered / f64::from(picture.width() * picture.height());
@@ -74,7 +74,7 @@ fn a_mesh_is_written_where_its_bones_and_targets_are() {
     for backend in ["gpu", "cpu"] {
         let lines =
             bench.skin(&bench.path("model.gltf"), &["--clip", "0", "--time", "2.5", "--backend", backend]);
-        // A quarter of the way: the joint is at y = 2, the target's weight ¼.
+        // At a quarter of the clip the joint is at y = 2, and the target's weight is ¼.
         assert_eq!(lines[..4], ["o my_body_0", "v 0 0 0", "v 1 0 0", "v 0 2.1 1"]);
         assert_eq!(lines.last().map(String::as_str), Some("f 1/1/1 2/2/2 3/3/3"));
         assert_eq!(lines.len(), 1 + 3 * 3 + 1);
@@ -127,7 +127,7 @@ fn triangles_are_left_out() {
     assert_eq!((near.1.len(), far.1), (places.len(), places));
 }
 
-/// A sheet whose middle stands up for a thirtieth of a second in a hundred: 60 poses a second see it.
+/// A sheet whose middle rises for a thirtieth of a second in a hundred seconds; 60 poses a second catch it.
 #[test]
 fn every_sixtieth_of_a_second_counts() {
     let mut scene = Scene::of_two_bones();
@@ -205,7 +205,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| (0..4).map(|at| a[row][at] * b[at][column]).sum()))
 }
 
-/// Scales, turns about an axis (0, 1, 2: x, y, z), then moves.
+/// A matrix that scales, then rotates about an axis (0, 1, 2: x, y, z), then translates.
 fn placed(moved: [f64; 3], axis: usize, angle: f64, scale: [f64; 3]) -> Matrix {
     let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut turn = [[0.0; 3]; 3];
@@ -242,7 +242,7 @@ fn meshes_without_a_skin_follow_what_they_hang_on() {
         json!([{"primitives": [{"attributes": {"POSITION": positions}, "indices": indices}]}]);
     let wagon_scale = [2.0, 1.0, 0.5];
     let grip = placed([0.25, -0.5, 0.0], 0, 0.8, [1.0, 3.0, 1.0]);
-    // A matrix node, sheared: nothing has to take it apart.
+    // A node with a matrix that shears: nothing has to decompose it.
     let blade: Matrix =
         [[1.0, 0.5, 0.0, 0.1], [0.0, 1.0, 0.25, 0.2], [0.0, 0.0, 0.75, 0.3], [0.0, 0.0, 0.0, 1.0]];
     let by_columns: Vec<f64> = (0..16).map(|at| blade[at % 4][at / 4]).collect();
@@ -258,7 +258,7 @@ fn meshes_without_a_skin_follow_what_they_hang_on() {
     scene.push("nodes", json!({"name": "hat", "mesh": 0, "scale": [1, -1, 1], "translation": [0, 4, 0]}));
     scene.push("nodes", json!({"name": "stone", "mesh": 0, "scale": [2, 2, 2]}));
     scene.json["nodes"][1]["children"] = json!([3]);
-    // At rest, twice the way, then back: half way in between at ¼ and ¾ of two seconds.
+    // The node moves from rest to twice the way and back; it is half way at ¼ and ¾ of two seconds.
     let times = scene.floats("SCALAR", &[0.0, 2.0]);
     let mut animate = |node: usize, path: &str, values: &[f64]| {
         let kind = if path == "rotation" { "VEC4" } else { "VEC3" };
@@ -279,7 +279,7 @@ fn meshes_without_a_skin_follow_what_they_hang_on() {
     scene.push("animations", animation);
     std::fs::write(bench.path("armed.glb"), scene.glb()).expect("writable");
 
-    // Half way.
+    // The time is half way through the clip.
     let one = [1.0; 3];
     let wagon = placed([4.0, 0.0, -2.0], 1, 1.0, wagon_scale);
     let tip = product(&wagon, &placed([0.0, 1.0, 0.0], 2, -0.8, one));
@@ -308,7 +308,7 @@ fn meshes_without_a_skin_follow_what_they_hang_on() {
                     assert!((found - wanted).abs() < 1e-5, "{name}: {found} for {wanted}");
                 }
             }
-            // What is mirrored is turned round, so that it is still seen from outside.
+            // The winding of a mirrored mesh is reversed, so that its outside remains its outside.
             let first = object.iter().find_map(|line| line.strip_prefix("f ")).expect("a face");
             let first: Vec<usize> = first
                 .split(' ')
@@ -319,7 +319,7 @@ fn meshes_without_a_skin_follow_what_they_hang_on() {
     }
 }
 
-/// A quadrant each of red, green, blue and white, in nearest texels.
+/// A texture with a quadrant each of red, green, blue and white, sampled at the nearest texel.
 #[test]
 fn textures_are_seen() {
     let bench = Bench::new();

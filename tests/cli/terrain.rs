@@ -22,7 +22,7 @@ impl Bench {
         self.folder.path().join(name).to_str().expect("UTF-8").to_owned()
     }
 
-    /// Runs `terrain` into folder `out`, and gives its report.
+    /// Runs `terrain` into the folder `out`, and returns its report.
     pub fn terrain(&self, out: &str, arguments: &[&str]) -> Value {
         let (config, out) = (self.path("config.json"), self.path(out));
         let mut all = vec!["terrain", "--config", &config, "--out", &out, "--size", "64x48"];
@@ -119,7 +119,8 @@ fn the_report_describes_the_files() {
 
 #[test]
 fn heights_of_a_png_come_back() {
-    // What one run exports, the next injects at every second sample, and keeps to within the PNG's steps.
+    // The second run injects every second sample that the first run exported, and keeps them to within a step
+    // of the PNG.
     let bench = Bench::new(CONFIGS[0].0);
     let first = bench.terrain("first", &["--patches", "2x2"]);
     let span = first["height_png"]["high"].as_f64().expect("high")

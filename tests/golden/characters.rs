@@ -21,7 +21,7 @@ use crate::figure::figure;
 use crate::harness::{Tolerance, check_golden, gpu};
 use crate::skinned::{SKY, checks};
 
-/// Instances of each: rows away from the eye, the first behind it.
+/// Number of instances of each character, in rows away from the eye; the first row is behind it.
 const COUNT: usize = 20;
 
 struct Instances {
@@ -30,7 +30,8 @@ struct Instances {
 }
 
 impl Instances {
-    /// Each at a moment of its own; `gated`: under a gate of ours, which updates nobody.
+    /// A crowd in which each instance has its own clip time; with `gated`, under a gate that updates no
+    /// instance.
     fn new(gpu: &Gpu, model: &Model, aside: f32, gated: bool) -> Self {
         let clip = &model.clips[0];
         let pose = |index: usize| {
@@ -78,7 +79,7 @@ fn creatures_and_figures_in_one_picture() {
     let clip_from_world = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0) * look;
     crowd.set_camera(&gpu, clip_from_world, eye).expect("set");
     let target = Target::linear(&gpu, size).expect("allocated");
-    // One submission, one render pass.
+    // The whole frame is one submission with one render pass.
     gpu.run("frame", |encoder| {
         crowd.record(encoder);
         target.record(encoder, SKY, |pass| crowd.draw(pass));
@@ -90,7 +91,7 @@ fn creatures_and_figures_in_one_picture() {
         let counts = |scene: &relievo::render::SkinnedScene| {
             let words = scene.arguments.read_blocking(&gpu).expect("read");
             let [indices, instances, ref rest @ ..] = words[..] else { panic!("ten words") };
-            // Nobody is mirrored.
+            // No instance is mirrored.
             assert!(indices > 0 && *rest == [0, 0, 0, indices, 0, 0, 0, 0]);
             instances as usize
         };
@@ -103,7 +104,7 @@ fn creatures_and_figures_in_one_picture() {
             drawn.len() == seen && drawn.iter().all(|index| (4..COUNT as u32).contains(index)),
             "{drawn:?}"
         );
-        // All of a character fades alike, and is drawn alike.
+        // All meshes of a character fade alike, and are drawn at the same instances.
         let fades = |frame: &relievo::skinning::frame::SkinFrame| {
             frame
                 .crowd
@@ -121,7 +122,7 @@ fn creatures_and_figures_in_one_picture() {
             assert_eq!((fades(frame), counts(scene)), (first.clone(), seen));
         }
     }
-    // Nobody moves, nobody is seen otherwise: what a gate decides on is not skinned again.
+    // No instance moves and visibility does not change: nothing is skinned again.
     let skinned = || {
         let frames = &crowd.characters()[0].frames;
         frames[0].active.dispatched.read_blocking(&gpu).expect("read")[3]

@@ -1,5 +1,5 @@
-//! A crowd that walks in and out of view: unseen instances are not skinned, and the picture looks as if all
-//! were.
+//! A crowd that walks in and out of view: instances that are not seen are not skinned, and the picture equals
+//! that of a crowd in which all are.
 
 use glam::{Mat4, Vec3, camera};
 use relievo::animation::ModelMatrices;
@@ -30,7 +30,7 @@ const FRAMES: usize = 24;
 
 const SIZE: [u32; 2] = [160, 96];
 
-/// A crowd as one of the two sees it.
+/// One of the two crowds that are compared.
 struct Crowd {
     skin: SkinFrame,
     lod: LodJob,
@@ -99,7 +99,7 @@ impl Stage {
         Crowd { skin, lod, scene }
     }
 
-    /// Creatures of odd numbers stand still in their pose.
+    /// Creatures of odd index keep their pose.
     fn pose(&self, frame: usize) {
         let walk = self.model.clip("walk").expect("there");
         let pose = |at: usize| {
@@ -109,7 +109,7 @@ impl Stage {
         let models: Vec<Affine> = (0..CREATURES).flat_map(pose).collect();
         self.models.write(&self.gpu, &models).expect("written");
         let place = |at: usize| {
-            // Out and in again: the whole way there and back.
+            // The crowd walks out of view and back, the whole way in both directions.
             let fade_fraction = (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin();
             placed(
                 Vec3::new(8.0 * fade_fraction + 0.9 * (at as f32 - 4.0), 0.0, 0.3 * at as f32 - 1.5),
@@ -158,7 +158,8 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
         whole.skin.crowd.instance_lods.write(gpu, &all).expect("written");
         gpu.run("whole", |encoder| whole.skin.record_all(encoder)).expect("run");
         let [some, all] = [&culled, &whole].map(|crowd| stage.picture(&target, crowd));
-        // Two pipelines skin them: a device may round one otherwise, and an edge may fall on the other side.
+        // Two pipelines skin the crowds: a device may round one differently, so that a pixel on an edge
+        // changes.
         let differing = some.pixels().zip(all.pixels()).filter(|(a, b)| a != b).count();
         let drawn = all.pixels().filter(|pixel| *pixel != all.get_pixel(0, 0)).count();
         assert!(differing <= drawn / 500, "frame {frame}: {differing} of {drawn} pixels differ");

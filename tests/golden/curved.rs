@@ -46,7 +46,7 @@ fn barrel() -> SurfaceMesh {
     SurfaceMesh { vertices: vertices.collect(), indices }
 }
 
-/// World units a uv unit: the barrel is 1.6 tall a tile, and nearly as wide.
+/// World units per unit of uv: a tile is 1.6 high, and nearly as wide.
 const WORLD: f32 = 1.6;
 
 fn scene(gpu: &Gpu, mesh: &SurfaceMesh, method: Method, depth: bool, silhouette: bool) -> ReliefScene {
@@ -96,7 +96,7 @@ fn a_barrel_of_cobbles() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Shadow and silhouette are said once, in the options: with one material each of them draws another picture.
+/// Shadow and silhouette are chosen only in the options: with the same material, each changes the picture.
 #[test]
 fn options_alone_decide_what_is_drawn() {
     let gpu = harness::gpu();
@@ -116,7 +116,7 @@ fn options_alone_decide_what_is_drawn() {
     }
 }
 
-/// Colours are no normals.
+/// A pipeline for normal maps refuses a map of colours only.
 #[test]
 fn a_pipeline_for_normal_maps_refuses_maps_without_one() {
     let options = ReliefOptions { normal_map: Some(Green::Up), ..ReliefOptions::default() };

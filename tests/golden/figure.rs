@@ -1,5 +1,5 @@
-//! A figure of two bones, made as a GLB: a body with a texture, a cape with holes, a shield that one sees through, and a
-//! hat that has no skin and hangs below a joint.
+//! A figure of two bones, made as a GLB: a body with a texture, a cape with holes, a translucent shield, and
+//! a hat that has no skin and is attached to a joint.
 
 use std::io::Cursor;
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::gltf::Scene;
 
-/// Of the body: stripes and squares. Of the cape: cloth, and holes with soft edges.
+/// The body's texture has stripes and squares; the cape's has cloth, and holes with soft edges.
 fn texture(name: &str) -> RgbaImage {
     RgbaImage::from_fn(16, 16, |x, y| match name {
         "body" if y < 3 => Rgba([240, 220, 90, 255]),
@@ -30,7 +30,8 @@ fn add_texture(scene: &mut Scene, name: &str) {
     scene.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
 }
 
-/// A sheet of columns and rows of quads; each corner has a place, texture coordinates, and what it has of the upper bone.
+/// A sheet of columns and rows of quads; each corner has a position, texture coordinates, and its weight for
+/// the upper bone.
 fn sheet(
     scene: &mut Scene,
     [columns, rows]: [u32; 2],
@@ -69,7 +70,7 @@ fn mesh(scene: &mut Scene, positions: &[[f32; 3]], indices: &[u32], material: us
     json!({"attributes": {"POSITION": at}, "indices": indices, "material": material})
 }
 
-/// Two metres tall; the clip bends its upper half to its right and turns it.
+/// The figure is two metres tall; its clip bends the upper half to its right and turns it.
 pub fn figure() -> Model {
     let mut scene = Scene::of_two_bones();
     let mut binds = glam::Mat4::IDENTITY.to_cols_array().repeat(2);

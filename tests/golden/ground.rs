@@ -117,7 +117,7 @@ fn the_picture_shows_the_triangles_that_the_cpu_answers() {
     let (points, ground, bilinear) = seen();
     let (mut inside, mut worst, mut worst_bilinear) = (0, 0.0_f64, 0.0_f64);
     for point in &points {
-        // Rounding takes points on the rim of all patches out of them.
+        // Rounding may move points on the outer edge of the patches out of them.
         let Some(answer) = ground.point_from(ORIGIN, point.x, point.z) else { continue };
         inside += 1;
         worst = worst.max((answer.height - point.y).abs());

@@ -34,7 +34,8 @@ const CLAY: [u8; 3] = [200, 140, 90];
 
 const SIZE: [u32; 2] = [2 * 176, 2 * 112];
 
-/// Where the character's levels begin, world units: as many as its meshes have errors, one more than either has levels.
+/// The distances in world units at which the character's levels begin. There are as many as its meshes have
+/// errors, one more than either mesh has levels.
 const BEGINS: [f32; 4] = [5.0, 6.0, 9.0, 14.0];
 
 /// A limb with three levels, of every second, fourth and eighth ring and side, and a shorter one around it with
@@ -59,7 +60,7 @@ fn model() -> Model {
     model
 }
 
-/// Of each mesh, its own level at each of the character's.
+/// For each mesh, its own level at each of the character's levels.
 const OWN: [[u32; 5]; 2] = [[0, 0, 1, 2, 3], [0, 1, 1, 1, 1]];
 
 struct Crowd {
@@ -70,7 +71,7 @@ struct Crowd {
 }
 
 impl Crowd {
-    /// Rows away from the eye, every limb bent in its own way.
+    /// Limbs in rows away from the eye, each bent differently.
     fn new() -> Self {
         let bend = |index: usize| {
             [rows(Mat4::IDENTITY), rows(Mat4::from_axis_angle(Vec3::Z, 0.25 * index as f32 - 1.5))]
@@ -106,7 +107,7 @@ impl Crowd {
         }
     }
 
-    /// Where everybody's vertices are, instance by instance, mesh by mesh.
+    /// The vertices of all instances, instance by instance, mesh by mesh.
     fn skinned(&self) -> Vec<Vec<Vertex>> {
         let all = self.models.chunks(2).zip(&self.places);
         all.flat_map(|(models, place)| {
@@ -194,7 +195,7 @@ fn a_crowd_with_levels() {
                 let held = frame.clusters.level(level);
                 let triangles = mesh.triangles(own[level as usize]).len() as u32;
                 let draw = |count| [triangles, count, held.first_index, 0, 0];
-                // Nobody is mirrored.
+                // No instance is mirrored.
                 assert_eq!(words, [draw(count), draw(0)].as_flattened());
                 used[level as usize] += count;
             }

@@ -50,7 +50,7 @@ const VIEWS: &[&str] = &[
     "relief_clamp",
 ];
 
-/// Maps are one pixel a sample: those that fit a golden.
+/// Maps have one pixel per sample; these are the maps that fit the size of a golden.
 const MAPS: &[&str] = &["step_5_map", "valley_1_map"];
 
 #[test]

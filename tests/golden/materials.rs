@@ -1,4 +1,4 @@
-//! Materials of glTF: textures, colours, holes and what one sees through; on the device and in the reference.
+//! Materials of glTF: textures, colours, holes and translucency, on the device and in the reference.
 
 use image::RgbaImage;
 use relievo::animation::ModelMatrices;

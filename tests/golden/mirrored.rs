@@ -29,7 +29,8 @@ use crate::skinned::{SIDES, SKY, limb, rows};
 const SIZE: [u32; 2] = [2 * 176, 2 * 112];
 const CLAY: [u8; 3] = [214, 150, 104];
 
-/// As it was modelled, a mirror image, one that is uneven too, and one that is mirrored twice: a turn.
+/// Four placements: unmirrored, mirrored, mirrored with non-uniform scale, and mirrored twice, which is a
+/// rotation.
 fn places() -> [Affine; 4] {
     let at = |x: f32, y: f32, scale: Vec3| {
         rows(
@@ -62,7 +63,8 @@ fn posed(double_sided: bool) -> (Model, [Affine; 2]) {
     (model, [rows(Mat4::IDENTITY), rows(Mat4::from_axis_angle(Vec3::Z, 0.9))])
 }
 
-/// The reference's picture of instances that stand in the world already, those that are mirrored turned round here.
+/// The reference's picture of instances whose vertices are in the world already; the winding of mirrored ones
+/// is reversed here.
 fn reference(double_sided: bool, clip_from_world: Mat4) -> RgbaImage {
     let (model, bones) = posed(double_sided);
     let palette = palette_for(&model.skins[0], &bones, Blend::Linear);
@@ -84,7 +86,7 @@ fn reference(double_sided: bool, clip_from_world: Mat4) -> RgbaImage {
     scene.draw(&parts, SKY.map(|light| light as f32)).reduced(2).encoded()
 }
 
-/// The device's, with a list of instances that it makes, or with one made by hand.
+/// The device's picture, with a list of instances that it makes, or with one made by hand.
 fn drawn(gpu: &Gpu, double_sided: bool, clip_from_world: Mat4, is_by_hand: bool) -> RgbaImage {
     let (model, bones) = posed(double_sided);
     let [r, g, b] = CLAY;
@@ -139,14 +141,14 @@ fn what_is_mirrored_is_seen_from_outside() {
             ("plain, by hand", drawn(&gpu, double_sided, view(), true), &plain),
             ("mirrored", drawn(&gpu, double_sided, mirror * view(), false), &reflected),
             ("mirrored, by hand", drawn(&gpu, double_sided, mirror * view(), true), &reflected),
-            // Mirrored in a mirrored view is as it was.
+            // A mirrored instance in a mirrored view looks as the original does.
             ("reflected", image::imageops::flip_horizontal(&reflected), &plain),
         ]
         .map(|(name, found, wanted)| (name, Difference::of(&found, wanted, Tolerance::IMAGE.levels)));
         println!("both sides: {double_sided}: {wrong:?}");
         assert!(wrong.iter().all(|(_, difference)| difference.within(Tolerance::IMAGE)), "{wrong:?}");
     }
-    // The two sides differ, or nothing was shown.
+    // The two sides must differ, else the pictures show nothing.
     let sides = [false, true].map(|double_sided| reference(double_sided, view()));
     assert!(!Difference::of(&sides[0], &sides[1], Tolerance::IMAGE.levels).within(Tolerance::IMAGE));
 }

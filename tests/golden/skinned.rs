@@ -25,7 +25,7 @@ use crate::harness::{Tolerance, check_golden, gpu};
 
 pub const SKY: [f64; 3] = [0.02, 0.025, 0.03];
 
-/// Squares of two colours.
+/// A checkerboard of two colours.
 pub fn checks(gpu: &Gpu) -> Albedo {
     let square = |x: u32, y: u32| {
         if (x / 16 + y / 16).is_multiple_of(2) { [214, 150, 104, 255] } else { [150, 82, 52, 255] }
@@ -34,17 +34,17 @@ pub fn checks(gpu: &Gpu) -> Albedo {
     ColorTexture::linear(gpu, &Mips::of_color(image), true).expect("uploaded").into()
 }
 
-/// Rings of vertices of the limb.
+/// Number of rings of vertices of the limb.
 pub const RINGS: usize = 41;
 
-/// Quads around the limb.
+/// Number of quads around the limb.
 pub const SIDES: usize = 24;
 
 fn corner(ring: usize, side: usize) -> u32 {
     (ring * (SIDES + 1) + side) as u32
 }
 
-/// Two triangles of the limb, so many rings and sides wide.
+/// Two triangles of the limb that form a quad, `step` rings and sides wide.
 pub fn quad(ring: usize, side: usize, step: usize) -> [u32; 6] {
     let [a, b] = [corner(ring, side), corner(ring, side + step)];
     let [c, d] = [corner(ring + step, side + step), corner(ring + step, side)];
@@ -222,13 +222,13 @@ fn a_crowd_near_and_far() {
         .expect("run");
         skin.active.dispatched.read_blocking(&gpu).expect("read")[3] as usize
     };
-    // All that is seen once; then, as nothing moves, nothing.
+    // The first frame skins all that is seen; the second nothing, because nothing moves.
     let skinned = frame();
     let seen = scene.arguments.read_blocking(&gpu).expect("read")[1] as usize;
     assert!((12..34).contains(&seen), "{seen} of 36");
     assert_eq!(skinned, seen * skin.clusters.len());
     assert_eq!(frame(), 0);
-    // One bone of one instance: the clusters that follow it.
+    // One bone of one instance moves: the clusters that follow it are skinned.
     let mut moved = vec![0; 36 * skin.mesh.mask_words];
     moved[14 * skin.mesh.mask_words] = 1 << 4;
     skin.select.updated_bones.write(&gpu, &moved).expect("written");

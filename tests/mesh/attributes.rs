@@ -1,4 +1,4 @@
-//! Attributes and their seams.
+//! Attributes of simplified meshes, and their seams.
 
 use relievo::mesh::{Cost, Options, Surface, simplify};
 
@@ -59,7 +59,7 @@ fn every_wedge_finds_an_heir() {
     }
 }
 
-/// A disc in polar coordinates: its middle has a wedge a sector, each with a texture coordinate of its own.
+/// A disc in polar coordinates: its middle has a wedge per sector, each with a texture coordinate of its own.
 #[test]
 fn poles_go_too() {
     let shape = sheet([12, 3], |column, row| {
@@ -81,7 +81,7 @@ fn what_attributes_say_counts() {
         let surface = Surface { attributes: values, stride, ..flat.bare() };
         simplify(&surface, &Options { error, ..Options::default() }).expect("valid")
     };
-    // Linear over the surface: two triangles have the same.
+    // The attribute is linear over the surface, so that two triangles represent it.
     let linear: Vec<f32> =
         flat.poses[0].iter().flat_map(|place| [3.0 * place[0] + place[2], 1.0 - place[2]]).collect();
     let done = simplified(&linear, 2, 1e-6);
@@ -92,7 +92,7 @@ fn what_attributes_say_counts() {
     let done = simplified(&spot, 1, 0.05);
     assert!((10..200).contains(&done.triangles_left()), "{}", done.triangles_left());
     let left = done.triangles(&flat.indices, done.collapses().len());
-    // The mean over the ground is what it was.
+    // The mean over the ground does not change.
     let mean = |indices: &[u32]| -> f64 {
         let whole = |triangle: &[u32]| {
             let dark = triangle.iter().map(|corner| f64::from(spot[*corner as usize])).sum::<f64>();

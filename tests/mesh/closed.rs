@@ -1,4 +1,4 @@
-//! Topology at every level.
+//! The topology of every level of detail.
 
 use relievo::mesh::{Cost, Options, Simplified, Stopped, simplify};
 
@@ -8,7 +8,7 @@ use crate::shapes::{Shape, bare, bumps, cube, ground, shuffled, sphere, torus};
 const COSTS: [Cost; 3] =
     [Cost::Quadric, Cost::Melax { check_normals: false }, Cost::Melax { check_normals: true }];
 
-/// With texture coordinates and without.
+/// Checks a shape that is simplified with texture coordinates and without.
 fn each_way(shape: &Shape, mut check: impl FnMut(&Simplified, Cost)) {
     for cost in COSTS {
         let options = Options { cost, ..Options::default() };
@@ -55,7 +55,7 @@ fn charts_stay_together() {
         for [from, to] in all {
             assert_eq!(chart(*from), chart(*to), "{from} became {to}");
         }
-        // The surface is flat, so it stays.
+        // The charts are flat, so the area does not change.
         let left = simplified.triangles(&shape.indices, simplified.collapses().len());
         assert!((area(&shape, 0, &left) - area(&shape, 0, &shape.indices)).abs() < 1e-5);
         assert_eq!(left.chunks_exact(3).filter(|corners| chart(corners[0]) != chart(corners[1])).count(), 0);

@@ -17,7 +17,7 @@ use relievo::terrain::export::sha256;
 use crate::measure::{Topology, distances, topology};
 use crate::shapes::Shape;
 
-/// At `poses` even times of a cycle.
+/// The creature at `poses` evenly spaced times of a cycle.
 fn walking(poses: usize) -> Shape {
     let model = creature().expect("valid");
     let mesh = &model.meshes[0];
@@ -37,7 +37,7 @@ fn walking(poses: usize) -> Shape {
 fn it_keeps_its_shape_in_every_pose() {
     let shape = walking(8);
     let triangles = shape.triangles() * 15 / 100;
-    // A texture's width is worth 4 mm.
+    // The width of the texture counts as much as 4 mm.
     let uv: Vec<f32> = shape.uv.as_flattened().iter().map(|value| value * 0.004).collect();
     let surface = Surface { attributes: &uv, ..shape.with_uv() };
     let start = Instant::now();
@@ -53,13 +53,13 @@ fn it_keeps_its_shape_in_every_pose() {
     }
     let left = simplified.triangles(&shape.indices, simplified.collapses().len());
     for pose in 0..8 {
-        // Of a body 1.8 m tall.
+        // The distances are those of a body 1.8 m tall.
         let [rms, most] = distances(&shape, pose, &left);
         assert!(rms < 0.007 && most < 0.05, "{pose}: {rms} {most}");
     }
 }
 
-/// Made without functions that differ between machines.
+/// The shape is made without functions that differ between machines.
 #[test]
 fn it_is_simplified_alike_everywhere() {
     let shape = walking(1);

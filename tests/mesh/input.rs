@@ -1,4 +1,4 @@
-//! What is refused, and what is not.
+//! Which input of simplification is refused, and which is accepted.
 
 use relievo::mesh::{Cost, Options, Stopped, Surface, simplify};
 
@@ -57,7 +57,8 @@ fn nothing_to_do_is_fine() {
 fn triangles_without_area_do_no_harm() {
     for cost in [Cost::Quadric, Cost::Melax { check_normals: true }] {
         let mut shape = ground(8, bumps);
-        // A corner twice, all corners at one place, and three in line on an edge that is split.
+        // A triangle with one corner twice, one with all corners at one place, and three points in line on a
+        // split edge.
         shape.indices.extend([3, 3, 4]);
         shape.poses[0].extend([[0.5; 3]; 3]);
         shape.uv.extend([[0.5; 2]; 3]);
@@ -66,7 +67,7 @@ fn triangles_without_area_do_no_harm() {
         let simplified = shape.simplified(&Options { cost, ..Options::default() });
         assert!(simplified.triangles_left() < 16, "{cost:?}");
         assert_eq!(simplified.triangles(&shape.indices, 0).len(), 128 * 3);
-        // All at one place in one pose.
+        // All vertices are at one place in one pose.
         let poses = [vec![[1.0; 3]; 84], shape.poses[0].clone()];
         let surface = Surface { poses: &poses, ..shape.bare() };
         let simplified = simplify(&surface, &Options { cost, ..Options::default() }).expect("valid");
@@ -86,7 +87,7 @@ fn the_limits_are_kept() {
         let some = shape.simplified(&Options { triangles, ..Options::default() });
         assert!((triangles - 1..=triangles).contains(&some.triangles_left()));
         assert_eq!(some.stopped(), Stopped::Triangles);
-        // It is the beginning of the whole.
+        // The shorter list of collapses is the beginning of the longer one.
         assert_eq!(some.collapses(), &all.collapses()[..all.collapses_to(triangles)]);
     }
     for error in [2e-3, 5e-3, 1e-2] {
@@ -142,7 +143,7 @@ fn the_same_mesh_gives_the_same_collapses() {
     }
 }
 
-/// By powers of two, so that nothing is rounded.
+/// The sizes are powers of two, so that nothing is rounded.
 #[test]
 fn size_does_not_matter() {
     let shape = ground(12, bumps);

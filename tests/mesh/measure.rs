@@ -6,13 +6,13 @@ use glam::DVec3;
 
 use crate::shapes::Shape;
 
-/// What edges and points there are: borders, and V − E + F.
+/// Counts of edges and points: uses of edges, borders, and the Euler characteristic V − E + F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Topology {
     pub is_manifold: bool,
-    /// Triangles on one side of an edge.
+    /// The largest number of triangles on one side of an edge.
     pub most_uses: usize,
-    /// Edges with one triangle.
+    /// The number of edges with one triangle.
     pub border: usize,
     pub euler: i64,
 }
@@ -52,7 +52,7 @@ fn is_connected(fan: &[[u32; 2]]) -> bool {
     reached.len() == fan.len()
 }
 
-/// By place.
+/// The topology of triangles whose vertices at one place count as one.
 pub fn topology(shape: &Shape, indices: &[u32]) -> Topology {
     let points = shape.points();
     Topology::of(&indices.iter().map(|index| points[*index as usize]).collect::<Vec<_>>())
@@ -62,7 +62,7 @@ fn place(shape: &Shape, pose: usize, vertex: u32) -> DVec3 {
     glam::Vec3::from(shape.poses[pose][vertex as usize]).as_dvec3()
 }
 
-/// How far all vertices are from the triangles `indices` in a pose: root mean square, and largest.
+/// The distances of all vertices from the triangles `indices` in a pose: root mean square, and largest.
 pub fn distances(shape: &Shape, pose: usize, indices: &[u32]) -> [f64; 2] {
     let corners =
         indices.chunks_exact(3).map(|triangle| [0, 1, 2].map(|at| place(shape, pose, triangle[at])));
@@ -101,7 +101,7 @@ fn nearest(p: DVec3, [a, b, c]: &[DVec3; 3]) -> DVec3 {
     a + (ab * vb + ac * vc) / (va + vb + vc)
 }
 
-/// Of a triangle, as long as twice its area.
+/// The normal of a triangle, with a length of twice its area.
 pub fn normal(shape: &Shape, pose: usize, triangle: &[u32]) -> DVec3 {
     let [a, b, c] = [0, 1, 2].map(|corner| place(shape, pose, triangle[corner]));
     (b - a).cross(c - a)

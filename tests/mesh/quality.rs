@@ -7,7 +7,7 @@ use crate::shapes::{Shape, bumps, ground, sheet, torus};
 
 #[test]
 fn a_flat_square_becomes_two_triangles() {
-    // Level, and askew, where rounding leaves 1e-7 of its size.
+    // The ground is level, and then askew, where rounding leaves 1e-7 of its size.
     let level = ground(20, |_, _| 0.25);
     let askew = sheet([20, 12], |column, row| {
         let [x, y] = [column as f64 * 0.1, row as f64 * 0.1];
@@ -100,7 +100,7 @@ fn all_poses_count() {
     }
 }
 
-/// Nor loses its area, from a level to the next, in any pose.
+/// No triangle turns around or loses its area from a level to the next, in any pose.
 #[test]
 fn no_triangle_turns_around() {
     for shape in [arm(), ground(16, bumps), ground(10, |_, _| 0.0)] {

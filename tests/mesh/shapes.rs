@@ -17,7 +17,7 @@ impl Shape {
         self.indices.len() / 3
     }
 
-    /// Whose texture coordinates count as much as positions.
+    /// The surface, with texture coordinates that count as much as positions.
     pub fn with_uv(&self) -> Surface<'_> {
         Surface { poses: &self.poses, indices: &self.indices, attributes: self.uv.as_flattened(), stride: 2 }
     }
@@ -26,7 +26,7 @@ impl Shape {
         Surface { attributes: &[], stride: 0, ..self.with_uv() }
     }
 
-    /// Of positions alone.
+    /// Simplifies the mesh by positions alone.
     pub fn simplified(&self, options: &Options) -> Simplified {
         simplify(&self.bare(), options).expect("valid")
     }
@@ -72,7 +72,7 @@ pub fn sheet([columns, rows]: [usize; 2], place: impl Fn(usize, usize) -> [f64; 
     shape
 }
 
-/// Seen from above, `height` at (x, z) in 0..=1.
+/// A ground seen from above, with `height` at (x, z) in 0..=1.
 pub fn ground(cells: usize, height: impl Fn(f64, f64) -> f64) -> Shape {
     sheet([cells; 2], |column, row| {
         let [x, z] = [column, cells - row].map(|at| at as f64 / cells as f64);
@@ -87,7 +87,8 @@ pub fn bumps(x: f64, z: f64) -> f64 {
         + 0.004 * (41.0 * x - 53.0 * z).sin()
 }
 
-/// Radius 1, the poles above and below. A seam from pole to pole, and at each pole as many wedges as sectors.
+/// A sphere of radius 1 with its poles above and below, a seam from pole to pole, and at each pole as many
+/// wedges as sectors.
 pub fn sphere(sectors: usize, rings: usize) -> Shape {
     let mut shape = sheet([sectors, rings], |column, row| {
         let turn = std::f64::consts::TAU * (column % sectors) as f64 / sectors as f64;
@@ -104,7 +105,7 @@ pub fn sphere(sectors: usize, rings: usize) -> Shape {
     shape
 }
 
-/// Radii 1 and ⅓, with a seam each way.
+/// A torus of radii 1 and ⅓, with a seam in each direction.
 pub fn torus(sectors: usize, rings: usize) -> Shape {
     sheet([sectors, rings], |column, row| {
         let angle = |at: usize, of: usize| std::f64::consts::TAU * (at % of) as f64 / of as f64;
@@ -114,7 +115,7 @@ pub fn torus(sectors: usize, rings: usize) -> Shape {
     })
 }
 
-/// Six sheets of their own: a seam at every edge.
+/// A cube of six separate sheets, with a seam at every edge.
 pub fn cube(cells: usize) -> Shape {
     let face = |axis: usize, side: f64| {
         sheet([cells; 2], |column, row| {
@@ -132,7 +133,7 @@ pub fn cube(cells: usize) -> Shape {
     shape
 }
 
-/// No texture coordinates to speak of.
+/// A mesh whose texture coordinates have no meaning.
 pub fn bare(places: Vec<[f32; 3]>, indices: Vec<u32>) -> Shape {
     Shape { uv: vec![[0.0; 2]; places.len()], poses: vec![places], indices }
 }

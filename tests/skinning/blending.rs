@@ -37,7 +37,7 @@ fn at_rest_nothing_moves() {
     }
 }
 
-/// In double precision, by glTF's formula.
+/// Compares positions with glTF's formula in double precision.
 #[test]
 fn a_walking_creature_is_where_gltf_puts_it() {
     let model = model();
@@ -85,13 +85,13 @@ fn normals_and_tangents_stay_on_the_surface() {
         let palette = Palette::Linear(vec![rows(matrix)]);
         let found = skin(&[vertex(Vec3::ONE, normal, tangent)], &one, &palette, InstanceLod::FULL)[0];
         let [t, b] = [tangent, bitangent].map(|along| matrix.transform_vector3(along));
-        // Along the matrix's image of the normal's own side.
+        // The face's normal points to the same side as the matrix's image of the vertex normal.
         let face = t.cross(b).normalize();
         let outward = if face.dot(matrix.transform_vector3(normal)) < 0.0 { -face } else { face };
         assert!(close(found.normal, outward.into(), 1e-5), "{case}: {:?} instead of {outward}", found.normal);
         let [x, y, z, handedness] = found.tangent;
         assert!(close([x, y, z], t.normalize().into(), 1e-5), "{case}");
-        // The bitangent points along the surface's.
+        // The bitangent points to the same side as the surface's.
         let frame = Vec3::from(found.normal).cross(Vec3::new(x, y, z)) * handedness;
         assert!(frame.dot(b) > 0.0, "{case}: handedness");
     }
@@ -112,7 +112,7 @@ fn one_bone_does_the_same_in_both_kinds_of_blending() {
     }
 }
 
-/// Half way between a bone and the same bone turned by almost half a turn about the limb.
+/// The limb is half way between a bone and the same bone rotated by almost half a turn about the limb.
 #[test]
 fn twisted_limbs_keep_their_volume_with_dual_quaternions() {
     let half = influences(&[&[(0, 0.5), (1, 0.5)]]);

@@ -1,4 +1,5 @@
-//! Models of fewer bones: where their bones and vertices are, against code of its own in double precision.
+//! Models with fewer bones: the places of their bones and vertices, compared with independent code in double
+//! precision.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +11,7 @@ use relievo::skinning::collapse::{CollapseOptions, Collapsed, KeptBones, collaps
 use crate::rigs::{Rig, at_rest, local, posed, skinned};
 use crate::shapes;
 
-/// How far a bone may be off between keys, of the size.
+/// The largest error of a bone between keys, as a fraction of the model's size.
 const BETWEEN_KEYS: f64 = 1e-3;
 
 /// Half of the diagonal of a box around the rigs is about this, in metres.
@@ -35,7 +36,8 @@ fn collapsed(model: &Model, count: usize) -> Collapsed {
     collapsed
 }
 
-/// Pairs of a kept bone and what it became. Names are the same, and say which is which.
+/// Pairs of the index of a kept bone and the index that it became. Names do not change, and tell which is
+/// which.
 fn kept(model: &Model, collapsed: &Collapsed) -> Vec<(usize, usize)> {
     let names = |model: &Model| -> Vec<String> {
         model.skeleton.bones().iter().map(|bone| bone.name.clone()).collect()
@@ -114,7 +116,7 @@ fn kept_bones_stay_on_their_paths() {
             assert!(off(time) < 1e-5 * SIZE, "{rig:?}: {} at {time}", off(time));
         }
         let most = (0..=600).map(|at| off(f64::from(at) / 600.0)).fold(0.0, f64::max);
-        // As much a bone of a chain, and some chains hang on others.
+        // Each bone of a chain adds at most this error, and some chains hang on others.
         assert!((1e-5..4.0 * BETWEEN_KEYS * SIZE).contains(&most), "{rig:?}: {most}");
         assert!((0.5 * most..=1.01 * most).contains(&collapsed.error.kept_bones.into()), "{rig:?} {most}");
     }
@@ -181,7 +183,8 @@ fn the_same_model_gives_the_same_result() {
     assert_eq!([whole.error.largest, whole.error.rms, whole.error.kept_bones], [0.0; 3]);
 }
 
-/// What is bound as it rests has one joint a kept bone, and every influence of what has collapsed goes to it.
+/// A skin that was bound at rest has one joint per kept bone, which gets every influence of what has
+/// collapsed into it.
 #[test]
 fn influences_go_to_the_nearest_kept_bone_above() {
     for rig in RIGS {
@@ -208,7 +211,7 @@ fn influences_go_to_the_nearest_kept_bone_above() {
                 }
             }
         }
-        // At rest nothing moves.
+        // At rest no vertex moves.
         let [before, after] =
             [&model, &collapsed.model].map(|model| skinned(model, &at_rest(&model.skeleton)));
         let off = before.iter().zip(&after).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
@@ -216,7 +219,8 @@ fn influences_go_to_the_nearest_kept_bone_above() {
     }
 }
 
-/// A joint that was bound elsewhere than it rests stays a joint of its own, and its vertices where they were.
+/// A joint whose bind pose differs from the rest pose stays a joint of its own, and its vertices stay in
+/// place.
 #[test]
 fn joints_that_were_bound_elsewhere_stay_apart() {
     let mut model = Rig { has_clips: false, ..Rig::PLAIN }.model();
@@ -233,7 +237,7 @@ fn joints_that_were_bound_elsewhere_stay_apart() {
     assert!(off < 1e-5, "{off}");
 }
 
-/// In the wave all but palms and fingers stand still.
+/// In the wave, only palms and fingers move: bones below bones that stand still keep their keys.
 #[test]
 fn below_bones_that_stand_still_keys_stay() {
     for rig in RIGS {
@@ -267,7 +271,7 @@ fn models_without_clips_lose_what_reaches_least() {
     assert!(all.error.largest < 1e-5, "{:?}", all.error);
     let half = CollapseOptions { bones: KeptBones::Fraction(0.5), ..free.clone() };
     assert_eq!(collapse_bones(&model, &half).expect("valid").model.skeleton.len(), 9);
-    // The first is the one whose vertices lie nearest, by weight.
+    // The first bone to collapse is the one whose vertices lie nearest to it, by weight.
     let first = collapse_bones(&model, &CollapseOptions { bones: KeptBones::Count(17), ..free });
     let first = first.expect("valid");
     let rests = at_rest(&model.skeleton);
@@ -305,7 +309,8 @@ fn what_must_stay_stays() {
     assert_eq!(names(&free), ["scene", "hips"]);
 }
 
-/// A translation, rotation and scale cannot hold the shear of what turns below an uneven scale.
+/// A translation, rotation and scale cannot represent the shear of a bone that rotates below a non-uniform
+/// scale.
 #[test]
 fn uneven_scales_stay_above_kept_bones() {
     let mut model = Rig { has_clips: false, ..Rig::PLAIN }.model();
@@ -333,7 +338,7 @@ fn requests_are_checked() {
     let text = |field: &str, value: &str| (field.to_owned(), value.to_owned());
     assert_eq!(of(KeptBones::Count(0)), text("bones", "0"));
     assert_eq!(of(KeptBones::Count(19)), text("bones", "19"));
-    // Root, hips, and four ends.
+    // The bones that must stay are the root, the hips, and four ends.
     assert_eq!(of(KeptBones::Count(5)), text("bones", "5"));
     assert_eq!(of(KeptBones::Fraction(0.0)), text("bones", "0"));
     assert_eq!(of(KeptBones::Fraction(1.5)), text("bones", "1.5"));
@@ -351,7 +356,7 @@ fn requests_are_checked() {
     assert_eq!(refused(options(9), &wrong), text("clip.duration", "4000"));
 }
 
-/// The passes take it as they take any model.
+/// The passes take a collapsed model as they take any other.
 #[cfg(feature = "verify")]
 #[test]
 fn a_crowd_of_it_is_skinned_on_the_device() {

@@ -27,7 +27,7 @@ fn a_fade_does_not_pop() {
     let palette = palette(&model.skins[0], &models(&model, "walk", 0.2));
     let vertices = morph(mesh, &[]);
     let whole = Palette::Linear(palette.clone());
-    // Where each bone alone would have the vertex.
+    // The place of the vertex if it followed one bone only.
     let alone = |at: usize, bone: u32| {
         let follows = Influences::new("w", 153, [vec![Influence { bone, weight: 1.0 }]]).expect("valid");
         places(&skin(&vertices[at..=at], &follows, &whole, InstanceLod::FULL))[0]
@@ -58,7 +58,7 @@ fn a_fade_does_not_pop() {
         before = now;
     }
     assert!((1e-5..1e-3).contains(&largest), "{largest} m of 1.8 m");
-    // Cutting off pops by far more.
+    // Cutting influences off instead of fading moves vertices much further.
     let full = places(&skin(&vertices, &mesh.influences, &whole, InstanceLod::FULL));
     let one = places(&skin(&vertices, &mesh.influences, &whole, InstanceLod::truncate(1).expect("in range")));
     let pop = full.iter().zip(&one).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
@@ -66,7 +66,8 @@ fn a_fade_does_not_pop() {
     assert_eq!(before, one, "λ = 1 is rigid");
 }
 
-/// The extent of a creature in its clips holds at other moments, and what it strays at every λ.
+/// The extent of a creature in its clips holds at other times too, and so does the bound of its displacement
+/// at every λ.
 #[test]
 fn extents_hold_all_poses_and_fades() {
     let model = model();
@@ -91,7 +92,7 @@ fn extents_hold_all_poses_and_fades() {
             for fade in [1.0, 1.0 / 64.0, 0.3, 0.3 + f32::from(at) / 64.0] {
                 let moves = full.iter().zip(places_at(fade)).map(|(a, b)| a.distance(b));
                 let stray = moves.fold(0.0, f32::max);
-                // A place within 4 m carries some 40 roundings.
+                // A position within 4 m accumulates about 40 roundings.
                 assert!(stray <= fade * extent.stray + 1e-5, "{name} at {time}: {stray} at λ = {fade}");
                 largest[1] = largest[1].max(stray / (fade * extent.stray));
             }
@@ -115,7 +116,7 @@ fn ranges_keep_the_pixels() {
     {
         let range = extent.fade_range(&projection, pixels);
         let depth = [4.0_f32, 9.0, 17.0, 40.0][at % 4];
-        // In the middle, at an edge, in a corner.
+        // The instance is in the middle of the picture, at an edge, or in a corner.
         let across = [[0.0, 0.0], [960.0, 0.0], [960.0, 540.0]][at / 4];
         let [x, y] = across.map(|edge| edge / projection.focal_pixels * depth);
         let middle = Vec3::new(x, y, depth);
@@ -130,7 +131,7 @@ fn ranges_keep_the_pixels() {
         let full = screen(InstanceLod::FULL);
         for (full, faded) in full.into_iter().zip(screen(fade)) {
             let off = full.distance(faded) / pixels;
-            // Places of thousands of pixels round.
+            // Positions of thousands of pixels are rounded.
             assert!(off <= 1.0 + 0.002 / pixels, "{off} of {pixels} pixels, {across:?} at {depth}");
             largest = largest.max(off);
         }

@@ -57,7 +57,7 @@ impl Stage {
     }
 }
 
-/// The farthest that a vertex is from its place on screen, pixels.
+/// The largest distance of a vertex from its place on screen, in pixels.
 fn off_screen(projection: &Projection, place: [f32; 3], stale: &[Vertex], fresh: &[Vertex]) -> f64 {
     let screen = |vertex: &Vertex| {
         let [x, y, z] = std::array::from_fn(|i| f64::from(vertex.position[i]) + f64::from(place[i]));
@@ -98,7 +98,7 @@ fn no_vertex_is_further_off_than_the_pixels_allow() {
             let frame = Frame { ticks: number, frame_ticks: 1, frame: number, ahead };
             lazy.advance(&frame, elapsed);
             full.advance(&frame, elapsed);
-            // Every instance once in some frames: skinning takes longest.
+            // Each frame checks one instance, because skinning takes most of the time.
             let at = number as usize % PLACES.len();
             let own = at * stage.model.skeleton.len()..(at + 1) * stage.model.skeleton.len();
             let vertices = |models: &[Affine]| stage.vertices(&models[own.clone()]);

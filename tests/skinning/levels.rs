@@ -14,10 +14,10 @@ use relievo::skinning::{Extent, InstanceLod, MeshLevels, add_levels, level_error
 
 use crate::shapes::{model, models};
 
-/// Of the fade, and as much of the levels.
+/// The error of the fade in pixels, and that of the levels.
 const PIXELS: f32 = 0.25;
 
-/// The creature, with 2,000 triangles, in a shell of 300 that is all bumps.
+/// The creature, with 2,000 triangles, inside a shell of 300 triangles that is full of bumps.
 fn two() -> (Model, Vec<MeshLevels>) {
     let mut model = model();
     add_levels(&mut model, &[0], 2).expect("valid");
@@ -46,7 +46,7 @@ fn each_mesh_changes_where_its_own_error_allows() {
     let errors = level_errors(&model.meshes);
     let own = [0, 1].map(|mesh| own_levels(&model.meshes[mesh], &errors));
     let first = |mesh: usize| own[mesh].iter().position(|level| *level > 0).expect("has levels");
-    // Where the other is whole, the fine one has less than a third of its triangles.
+    // While the other mesh is at level 0, the fine one has less than a third of its triangles.
     let alone = own[0][first(1) - 1];
     assert!(alone >= 3, "{own:?}");
     let left = model.meshes[0].triangles(alone).len();
@@ -70,7 +70,8 @@ fn each_mesh_changes_where_its_own_error_allows() {
     };
     let mut largest = 0.0_f32;
     for (at, begin) in begins.iter().enumerate() {
-        // Straight ahead and to a side; just beyond where the level begins, which is where it shows most.
+        // The view is straight ahead or to a side, just beyond the distance at which the level begins, where
+        // its error is most visible.
         let side = [Vec3::NEG_Z, Vec3::new(0.3, -0.35, -1.0).normalize()][at % 2];
         let projected_distance = 1.0001 * begin / (side.z * side.z);
         let turn = 2.4 * at as f32;
@@ -95,7 +96,7 @@ fn each_mesh_changes_where_its_own_error_allows() {
             for (vertex, wanted) in full.into_iter().enumerate() {
                 let nearest = found.nearest(level, vertex, wanted, |vertex| drawn[vertex as usize]);
                 let off = screen(nearest).distance(screen(wanted));
-                // Places round: hundreds of pixels, and metres far away.
+                // Positions are rounded: they are hundreds of pixels, and metres far away.
                 assert!(off <= 2.0 * PIXELS + 2e-3, "{off} pixels at {begin}: level {level}");
                 largest = largest.max(off);
             }

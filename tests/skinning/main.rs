@@ -1,4 +1,4 @@
-//! Skinning: the reference against geometry, and against code of its own in double precision.
+//! Skinning: the reference compared with geometry, and with independent code in double precision.
 
 mod blending;
 mod collapse;

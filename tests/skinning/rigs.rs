@@ -1,11 +1,11 @@
-//! Small characters that no tool here made, and where their bones and vertices are, in double precision.
+//! Small characters made by these tests, and the places of their bones and vertices in double precision.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, Part};
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::{Influence, Influences, Mesh, Model, Skin, Transform};
 
-/// What differs between them.
+/// How a rig differs from the others.
 #[derive(Debug, Clone, Copy)]
 pub struct Rig {
     /// The scale of the root; everything below is as much larger in its own units.
@@ -15,7 +15,7 @@ pub struct Rig {
     pub has_clips: bool,
 }
 
-/// Bones below the root: name, parent, where, in metres.
+/// The bones below the root: name, parent, and position in metres.
 const BONES: &[(&str, usize, [f32; 3])] = &[
     ("hips", 0, [0.0, 0.0, 1.0]),
     ("spine", 1, [0.0, 0.02, 0.2]),
@@ -45,7 +45,7 @@ impl Random {
         (self.0 >> 40) as f32 / (1 << 23) as f32 - 1.0
     }
 
-    /// A rotation by up to so many radians, about the axes one after another.
+    /// A rotation about the three axes one after another, by at most `most` radians.
     fn turn(&mut self, most: f32) -> [f32; 4] {
         let [x, y, z] = [(); 3].map(|()| most * self.next());
         glam::Quat::from_euler(glam::EulerRot::XYZ, x, y, z).to_array()
@@ -117,7 +117,7 @@ impl Rig {
         Clip::new("swing", skeleton, &bones, 0.0).expect("valid")
     }
 
-    /// Palms and fingers alone; fingers on splines.
+    /// A clip that moves only palms and fingers; the fingers have spline keys.
     fn wave(self, skeleton: &Skeleton) -> Clip {
         let mut random = Random(13);
         let mut bones = vec![BoneKeys::default(); skeleton.len()];
@@ -222,7 +222,7 @@ fn chained(skeleton: &Skeleton, local: impl Fn(usize) -> DAffine3) -> Vec<DAffin
     models
 }
 
-/// Every bone in the model's space where no clip plays.
+/// The transform of every bone in the model's space at rest.
 pub fn at_rest(skeleton: &Skeleton) -> Vec<DAffine3> {
     chained(skeleton, |bone| {
         let Transform { translation, rotation, scale } = skeleton.bones()[bone].rest;
@@ -231,12 +231,12 @@ pub fn at_rest(skeleton: &Skeleton) -> Vec<DAffine3> {
     })
 }
 
-/// Every bone in the model's space at a time of a clip.
+/// The transform of every bone in the model's space at a time of a clip.
 pub fn posed(skeleton: &Skeleton, clip: &Clip, time: f64) -> Vec<DAffine3> {
     chained(skeleton, |bone| local(clip, bone, time))
 }
 
-/// A bone in its parent's space at a time of a clip.
+/// The transform of a bone in its parent's space at a time of a clip.
 pub fn local(clip: &Clip, bone: usize, time: f64) -> DAffine3 {
     let [translation, rotation, scale] = Part::ALL.map(|part| value(clip, bone, part, time));
     affine(translation.truncate(), DQuat::from_vec4(rotation), scale.truncate())
@@ -272,7 +272,7 @@ fn value(clip: &Clip, bone: usize, part: Part, time: f64) -> DVec4 {
     (from * ((1.0 - t) * angle).sin() + to * (t * angle).sin()) / angle.sin()
 }
 
-/// Where the vertices of all meshes are, with bones at these places.
+/// The vertices of all meshes, with these transforms of the bones.
 pub fn skinned(model: &Model, bones: &[DAffine3]) -> Vec<DVec3> {
     let mut places = Vec::new();
     for mesh in &model.meshes {

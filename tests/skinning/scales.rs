@@ -13,17 +13,17 @@ use crate::shapes::model;
 
 const POSES: usize = 13;
 
-/// Where the scale is.
+/// The quantities that are scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum In {
-    /// Of all positions: those of vertices, of bones, and of bones when they were bound.
+    /// All positions: those of vertices, of bones, and of bones when they were bound.
     Positions,
-    /// Of bones, and of the inverse bind matrices: vertices as they were.
+    /// Bones and inverse bind matrices; vertices keep their positions.
     InverseBinds,
-    /// Of a node above all.
+    /// A node above all others.
     Nodes,
-    /// Of positions of vertices, and the other way round of the inverse bind matrices: bound in other units, the model is
-    /// as it was.
+    /// Vertices, and inversely the inverse bind matrices: the model is bound in other units and its size does
+    /// not change.
     Units,
 }
 
@@ -65,13 +65,13 @@ impl In {
         model
     }
 
-    /// How many times as large the model is then.
+    /// The factor by which the model's size changes.
     fn of_model(self, scale: f32) -> f32 {
         if self == Self::Units { 1.0 } else { scale }
     }
 }
 
-/// Skeleton and clips with other translations, and a root that scales.
+/// The skeleton and clips with scaled translations, and with a root that scales.
 fn rebuilt(model: &Model, translations: f32, above: Option<f32>) -> (Skeleton, Vec<Clip>) {
     let moved = |[x, y, z]: [f32; 3]| [translations * x, translations * y, translations * z];
     let root = above.map(|scale| Bone {
@@ -98,7 +98,7 @@ fn rebuilt(model: &Model, translations: f32, above: Option<f32>) -> (Skeleton, V
     (skeleton, clips)
 }
 
-/// Those of a bone, with translations so many times as long.
+/// The keys of a bone, with translations scaled by `translations`.
 fn bone_keys(clip: &Clip, bone: usize, translations: f32) -> BoneKeys {
     let [mut translation, rotation, scale] = Part::ALL.map(|part| keys(clip, bone, part));
     let values = translation.iter_mut().flat_map(|keys| keys.values.as_flattened_mut());
@@ -106,7 +106,7 @@ fn bone_keys(clip: &Clip, bone: usize, translations: f32) -> BoneKeys {
     BoneKeys { translation, rotation, scale }
 }
 
-/// As they were given: a clip stores tangents times the seconds of their stretch.
+/// The keys as they were given: a clip stores tangents multiplied by the seconds of their segment.
 fn keys(clip: &Clip, bone: usize, part: Part) -> Option<Keys> {
     let track = clip.track(bone, part);
     let (times, interpolation) = (clip.times_of(track).to_vec(), track.interpolation());
@@ -128,7 +128,7 @@ fn levels(mut model: Model) -> Vec<MeshLevel> {
     model.meshes.remove(0).levels
 }
 
-/// The same triangles, with errors as many times as large, to the bit.
+/// All have the same triangles, and errors that are scaled, to the bit.
 #[test]
 fn models_of_any_size_have_the_same_levels() {
     let plain = plain();
@@ -164,7 +164,7 @@ fn scales_that_round_change_errors_alone() {
     }
 }
 
-/// A rest pose that is far larger or smaller than the clips ever make the model is not seen: it sizes nothing.
+/// A rest pose that is far larger or smaller than any pose of the clips has no influence on sizes.
 #[test]
 fn rest_poses_of_another_size_do_not_matter() {
     let plain = plain();
@@ -195,7 +195,7 @@ fn rest_poses_of_another_size_do_not_matter() {
 #[test]
 fn tables_of_models_of_any_size_are_the_same() {
     let plain = plain();
-    // Below a node that does nothing, so that all have as many bones.
+    // All models have a node above that does nothing, so that they have the same number of bones.
     let tables = |fade_fraction: In, scale: f32| {
         let model = if fade_fraction == In::Nodes {
             fade_fraction.scale(&plain, scale)

@@ -12,7 +12,7 @@ pub fn model() -> Model {
     creature().expect("valid")
 }
 
-/// The creature's palette at a moment of a clip.
+/// The creature's palette at a time of a clip.
 pub fn models(model: &Model, clip: &str, time: f32) -> Vec<Affine> {
     let clip = model.clip(clip).expect("there");
     local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
@@ -23,14 +23,14 @@ pub fn rows(matrix: glam::Mat4) -> Affine {
     [m[0], m[1], m[2]]
 }
 
-/// One vertex after the other with these bones and weights.
+/// The influences of one vertex after the other: bones and weights.
 pub fn influences(vertices: &[&[(u32, f32)]]) -> Influences {
     let vertex =
         |given: &&[(u32, f32)]| given.iter().map(|&(bone, weight)| Influence { bone, weight }).collect();
     Influences::new("w", 64, vertices.iter().map(vertex)).expect("valid")
 }
 
-/// Matrices of every kind: turned, moved, stretched unevenly, sheared, mirrored.
+/// Matrices of every kind: rotations, translations, non-uniform scales, shears, mirrors.
 pub fn matrices() -> Vec<glam::Mat4> {
     let mut all = Vec::new();
     for step in 0..40 {

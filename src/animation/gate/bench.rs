@@ -51,7 +51,7 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
         _ => 4 * count,
     };
     let copied = copy_of(gpu, words.max(1))?;
-    // Every bone has missed motion each time.
+    // At each time every bone has missed some motion.
     let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| {
@@ -74,7 +74,7 @@ impl Scene {
         Ok(AnimatedBones::new(&self.order(), &self.set, &[&self.clip])?)
     }
 
-    /// All bones of an instance together.
+    /// The uniform gate, which samples all bones of an instance together.
     pub(crate) fn uniform(&self) -> Result<Gate, Error> {
         Ok(Gate::Uniform(self.animated_bones()?))
     }

@@ -49,7 +49,8 @@ pub enum Gate {
     Budget {
         /// The motion of each bone as it is expected to be visible.
         table: ExpectationTable,
-        /// The largest number of bones in a frame. Instances that must be sampled in full are in any case.
+        /// The largest number of bones in a frame. Instances that must be sampled in full are sampled beyond
+        /// it.
         bones: u32,
     },
 }
@@ -77,7 +78,8 @@ impl Gate {
         }
     }
 
-    /// The rotation path for which the motion was computed by which the gate decides; `None` without motion.
+    /// The rotation path for which the gate's table of motion was computed; `None` for gates that do not use
+    /// motion.
     pub fn path(&self) -> Option<RotationPath> {
         match self {
             Self::Off(_) | Self::Uniform(_) | Self::Random(_) | Self::SkipPeriod { .. } => None,
@@ -95,7 +97,7 @@ impl Gate {
 /// The time of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame {
-    /// A monotonic clock in ticks of any length; it wraps at 2³².
+    /// A monotonic clock; the caller chooses the length of a tick. It wraps at 2³².
     pub ticks: u32,
     /// Ticks since the last frame.
     pub frame_ticks: u32,

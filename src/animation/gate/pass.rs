@@ -1,4 +1,4 @@
-//! `kernels/animation/gate.wgsl`; a budget's kernels are those of `animation::budget`.
+//! The pass of `kernels/animation/gate.wgsl`; the kernels of [`Gate::Budget`] belong to `animation::budget`.
 
 use super::{Frame, Gate};
 use crate::animation::active::Active;
@@ -19,7 +19,7 @@ pub struct GatePass {
     decider: Decider<Kernel>,
 }
 
-/// What decides: the gate's kernel, with `K` to run it by, or a budget's.
+/// The pass that decides: the gate's kernel, compiled as `K`, or the kernels of a budget.
 #[derive(Debug, Clone)]
 pub(crate) enum Decider<K> {
     Gate(UploadedGate, K),
@@ -30,13 +30,13 @@ impl GatePass {
     /// Uploads a gate's table and compiles its pipelines.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if the device has no room for the table, or fails.
     pub fn new(gpu: &Gpu, gate: &Gate) -> Result<Self, GpuError> {
         let kernel = |mode: Mode| bindings::kernel(gpu, &bindings::Constants { mode: mode.constant() });
         Ok(Self { decider: Decider::new(gpu, gate, kernel)? })
     }
 
-    /// A gate that is a budget, by its pass.
+    /// A gate whose decisions are made by the pass of a budget.
     pub(crate) fn of_budget(pass: BudgetPass) -> Self {
         Self { decider: Decider::Budget(pass) }
     }
@@ -44,9 +44,10 @@ impl GatePass {
     /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of other bones or clips than the gate's table, for motion along another path than the
-    /// crowd's rotations take, for another crowd than the active bones are listed of, and for [`Gate::Bounded`] over
-    /// model matrices that dual quaternions were prepared to blend; [`GpuError`].
+    /// [`InputError`] for a crowd with other bones or clips than the gate's table, for a table whose motion
+    /// was computed along another rotation path than the crowd uses, for lists of active bones of another
+    /// crowd, and for [`Gate::Bounded`] if the model matrices were prepared for dual quaternion blending;
+    /// [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -72,7 +73,7 @@ impl GatePass {
     }
 }
 
-/// What a gate decides from, and its decision.
+/// The bindings of a gate: what it decides from, and its decision.
 pub(crate) fn group<'a>(
     time: &'a GateTime,
     table: &'a TableBuffers,
@@ -92,7 +93,7 @@ pub(crate) fn group<'a>(
 }
 
 impl<K> Decider<K> {
-    /// Uploads a gate, and compiles the kernel of its mode by `kernel`, where it is not a budget.
+    /// Uploads a gate's table; unless the gate is a budget, `kernel` compiles the kernel for its mode.
     pub fn new(
         gpu: &Gpu,
         gate: &Gate,
@@ -117,7 +118,7 @@ impl<K> Decider<K> {
     }
 }
 
-/// How the gate's kernel decides.
+/// The way in which the gate's kernel decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mode {
     Off,
@@ -127,13 +128,13 @@ pub(crate) enum Mode {
     Uniform,
     Random,
     Bounded {
-        /// The table's first row of bones above.
+        /// The index of the table's first row of parents.
         first_above: u32,
     },
 }
 
 impl Mode {
-    /// The kernel's `MODE`.
+    /// The value of the kernel's override constant `MODE`.
     pub fn constant(self) -> u32 {
         match self {
             Self::Off => modes::OFF,
@@ -149,19 +150,20 @@ impl Mode {
     }
 }
 
-/// A gate on the device.
+/// The gate's table on the device.
 #[derive(Debug, Clone)]
 pub(crate) struct UploadedGate {
     pub mode: Mode,
     pub table: TableBuffers,
 }
 
-/// The frame of the next submission.
+/// The time of the frame that is submitted next.
 #[derive(Debug, Clone)]
 pub(crate) struct GateTime {
     params: GateParams,
     uniform: Uniform<GateParams>,
-    /// For each slot of each instance, what it leaves of the error budget, where bones below need it in the same frame.
+    /// For each slot of each instance, the error budget that its bone leaves, if bones below need it in the
+    /// same frame.
     remaining: Buffer<u32>,
 }
 
@@ -195,12 +197,12 @@ impl GateTime {
         Ok(Self { params, uniform, remaining })
     }
 
-    /// One thread per word of bits, or per instance if words depend on each other.
+    /// Number of threads: one per word of bits, or one per instance if words depend on each other.
     fn threads(&self, mode: Mode) -> u32 {
         self.params.instances * if mode.is_bounded() { 1 } else { self.params.words }
     }
 
-    /// As [`GateJob::set`].
+    /// Sets the frame, as [`GateJob::set`] does.
     pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
         let Frame { ticks, frame_ticks, frame, ahead: _ } = *frame;
         self.uniform.write(gpu, &GateParams { ticks, frame_ticks, frame, ..self.params })
@@ -220,10 +222,10 @@ enum Work {
 }
 
 impl GateJob {
-    /// Chooses the frame of the next submission; it means nothing to a budget.
+    /// Sets the frame of the next submission. A budget ignores it.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
         match &self.work {
             Work::Gate { time, .. } => time.set(gpu, frame),
@@ -234,7 +236,7 @@ impl GateJob {
     /// Sets the number of bones that may be sampled from the next submission on.
     ///
     /// # Errors
-    /// [`InputError`] unless the gate is [`Gate::Budget`]; [`GpuError`].
+    /// [`InputError`] unless the gate is [`Gate::Budget`]; [`GpuError`] for errors of the device.
     pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
         match &self.work {
             Work::Gate { .. } => Err(no_budget(bones).into()),
@@ -259,7 +261,7 @@ impl GateJob {
     }
 }
 
-/// What a gate without a budget says of one.
+/// The error of setting a budget for another gate than [`Gate::Budget`].
 pub(crate) fn no_budget(bones: u32) -> InputError {
     InputError::new("budget", bones, "must be of a crowd that is under one, not another gate")
 }

@@ -7,27 +7,27 @@ use crate::animation::gate_table::sums::{motion_at, motion_between, scale_by_fra
 use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, PriorityTable, bits_of};
 use crate::animation::lod::{Lod, OMEGA_ONE};
 
-/// The bones that are sampled.
+/// The bones that a gate decides to sample.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chosen {
     /// A bit for each slot of each instance: [`AnimatedBones::words`] words an instance.
     pub bits: Vec<u32>,
-    /// In the same layout: those of them that are sampled ahead.
+    /// The bones of `bits` that are sampled ahead of the frame's time, in the same layout.
     pub ahead: Vec<u32>,
 }
 
 impl Chosen {
-    /// Both in the layout of `Active::bits`.
+    /// The words of `bits` and `ahead`, in the layout of `Active::bits`.
     pub fn words(&self) -> Vec<u32> {
         [self.bits.as_slice(), &self.ahead].concat()
     }
 }
 
-/// The bones that are sampled. `sampled` holds, for each slot of each instance, the sum of motion when it was sampled last;
-/// [`Gate::Bounded`] and [`Gate::Budget`] alone use it.
+/// Decides which bones are sampled. `sampled` holds, for each slot of each instance, the accumulated motion
+/// at which it was last sampled; only [`Gate::Bounded`] and [`Gate::Budget`] use it.
 ///
 /// # Panics
-/// If there are fewer levels of detail or sums than clip clocks need.
+/// If there are fewer levels of detail or sums of motion than the clip clocks need.
 pub fn gate(
     gate: &Gate,
     frame: &Frame,
@@ -59,13 +59,13 @@ struct Word<'a> {
     first: usize,
     lod: &'a Lod,
     clip_clock: &'a ClipClock,
-    /// A bit for each of its bones.
+    /// A bit for each bone of the word.
     all: u32,
     /// The bones that may have to be sampled.
     candidates: u32,
 }
 
-/// The words of bits of an instance.
+/// The words of bits of one instance.
 fn words<'a>(
     bones: &'a AnimatedBones,
     instance: usize,
@@ -80,8 +80,8 @@ fn words<'a>(
     })
 }
 
-/// The decision of a gate that decides on each word alone: `thin` selects from the candidates of a word of an instance
-/// that is not at full detail.
+/// The decision of a gate that decides on each word separately: `thin` selects from the candidates of a word,
+/// unless the instance is at full detail.
 fn thinned(
     bones: &AnimatedBones,
     lods: &[Lod],
@@ -120,7 +120,7 @@ fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled:
     chosen
 }
 
-/// Wellons' "lowbias32".
+/// Hashes a word by Wellons' "lowbias32".
 pub fn scramble(word: u32) -> u32 {
     let mixed = (word ^ (word >> 16)).wrapping_mul(0x21f0_aaad);
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x735a_2d97);

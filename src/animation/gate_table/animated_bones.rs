@@ -1,22 +1,23 @@
-//! Which bones a clip moves at all.
+//! Finds the bones that each clip moves.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::order::Order;
 use crate::asset::clip::{Clip, Interpolation, Part};
 
-/// Which bones each clip of a set moves: what [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` decide by,
-/// and a part of every other table.
+/// The bones that each clip of a set moves. [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and
+/// `Random` decide by this table, and it is a part of every other table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnimatedBones {
     bones: usize,
     words: usize,
-    /// For each clip the index of its last row, then one bit for each slot that it moves.
+    /// For each clip, the index of its last row, then one bit per slot, set if the clip moves the slot's
+    /// bone.
     records: Vec<u32>,
 }
 
 impl AnimatedBones {
-    /// Looks for the bones whose tracks change along their clips.
+    /// Finds the bones whose tracks change along their clips.
     ///
     /// # Errors
     /// [`InputError`] for clips other than the set's, and for a skeleton with another number of bones.
@@ -44,49 +45,49 @@ impl AnimatedBones {
         self.bones
     }
 
-    /// Words of bits per instance.
+    /// Number of words of bits per instance.
     pub fn words(&self) -> usize {
         self.words
     }
 
-    /// Clips of the set.
+    /// Number of clips of the set.
     pub fn clips(&self) -> usize {
         self.records.len() / (self.words + 1)
     }
 
-    /// A bit for each slot that a clip moves.
+    /// The bits of a clip, one per slot, set if the clip moves the slot's bone.
     ///
     /// # Panics
-    /// For a clip that the set lacks.
+    /// If the set has no such clip.
     pub fn of(&self, clip: u32) -> &[u32] {
         &self.record(clip)[1..]
     }
 
-    /// How many bones a clip moves.
+    /// Number of bones that a clip moves.
     ///
     /// # Panics
-    /// For a clip that the set lacks.
+    /// If the set has no such clip.
     pub fn count(&self, clip: u32) -> usize {
         self.of(clip).iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// The slots that a clip moves.
+    /// The slots whose bones a clip moves.
     pub(crate) fn slots(&self, clip: u32) -> impl Iterator<Item = usize> {
         let bits = self.of(clip).iter().enumerate();
         bits.flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
     }
 
-    /// Whether a clip moves a slot.
+    /// Whether a clip moves the bone of a slot.
     pub(crate) fn contains(&self, clip: u32, slot: usize) -> bool {
         self.of(clip)[slot / 32] >> (slot % 32) & 1 != 0
     }
 
-    /// The last row of a clip in a table.
+    /// The index of a clip's last row in a table.
     pub(crate) fn last_row(&self, clip: u32) -> u32 {
         self.record(clip)[0]
     }
 
-    /// As kernels read them: for each clip the number of its last row, then a bit for each slot that it moves.
+    /// The table as kernels read it: for each clip the index of its last row, then one bit per slot.
     #[cfg(feature = "gpu")]
     pub(crate) fn records(&self) -> &[u32] {
         &self.records
@@ -104,7 +105,7 @@ pub(crate) fn bits_of(word: u32) -> impl Iterator<Item = usize> {
         .map(|rest| rest.trailing_zeros() as usize)
 }
 
-/// Whether a clip changes any of a bone's parts.
+/// Whether a clip changes the translation, rotation or scale of a bone.
 fn moves(clip: &Clip, bone: usize) -> bool {
     Part::ALL.iter().any(|part| {
         let track = clip.track(bone, *part);

@@ -27,7 +27,7 @@ const FAVOUR: f64 = 1.6;
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundTable {
     motion: MotionTable,
-    /// The first clip's row of bones above.
+    /// The index of the first clip's row of parents.
     first_above: usize,
     radius: f32,
 }
@@ -124,7 +124,7 @@ impl BoundTable {
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 
-    /// The first clip's row of bones above.
+    /// The index of the first clip's row of parents.
     #[cfg(feature = "gpu")]
     pub(crate) fn first_above(&self) -> u32 {
         self.first_above as u32
@@ -135,13 +135,13 @@ impl BoundTable {
         self.motion.motion(row, slot)
     }
 
-    /// A slot's motion along a whole clip, and what it may miss.
+    /// A slot's motion along a whole clip, and its error budget.
     pub(crate) fn of_clip(&self, clip: u32, slot: usize) -> (u32, ErrorBudget) {
         let [period, granted] = self.motion.of_clip(clip, slot);
         (period, ErrorBudget(granted))
     }
 
-    /// The next slot above one that a clip moves, of those that the clip moves.
+    /// The nearest slot above one that a clip moves, among those that the clip moves.
     pub(crate) fn above(&self, clip: u32, slot: usize) -> Option<usize> {
         let [above, _] = self.motion.motion(self.first_above as u32 + clip, slot);
         (above != NO_PARENT).then_some(above as usize)
@@ -158,7 +158,7 @@ impl ErrorBudget {
     /// Set if what the bone leaves is needed later.
     const REMAINING: u32 = gate::REMAINING;
 
-    /// `quantization_slack` is a power of two, or 0.
+    /// Packs a fraction from 0 to 1 and `quantization_slack`, which is a power of two or 0.
     pub(super) fn new(fraction: f64, quantization_slack: u32) -> Self {
         let bits = u32::BITS - quantization_slack.leading_zeros();
         Self(((fraction * 65536.0).floor() as u32) << 8 | bits)
@@ -180,7 +180,7 @@ impl ErrorBudget {
     }
 }
 
-/// Gives each bone its fraction of what the bones above it leave.
+/// Sets each bone's fraction of the error budget that the bones above it leave.
 fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
     for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {

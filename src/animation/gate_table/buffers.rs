@@ -1,4 +1,4 @@
-//! Tables on the device.
+//! The tables of gates in buffers of the device.
 
 use super::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable, check_path};
 use crate::InputError;
@@ -11,9 +11,9 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 pub(crate) struct TableBuffers {
     pub animated_bones: Buffer<u32>,
     pub rows: Buffer<[u32; 2]>,
-    /// Entries of a row.
+    /// Number of entries of a row.
     pub stride: u32,
-    /// Words of bits per instance.
+    /// Number of words of bits per instance.
     pub words: u32,
     bones: usize,
     clips: usize,
@@ -23,7 +23,7 @@ pub(crate) struct TableBuffers {
 
 impl TableBuffers {
     pub fn of_animated_bones(gpu: &Gpu, table: &AnimatedBones) -> Result<Self, GpuError> {
-        // Nothing is read of it.
+        // The kernel reads no entry of this table.
         Self::new(gpu, table, &[[0; 2]], 0, None)
     }
 
@@ -59,7 +59,7 @@ impl TableBuffers {
         })
     }
 
-    /// Refuses a crowd of other bones or clips, and one whose rotations take another path.
+    /// Refuses a crowd with other bones or clips than the table's, and one that uses another rotation path.
     pub fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
         for (field, value, needed) in
             [("table.bones", self.bones, crowd.bones), ("table.clips", self.clips, crowd.clips)]

@@ -1,4 +1,4 @@
-//! One bone's motion along a clip, as columns of tables have it.
+//! The motion of one bone along a clip, as a column of a table.
 
 use super::{EVERYTHING, ErrorBudget};
 use crate::animation::motion::{BoneMotion, Path};
@@ -37,9 +37,7 @@ impl Column {
     /// Sums at row starts are rounded to the nearest unit, rises up, and interpolated sums down, so that the
     /// difference of two sums is at most 4 units too small. Fractions are cut to 16 bits, 2⁻¹⁶ of a segment,
     /// and may be off by the rounding of their division; 2⁻¹² of the steepest segment exceeds both errors for
-    /// two sums. The slack for these errors is a power of two.
-    /// the steepest stretch is more than either costs for two sums. What rounding may hide so, the quantization slack, is
-    /// a power of two.
+    /// two sums. The quantization slack, which covers these errors, is a power of two.
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;

@@ -1,4 +1,4 @@
-//! Motion as a stale bone is expected to show it.
+//! The motion that a stale bone is expected to show.
 
 use super::AnimatedBones;
 use super::columns::columns;
@@ -10,13 +10,14 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// The expected motion that each bone contributes to points at and below it, as a root of the sum of squares, by
-/// which [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones.
+/// The motion that each bone is expected to contribute to points that follow it or a bone below it, as a root
+/// sum of squares. [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones by it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationTable(MotionTable);
 
 impl ExpectationTable {
-    /// The table of a set's clips. Arguments as for [`BoundTable::new`](super::BoundTable::new).
+    /// Computes the table of a set's clips. The arguments are those of
+    /// [`BoundTable::new`](super::BoundTable::new).
     ///
     /// # Errors
     /// As [`BoundTable::new`](super::BoundTable::new).
@@ -45,8 +46,8 @@ impl ExpectationTable {
         self.0.path
     }
 
-    /// The entries, row by row: a sum of motion at the row's time and its rise to the next. In a clip's last row stand its
-    /// sum over the whole clip, and an [`ErrorBudget`](super::ErrorBudget) that grants nothing.
+    /// The entries, row by row: the sum of motion at the row's time and its rise to the next row. A clip's
+    /// last row holds the sum over the whole clip and an [`ErrorBudget`](super::ErrorBudget) of 0.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.0.rows
     }

@@ -1,4 +1,4 @@
-//! Sums of motion: what tables of bounds and of expectations have in common.
+//! Tables of accumulated motion, the common part of bounds and expectations.
 
 use super::columns::Column;
 use super::{AnimatedBones, MAX_MOTION, empty_rows};
@@ -9,20 +9,20 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// For each row and slot the sum of motion at the row's time and its rise to the next, in units; in a clip's last row the
-/// sum over the whole clip, and an [`ErrorBudget`](super::ErrorBudget).
+/// For each row and slot, the sum of motion at the row's time and its rise to the next row, in units of the
+/// table. A clip's last row holds the sum over the whole clip and an [`ErrorBudget`](super::ErrorBudget).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionTable {
     pub animated_bones: AnimatedBones,
-    /// The path between rotation keys whose motion it is.
+    /// The rotation path between keys for which the motion was computed.
     pub path: RotationPath,
     pub rows: Vec<[u32; 2]>,
-    /// Metres (or what the motion counts) a unit.
+    /// Size of a unit, in metres or in the dimension of the motion.
     pub unit: f64,
 }
 
 impl MotionTable {
-    /// A table without motion, with so many rows behind those of the clips, and the order of its columns.
+    /// Makes a table without motion, with `more` rows after those of the clips, and the order of its columns.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -38,7 +38,7 @@ impl MotionTable {
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
 
-    /// Writes the columns of every clip, in the smallest unit for which they fit.
+    /// Writes the columns of every clip, in the smallest unit in which they fit.
     pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
@@ -58,7 +58,7 @@ impl MotionTable {
         Ok(())
     }
 
-    /// Entries of a row: one a bone.
+    /// Number of entries of a row: one per bone.
     pub fn stride(&self) -> usize {
         self.animated_bones.bones()
     }

@@ -1,4 +1,4 @@
-//! The priority of each bone at each time.
+//! The table of each bone's priority at each time.
 
 use super::{AnimatedBones, empty_rows};
 use crate::InputError;
@@ -7,7 +7,8 @@ use crate::animation::order::Order;
 use crate::animation::priority::Priorities;
 use crate::asset::clip::Clip;
 
-/// The priorities of each clip's bones: what [`Gate::SkipPeriod`](crate::animation::Gate::SkipPeriod) decides by.
+/// The priorities of each clip's bones, by which [`Gate::SkipPeriod`](crate::animation::Gate::SkipPeriod)
+/// decides.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PriorityTable {
     animated_bones: AnimatedBones,
@@ -16,11 +17,12 @@ pub struct PriorityTable {
 }
 
 impl PriorityTable {
-    /// The table of one set of priorities a clip. Before a bone's first key its first counts.
+    /// Computes the table from one set of priorities per clip. Before its first key, a bone has the priority
+    /// of that key.
     ///
     /// # Errors
-    /// As [`AnimatedBones::new`]; [`InputError`] for other than one set of priorities a clip, and a table of more than
-    /// 2²⁷ entries.
+    /// As [`AnimatedBones::new`]; [`InputError`] also if there is not one set of priorities per clip, and for
+    /// a table of more than 2²⁷ entries.
     pub fn new(
         order: &Order,
         set: &ClipSet,
@@ -58,7 +60,7 @@ impl PriorityTable {
         &self.rows
     }
 
-    /// Entries of a row.
+    /// Number of entries of a row.
     #[cfg(feature = "gpu")]
     pub(crate) fn stride(&self) -> usize {
         self.stride

@@ -1,4 +1,4 @@
-//! Sums of motion in whole numbers, as kernels compute them: reference of `wgsl/animation/motion.wgsl`.
+//! Sums of motion in integers, as kernels compute them: the reference of `wgsl/animation/motion.wgsl`.
 
 /// `value · fraction / 65536`; the fraction is at most 65536.
 pub fn scale_by_fraction(value: u32, fraction: u32) -> u32 {

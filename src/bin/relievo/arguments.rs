@@ -1,4 +1,4 @@
-//! What the arguments of several commands have in common.
+//! Argument types and parsers that several commands share.
 
 use std::str::FromStr;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::Context;
 
-/// What computes.
+/// The processor that computes.
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Backend {
@@ -20,7 +20,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// The device, where it is the device that computes.
+    /// Opens the device if the backend is the GPU; `None` for the CPU.
     pub fn gpu(self, context: &Context) -> Result<Option<Gpu>, Error> {
         match self {
             Self::Gpu => context.gpu().map(Some),
@@ -29,7 +29,7 @@ impl Backend {
     }
 }
 
-/// A parser of names that stand for values.
+/// Makes a clap parser that maps each name to its value and refuses all other names.
 pub fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     values: [(&'static str, T); N],
 ) -> impl TypedValueParser<Value = T> {
@@ -40,7 +40,7 @@ pub fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     PossibleValuesParser::new(values.map(|(name, _)| name)).try_map(find)
 }
 
-/// Two values with a separator between them.
+/// Parses two values with a separator between them.
 pub fn pair<T: FromStr>(field: &str, text: &str, separator: char, bound: &str) -> Result<[T; 2], InputError> {
     let (first, second) = text.split_once(separator).unwrap_or((text, ""));
     match (first.trim().parse(), second.trim().parse()) {

@@ -1,4 +1,4 @@
-//! `relievo bench`
+//! `relievo bench`: times each kernel beside its CPU reference and a memory copy.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -12,13 +12,13 @@ use relievo::harness::{Row, table};
 use crate::Context;
 use crate::output::say;
 
-/// Measures every kernel beside its CPU reference and a copy of the same bytes, in one run.
+/// Times every kernel beside its CPU reference and beside a copy of the same number of bytes, in one run.
 #[derive(Args)]
 pub struct Bench {
-    /// Only kernels whose name contains this, such as `terrain` or `height`.
+    /// Runs only kernels whose name contains this text, such as `terrain` or `height`.
     #[arg(long, value_name = "STEM")]
     only: Option<String>,
-    /// Writes every figure.
+    /// Also writes every measurement to this file.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! Fewer bones, for commands that show one model.
+//! The options by which commands that show one model reduce its bones first.
 
 use clap::Args;
 use relievo::asset::Model;
@@ -8,24 +8,25 @@ use relievo::{Error, InputError};
 use crate::output::say;
 use crate::progress::during;
 
-/// Which bones are left.
+/// Which bones are collapsed before the command runs.
 #[derive(Args)]
 pub struct CollapseArgs {
-    /// Collapses bones into those above them until N, or this part of all, are left, those first that are seen least in
-    /// the model's clips; says how many are left, and how far vertices are off. Roots, the uppermost bones that clips
-    /// move, and bones without children stay. Clips last an hour at most.
+    /// Collapses bones into the bones above them until N bones, or this percentage of all bones, are left.
+    /// The bones whose collapse moves vertices least in the model's clips go first. Prints the number of
+    /// bones that are left and how far the vertices are off. Roots, the uppermost bones that a clip moves,
+    /// and bones without children are kept. Clips may last an hour at most.
     #[arg(long, value_name = "N|N%", allow_hyphen_values = true)]
     bones: Option<String>,
-    /// A bone that stays, by name. May be given more than once.
+    /// The name of a bone to keep; may be given several times.
     #[arg(long, value_name = "NAME", requires = "bones")]
     keep_bone: Vec<String>,
-    /// Bones without children may collapse too.
+    /// Allows bones without children to collapse too.
     #[arg(long, requires = "bones")]
     collapse_end_effectors: bool,
 }
 
 impl CollapseArgs {
-    /// The model with the bones that are asked for.
+    /// Collapses the model's bones as the arguments ask; without `--bones`, returns the model as it is.
     pub fn apply(&self, model: Model) -> Result<Model, Error> {
         let Some(bones) = &self.bones else { return Ok(model) };
         let options = CollapseOptions {

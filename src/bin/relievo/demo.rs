@@ -1,4 +1,4 @@
-//! `relievo demo`
+//! `relievo demo`: every picture on one page.
 
 mod crowd;
 mod relief;
@@ -19,27 +19,27 @@ use crate::Context;
 use crate::output::say;
 use crate::progress::bar;
 
-/// Makes every picture that relievo can make so far, and an `index.html` that shows them with the commands that
-/// made them and their timings.
+/// Draws every kind of picture that relievo can draw, and writes an `index.html` that shows each picture with
+/// the command that draws it and its timings.
 #[derive(Args)]
 pub struct Demo {
-    /// The folder.
+    /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Pixels of each perspective view.
+    /// Width and height of each perspective view, in pixels.
     #[arg(long, value_name = "WxH", default_value = "960x600")]
     size: String,
 }
 
-/// The page that is being made.
+/// The page that is being written.
 struct Page<'a> {
     context: &'a Context,
     staged: Staged,
-    /// A folder for the commands' own files.
+    /// The folder for the files that the commands write themselves.
     inputs: &'a Path,
     progress: ProgressBar,
     figures: String,
-    /// Pictures so far.
+    /// Number of pictures so far.
     count: usize,
 }
 
@@ -67,11 +67,11 @@ impl Demo {
     }
 }
 
-/// A picture of a command.
+/// A picture on the page, and the command that draws it.
 struct Entry {
     name: &'static str,
     title: &'static str,
-    /// Words with a space between them.
+    /// The arguments, separated by spaces.
     arguments: &'static str,
 }
 
@@ -80,7 +80,7 @@ const fn entry(name: &'static str, title: &'static str, arguments: &'static str)
 }
 
 impl Entry {
-    /// The command that draws it; `more` is not shown.
+    /// Parses the command that draws the picture; the page does not show the arguments in `more`.
     fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&OsStr]) -> Result<T, Error> {
         let words = ["--out", "."].iter().copied().chain(self.arguments.split_whitespace()).map(OsStr::new);
         let refused = |error: clap::Error| Error::file(self.name, error);
@@ -91,7 +91,7 @@ impl Entry {
 }
 
 impl Page<'_> {
-    /// Draws the pictures of a command; `draw` gives each with a note.
+    /// Draws the pictures of a command; `draw` returns each picture with a note.
     fn draw<T: Args + FromArgMatches>(
         &mut self,
         command: &'static str,

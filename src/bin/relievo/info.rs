@@ -1,4 +1,4 @@
-//! `relievo info`
+//! `relievo info`: the adapters, the chosen device's driver and limits, and the passes.
 
 use std::process::ExitCode;
 

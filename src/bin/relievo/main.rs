@@ -1,4 +1,4 @@
-//! The command line: a thin shell over the library.
+//! The command line: parses arguments, and calls the library.
 
 mod arguments;
 mod bench;
@@ -25,13 +25,13 @@ use clap::{Parser, Subcommand};
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
 ///
-/// Start with `relievo demo --out demo`, and `relievo verify` to see whether your driver computes what it
-/// should.
+/// Start with `relievo demo --out demo`, which draws examples of everything, and `relievo verify`, which checks
+/// that your driver computes correct results.
 #[derive(Parser)]
 #[command(version, propagate_version = true)]
 struct Arguments {
-    /// The adapter: a kind (discrete, integrated, virtual, cpu) or a part of its name or driver. Default: the
-    /// fastest kind there is.
+    /// The adapter to use: its kind (discrete, integrated, virtual, cpu), or a part of its name or driver.
+    /// Default: the fastest kind that exists.
     #[arg(long, global = true, env = "RELIEVO_ADAPTER", value_name = "NAME")]
     adapter: Option<String>,
     #[command(subcommand)]
@@ -40,7 +40,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Lists adapters, the chosen one's driver and limits, and every pass.
+    /// Lists the adapters, the driver and limits of the chosen one, and every pass.
     Info,
     Terrain(Box<terrain::Terrain>),
     Relief(Box<relief::Relief>),
@@ -54,7 +54,7 @@ enum Command {
     Demo(demo::Demo),
 }
 
-/// What a command is run with.
+/// The global arguments that every command runs with.
 pub struct Context {
     options: relievo::gpu::Options,
     opened: std::cell::OnceCell<relievo::gpu::Gpu>,
@@ -100,10 +100,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// Says in one line what is wrong with the arguments; shows help or version where they were asked for.
+/// Prints one line that says what is wrong with the arguments, or prints the help or version that they ask
+/// for.
 fn refused(error: &clap::Error) -> ExitCode {
     if error.exit_code() == 0 {
-        // Whoever closed the pipe has read enough.
+        // A closed pipe is no error: the reader has read enough.
         let _ = error.print();
         return ExitCode::SUCCESS;
     }
@@ -119,7 +120,7 @@ fn refused(error: &clap::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// One line on standard error, if anybody is there to read it.
+/// Prints one line on standard error; ignores it if standard error is closed.
 fn complain(text: &str) {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let _ = writeln!(std::io::stderr(), "relievo: {line}");

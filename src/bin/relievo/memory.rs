@@ -1,10 +1,10 @@
-//! Whether what a run keeps fits the memory that this process may use.
+//! Checks that the data of a run fit into the memory that this process may use.
 
 use relievo::InputError;
 use sysinfo::{CGroupLimits, Pid, ProcessesToUpdate, System};
 
-/// Refuses `patches`, given as `text`, when they need more bytes than are available, of the machine and of the process's
-/// control group.
+/// Refuses `patches`, given as `text`, if they need more bytes than the machine and the process's control
+/// group have available.
 pub fn check(text: &str, needed: u128) -> Result<(), InputError> {
     check_within(text, needed, available())
 }
@@ -22,7 +22,8 @@ fn check_within(text: &str, needed: u128, available: u64) -> Result<(), InputErr
     Err(InputError::new("patches", text, bound))
 }
 
-/// Bytes that this process may still use. Where the system does not say, allocation decides.
+/// Number of bytes that this process may still allocate. If the system does not say, the check passes and
+/// allocation itself decides.
 fn available() -> u64 {
     let Ok(mut system) = System::new() else { return u64::MAX };
     system.refresh_memory();
@@ -35,8 +36,8 @@ fn group_of(system: &mut System, pid: Pid) -> Option<CGroupLimits> {
     system.process(pid)?.cgroup_limits()
 }
 
-/// The smallest of what the machine has available and what the groups have left. A group's page cache counts
-/// as available, as the machine's does.
+/// The smallest of the memory that the machine has available and the memory that each control group has left.
+/// A group's page cache counts as available, as the machine's does.
 fn within(groups: [Option<CGroupLimits>; 2], machine: u64) -> u64 {
     let left = |group: CGroupLimits| group.total_memory.saturating_sub(group.rss);
     groups.into_iter().flatten().map(left).fold(machine, u64::min)

@@ -1,4 +1,4 @@
-//! `relievo pose`
+//! `relievo pose`: the transforms of every bone at one time of a clip, as JSON.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,17 +16,18 @@ use crate::Context;
 use crate::arguments::{Backend, one_of};
 use crate::collapse::CollapseArgs;
 
-/// What becomes of times outside a clip.
+/// The names of `--wrap`: how times outside a clip are taken into it.
 pub const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clamp)];
 
-/// Writes where every bone of a model is at a moment of a clip, or at rest, as JSON.
+/// Writes the transform of every bone of a model at one time of a clip, or at rest, as JSON.
 ///
 /// {"clip", "time", "bones": [{"name", "parent", "local": {"translation": [3], "rotation": [4], "scale": [3]},
-/// "model": [16]}]}: the joints of every skin, each once, in the file's order; in a file without skins, every node that
-/// moves or that meshes follow, and all above these, parents first. "parent" is the place in that list of
-/// the nearest joint above, -1 at a root. "local" is the joint's node in its parent node's space (rotation x, y, z,
-/// w). "model" is its global transform in the scene, all nodes above it included, column by column. "time" is the
-/// time inside the clip. Both are null at rest.
+/// "model": [16]}]}. The bones are the joints of every skin, each once, in the file's order. In a file without
+/// skins they are every node that moves or that meshes follow, and all nodes above these, parents first. "parent"
+/// is the index in this list of the nearest joint above, or -1 at a root. "local" is the transform of the joint's
+/// node in its parent node's space, with the rotation as a quaternion x, y, z, w. "model" is its global transform
+/// in the scene, including all nodes above it, as a 4 × 4 matrix, column by column. "time" is the time inside the
+/// clip in seconds. "clip" and "time" are null at rest.
 #[derive(Args)]
 pub struct Pose {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
@@ -36,30 +37,31 @@ pub struct Pose {
     moment: MomentArgs,
     #[command(flatten)]
     collapse: CollapseArgs,
-    /// What computes; both agree within rounding.
+    /// The processor that computes; the results of both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
-    /// The file.
+    /// The JSON file to write.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
-/// Which moment of which clip.
+/// The arguments that choose a clip and a time in it.
 #[derive(Args)]
 pub struct MomentArgs {
     /// The clip: its name, or its number, counted from 0. Without it the model is at rest.
     #[arg(long, value_name = "NAME|INDEX")]
     clip: Option<String>,
-    /// Seconds since the clip's start. Default: 0.
+    /// Time in seconds since the clip's start. Default: 0.
     #[arg(long, value_name = "SECONDS", requires = "clip", allow_hyphen_values = true)]
     time: Option<f64>,
-    /// What becomes of times outside the clip: it begins again, or its first or last pose stays.
+    /// What happens at times outside the clip: it repeats (loop), or its first or last pose holds (clamp).
     #[arg(long, value_name = "MODE", default_value = "loop", value_parser = one_of(WRAPS))]
     wrap: Wrap,
 }
 
 impl MomentArgs {
-    /// The place of the clip among the model's, and the time inside it. At rest, the model gets a clip without keys.
+    /// The index of the clip among the model's, and the time inside it in seconds. For the rest pose, this
+    /// adds a clip without keys to the model.
     pub fn find(&self, model: &mut Model, path: &Path) -> Result<(usize, f32), Error> {
         let Some(name) = &self.clip else {
             model.clips.push(Clip::at_rest("rest", &model.skeleton)?);
@@ -70,7 +72,7 @@ impl MomentArgs {
         Ok((place(model, clip), time))
     }
 
-    /// Whether no clip is asked for.
+    /// Whether the arguments ask for the rest pose: no clip is given.
     pub fn is_rest(&self) -> bool {
         self.clip.is_none()
     }
@@ -123,22 +125,22 @@ fn report<'a>(model: &'a Model, moment: Option<(&'a str, f32)>, pose: &animation
     Report { clip, time, bones }
 }
 
-/// As [`open`], without materials and images.
+/// Opens a model as [`open`] does, but without materials and images.
 pub fn open_bare(path: &Path) -> Result<Model, Error> {
     if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file_bare(path) }
 }
 
-/// A file's model, or the built-in one.
+/// Opens the model of a file, or the built-in one.
 pub fn open(path: &Path) -> Result<Model, Error> {
     if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file(path) }
 }
 
-/// The place of a model's own clip among its clips.
+/// The index of `clip`, which is one of the model's clips, among these.
 pub fn place(model: &Model, clip: &Clip) -> usize {
     model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default()
 }
 
-/// A model's clip; says which file lacks it.
+/// Finds a clip of the model by name or number; the error names the file that lacks it.
 pub fn find<'a>(model: &'a Model, path: &Path, clip: &str) -> Result<&'a Clip, Error> {
     let in_file = |source: InputError| Error::InputFile { path: path.to_owned(), source };
     model.clip(clip).map_err(in_file)

@@ -1,4 +1,4 @@
-//! `relievo priorities`
+//! `relievo priorities`: the priority of each key of a clip.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,11 +15,12 @@ use crate::arguments::one_of;
 use crate::output::say;
 use crate::pose::{WRAPS, find, open_bare};
 
-/// Prints how much each key of each bone contributes to a clip, most important first: what animation LOD skips last.
+/// Prints how much each key of each bone contributes to a clip, most important first. Animation level of detail skips
+/// keys of high priority last.
 ///
-/// A key has six terms from 0 to 1: how far its bone moves, turns and grows until the next key, as shares of the
-/// clip's largest; how many bones hang below it; how near it is to the root; and the user's, one half for all. The
-/// priority is their weighted mean.
+/// A key has six terms from 0 to 1: how far its bone moves, turns and scales until the next key, each as a share of the
+/// clip's largest; how many bones lie below it; how near it is to the root; and the user's own term, one half for all
+/// bones. The priority is the weighted mean of these terms.
 #[derive(Args)]
 pub struct Priorities {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
@@ -28,14 +29,14 @@ pub struct Priorities {
     /// The clip: its name, or its number, counted from 0.
     #[arg(long, value_name = "NAME|INDEX")]
     clip: String,
-    /// Weights of translation, rotation, scale, children, depth and user, which sum to 1; or `analyze`: derived from
-    /// the error that freezing bones causes. Default: one sixth each.
+    /// Weights of translation, rotation, scale, children, depth and user, which sum to 1; or `analyze`, which
+    /// derives them from the error that freezing bones causes. Default: one sixth each.
     #[arg(long, value_name = "W,W,W,W,W,W|analyze", allow_hyphen_values = true)]
     weights: Option<String>,
-    /// After a bone's last key comes its first, or nothing.
+    /// What follows a bone's last key: its first key (loop), or nothing (clamp).
     #[arg(long, value_name = "MODE", default_value = "loop", value_parser = one_of(WRAPS))]
     wrap: Wrap,
-    /// Also writes the table there.
+    /// Also writes the table to this file, as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -83,7 +84,7 @@ impl Priorities {
         let user = vec![USER_DEFAULT; model.skeleton.len()];
         let found = priority::Priorities::new(&model.skeleton, clip, loops, &weights, &user)?;
         let mut keys = found.keys;
-        // Equal ones stay in the order of bones and keys.
+        // The sort is stable: equal priorities stay in the order of bones and keys.
         keys.sort_by(|a, b| b.priority.total_cmp(&a.priority));
         if let Some(path) = &self.json {
             let rows = keys.iter().map(|key| row(&model, key)).collect();
@@ -97,7 +98,7 @@ impl Priorities {
     }
 }
 
-/// What `--weights` asks for.
+/// The weights that `--weights` asks for.
 pub fn weights(
     text: Option<&str>,
     skeleton: &Skeleton,

@@ -1,10 +1,10 @@
-//! A progress bar on a terminal; nothing elsewhere.
+//! Progress bars, which appear only on a terminal.
 
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar of `total` steps. indicatif draws nothing where standard error is not a terminal.
+/// A bar of `total` steps. indicatif draws nothing if standard error is not a terminal.
 pub fn bar(total: u64, what: &str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:18} {wide_bar} {pos}/{len} {eta}");
     let bar = ProgressBar::new(total).with_message(what.to_owned());
@@ -12,7 +12,7 @@ pub fn bar(total: u64, what: &str) -> ProgressBar {
     bar
 }
 
-/// Says what is going on, and for how long, while something takes its time in one piece.
+/// Runs work that has no steps, and shows meanwhile what is going on and for how long.
 pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let style = ProgressStyle::with_template("{msg:18} {spinner} {elapsed}");
     let spinner = ProgressBar::new_spinner().with_message(what.to_owned());

@@ -1,4 +1,4 @@
-//! `relievo relief`
+//! `relievo relief`: draws relief by any ray-height method, and measures its error and cost.
 
 mod plot;
 
@@ -25,10 +25,10 @@ use crate::output::say;
 use crate::progress::bar;
 use plot::plot;
 
-/// Linear light behind the square.
+/// Colour behind the square, in linear light.
 const BACKGROUND: [f32; 3] = [0.045, 0.055, 0.07];
 
-/// Samples a pixel along each axis of a picture: one crawls with jagged edges.
+/// Samples per pixel along each axis of the picture; with one, jagged edges crawl.
 const FINER: u32 = 2;
 
 const GREENS: [(&str, Green); 2] = [("up", Green::Up), ("down", Green::Down)];
@@ -37,80 +37,88 @@ const ADDRESSES: [(&str, Address); 2] = [("wrap", Address::Wrap), ("clamp", Addr
 
 /// Draws a square of relief with any ray-height method, and measures the method against the exact intersection.
 ///
-/// Writes `relief.png`, `rays.f32` (for each pixel, row by row, six little-endian floats: u, v and height 1 where
-/// its ray enters the relief, then what it travels until height 0; zeros where no square is seen), `hits.f32` (four
-/// a pixel: u, v, height, and 1 for a hit or 0 for a miss) and `report.json` with error and cost. The projection is
-/// parallel, so that every pixel sees the square at the same angle.
+/// Writes four files. `relief.png` is the picture. `rays.f32` has six little-endian floats for each pixel, row by
+/// row: u, v and height 1 where its ray enters the relief, then the vector from there to height 0; they are zeros
+/// where a pixel does not see the square. `hits.f32` has four floats a pixel: u, v, height, and 1 for a hit or 0
+/// for a miss. `report.json` has error and cost. The projection is parallel, so that every pixel sees the square at
+/// the same angle.
 ///
-/// With `--compare`: every method at 0, 30, 60 and 80 degrees, as `compare.json`, `compare.md` and `compare.png`.
+/// With `--compare`, measures every method at 0, 30, 60 and 80 degrees instead, and writes `compare.json`,
+/// `compare.md` and `compare.png`.
 ///
 /// Start with `relievo relief --builtin bricks --method quadtree --shadow hard --out relief`.
 #[derive(Args)]
 pub struct Relief {
-    /// Heights: the brightness of a PNG or JPEG, 0 to 1.
+    /// The height map: the brightness of a PNG or JPEG, from 0 to 1.
     #[arg(long, value_name = "PNG")]
     height: Option<PathBuf>,
-    /// Heights and colours of our own making, instead of files: bricks, cobbles, text, posts.
+    /// A built-in map of heights and colours instead of files: bricks, cobbles, text or posts.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["height", "albedo"])]
     builtin: Option<String>,
     /// Texels along an edge of a built-in map.
     #[arg(long, value_name = "N", default_value_t = 512, conflicts_with_all = ["height", "albedo"])]
     texels: u32,
-    /// Colours. Its alpha channel is the height where --height is absent.
+    /// The colour map. If --height is absent, its alpha channel is the height.
     #[arg(long, value_name = "PNG")]
     albedo: Option<PathBuf>,
-    /// Normals in tangent space, red to the right. Default: those of the heights.
+    /// The normal map, in tangent space with x in red. Default: normals that are computed from the heights.
     #[arg(long, value_name = "PNG")]
     normal: Option<PathBuf>,
-    /// Where green of --normal points: up the image (glTF, OpenGL) or down it (Direct3D).
+    /// The direction of green in --normal: up the image (glTF, OpenGL) or down it (Direct3D).
     #[arg(long, value_name = "DIRECTION", default_value = "up", value_parser = one_of(GREENS))]
     normal_green: Green,
-    /// How the surface is found: plain, parallax, parallax-limited, relief, occlusion, cone, quadtree.
+    /// The method that intersects rays with the heights: plain, parallax, parallax-limited, relief,
+    /// occlusion, cone or quadtree.
     #[arg(long, value_name = "METHOD", default_value = "quadtree")]
     method: String,
-    /// Depth of the relief, in tiles of the texture: 0 to 1.
+    /// Depth of the relief S, in tiles of the texture: 0 to 1.
     #[arg(long, value_name = "S", default_value_t = 0.1, allow_hyphen_values = true)]
     scale: f64,
-    /// Where the square lies in the relief: B's b, from 0 (at its bottom) to -S (at its top, the default).
+    /// Where the square lies in the relief: b of Tanca's dissertation (2012), from 0 (at the relief's bottom)
+    /// to -S (at its top, the default).
     #[arg(long, value_name = "B", allow_hyphen_values = true)]
     bias: Option<f64>,
-    /// Linear steps straight down and at the horizon, for relief and occlusion.
+    /// Numbers of linear search steps when looking straight down and at the horizon, for relief and
+    /// occlusion.
     #[arg(long, value_name = "MIN,MAX", default_value = "16,64")]
     steps: String,
-    /// Binary steps behind them, and behind cones.
+    /// Number of binary search steps after the linear or cone steps.
     #[arg(long, value_name = "N", default_value_t = 8)]
     binary_steps: u32,
-    /// Degrees between the eye and the square's normal, 0 to below 90. Rays flatter than 89.55 are marched at that.
+    /// Degrees between the eye and the square's normal, from 0 to below 90. Flatter rays than 89.55 degrees
+    /// are marched as if at 89.55.
     #[arg(long, value_name = "DEG", default_value_t = 50.0, allow_hyphen_values = true)]
     angle: f64,
-    /// Degrees of the eye around the normal: 0 below the texture's bottom edge, 90 at its right.
+    /// Degrees by which the eye is turned around the normal: 0 below the texture's bottom edge, 90 at its
+    /// right.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
     azimuth: f64,
-    /// How often the texture repeats along the square's edge.
+    /// Number of times that the texture repeats along the square's edge.
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_hyphen_values = true)]
     tile: f64,
-    /// Self-shadow.
+    /// The self-shadow of the relief.
     #[arg(long, default_value = "none", value_parser = one_of(SHADOWS))]
     shadow: Shadow,
-    /// Where light comes from: degrees around the normal as --azimuth, and above the square.
+    /// The direction towards the light, in degrees: around the normal as --azimuth, and above the square.
     #[arg(long, value_name = "AZ,EL", default_value = "225,45", allow_hyphen_values = true)]
     light: String,
-    /// What lies beyond the map's edge: the map again, or its last texels.
+    /// What lies beyond the map's edge: the map again, or its outermost texels.
     #[arg(long, default_value = "wrap", value_parser = one_of(ADDRESSES))]
     address: Address,
-    /// Cuts away what leaves the square, so that its far edges follow the relief.
+    /// Cuts away what leaves the square, so that its silhouette follows the relief.
     #[arg(long)]
     silhouette: bool,
-    /// What computes.
+    /// The processor that computes.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
-    /// Pixels of relief.png.
+    /// Width and height of relief.png, in pixels.
     #[arg(long, value_name = "WxH", default_value = "960x600")]
     size: String,
-    /// Every method over the angles 0, 30, 60 and 80, instead of a picture: --method, --angle and --steps do not count.
+    /// Measures every method at the angles 0, 30, 60 and 80 instead of drawing a picture; --method, --angle
+    /// and --steps are ignored.
     #[arg(long)]
     compare: bool,
-    /// The folder.
+    /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -120,7 +128,7 @@ struct Report<'a> {
     method: Method,
     #[serde(flatten)]
     measured: Measured,
-    /// The same as `mean_samples`.
+    /// Equal to `mean_samples`.
     samples_per_pixel: f64,
     adapter: Option<&'a str>,
     driver: Option<&'a str>,
@@ -140,8 +148,8 @@ struct Report<'a> {
 impl Relief {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let (method, square) = self.square()?;
-        // What cannot be written shows before the work; the stage itself comes after it, so that an interrupted run
-        // leaves nothing behind.
+        // An output folder that cannot be written is reported before the work. The files themselves are
+        // staged after it, so that an interrupted run leaves nothing behind.
         drop(Staged::new(&self.out)?);
         let gpu = self.backend.gpu(context)?;
         if self.compare {
@@ -167,7 +175,7 @@ impl Relief {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// The picture alone, for the demonstration.
+    /// The picture only, for `relievo demo`; writes no files.
     pub fn picture(&self, context: &Context) -> Result<(RgbaImage, Measured, f64), Error> {
         let start = Instant::now();
         let (method, square) = self.square()?;
@@ -175,12 +183,12 @@ impl Relief {
         Ok((drawn.picture, drawn.measured, start.elapsed().as_secs_f64()))
     }
 
-    /// The plot of `--compare` alone, for the demonstration.
+    /// The plot of `--compare` only, for `relievo demo`; writes no files.
     pub fn comparison(&self, context: &Context) -> Result<RgbaImage, Error> {
         Ok(plot(&compared(&self.square()?.1, self.backend.gpu(context)?.as_ref())?)?)
     }
 
-    /// What is drawn or compared, checked and read.
+    /// Checks the arguments and reads the maps: the method and the square to draw or compare.
     fn square(&self) -> Result<(Method, ReliefSquare), Error> {
         let method = self.method.parse()?;
         let (address, binary_steps) = (self.address, self.binary_steps);
@@ -247,7 +255,7 @@ impl Relief {
             (None, Some(albedo)) => {
                 let (map, image) = HeightMap::from_alpha(albedo)?;
                 let mut color = image.into_rgba8();
-                // The alpha channel was heights.
+                // The alpha channel held the heights: make the colours opaque.
                 color.pixels_mut().for_each(|pixel| pixel.0[3] = 255);
                 Ok((map, color))
             }
@@ -259,7 +267,8 @@ impl Relief {
     }
 }
 
-/// An image for colours or normals; larger ones than a texture may be are refused before they are decoded.
+/// Opens an image of colours or normals; refuses one that is larger than a texture may be before it is
+/// decoded.
 fn open(path: &Path) -> Result<RgbaImage, Error> {
     Ok(relievo::surface::map::open(path)?.into_rgba8())
 }
@@ -270,7 +279,7 @@ fn steps(text: &str) -> Result<[u32; 2], InputError> {
 }
 
 impl Relief {
-    /// Writes what `--compare` does not.
+    /// Writes the files of a run without `--compare`.
     fn write(
         &self,
         square: &ReliefSquare,

@@ -1,4 +1,4 @@
-//! `relievo shaders`
+//! `relievo shaders`: the WGSL of every pass as files.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,25 +10,27 @@ use relievo::gpu::shaders::{ALL, MODULES, Module, Shader};
 
 use crate::output::say;
 
-/// Writes the flat WGSL of every pass, `module_<name>.wgsl` (functions to put before your own shaders: every
-/// ray-height method, zone weights, rotations, dual quaternions), and `manifest.json`: of every pass its entry points
-/// with workgroup sizes and vertex inputs, bindings with types, override constants with defaults, structs with offsets,
-/// and the limits that it needs above WebGPU's defaults.
+/// Writes the WGSL of every pass, and what a host needs to know to use it.
+///
+/// There is one flat file per pass; `module_<name>.wgsl`, functions to put before your own shaders (every
+/// ray-height method, zone weights, rotations, dual quaternions); and `manifest.json`, which has for each pass its
+/// entry points with workgroup sizes and vertex inputs, its bindings with types, its override constants with
+/// defaults, its structs with offsets, and the limits that it needs above WebGPU's defaults.
 #[derive(Args)]
 pub struct Shaders {
-    /// The folder.
+    /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }
 
-/// `manifest.json`.
+/// The contents of `manifest.json`.
 #[derive(serde::Serialize)]
 struct Manifest {
     shaders: Vec<Entry<Shader>>,
     modules: Vec<Entry<Module>>,
 }
 
-/// A file and what is in it.
+/// A file's name and what it contains.
 #[derive(serde::Serialize)]
 struct Entry<T: 'static> {
     file: String,

@@ -1,4 +1,4 @@
-//! `relievo skin`
+//! `relievo skin`: a model's vertices at one time of a clip, as files and as a picture.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,13 +21,14 @@ use crate::output::say;
 use crate::pose::{MomentArgs, open};
 use crate::progress::during;
 
-/// Writes the meshes of a model at a moment of a clip, or at rest: where every vertex is, and a picture.
+/// Writes the meshes of a model at one time of a clip, or at rest: the positions of all vertices, and a picture.
 ///
-/// mesh.obj: the meshes of all nodes with a skin, an object a primitive, in the order of the nodes. attached.obj, where
-/// there are any: those of nodes without one, which follow the node that they hang on. Positions and normals are in the
-/// scene's space, with every digit; vertices are in the file's order, and behind them those that are repeated since their
-/// corners have different tangents. Points and lines have no faces. skin.png: all of it, lit, in the base colours and
-/// textures of its materials; clay where a mesh has none.
+/// mesh.obj has the meshes of all nodes with a skin, one object per primitive, in the order of the nodes.
+/// attached.obj, which is written only if there are any, has the meshes of nodes without a skin, which follow the
+/// node that they are attached to. Positions and normals are in the scene's space, with all digits. Vertices are in
+/// the file's order; after them come the vertices that are duplicated because the triangles around them have
+/// different tangents. Points and lines have no faces. skin.png shows all meshes, lit, with the base colours and
+/// textures of their materials; a mesh without a material is clay.
 #[derive(Args)]
 pub struct Skin {
     /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
@@ -37,19 +38,20 @@ pub struct Skin {
     moment: MomentArgs,
     #[command(flatten)]
     collapse: CollapseArgs,
-    /// Which bones a vertex follows: all of its own (up to 8); the K strongest; or all, fading to the strongest alone as
-    /// LAMBDA goes from 0 to 1.
+    /// The influences that each vertex follows: all of its own (up to 8); the K strongest; or all, fading to
+    /// the strongest alone as LAMBDA goes from 0 to 1.
     #[arg(long, value_name = "full|truncate:K|fade:LAMBDA", default_value = "full")]
     influences: String,
-    /// Blends rigid motions rather than matrices: twisted limbs keep their volume.
+    /// Blends dual quaternions instead of matrices: twisted limbs keep their volume.
     #[arg(long)]
     dual_quaternion: bool,
-    /// Leaves triangles out: each mesh is the coarsest of its levels of detail whose surface is never further off than
-    /// this, in any pose of the clip or at rest, and says what is left. Vertices stay in the file's order. The clip is
-    /// looked at 60 times a second, and lasts an hour at most.
+    /// Reduces triangles: draws each mesh at the coarsest of its levels of detail whose surface is never
+    /// further off than this, in the model's units, in any pose of the clip or at rest; and prints how many
+    /// triangles are left. Vertices stay in the file's order. The clip is sampled 60 times a second, and may
+    /// last an hour at most.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     within: Option<f32>,
-    /// What computes and draws; both agree within rounding.
+    /// The processor that computes and draws; the results of both agree within rounding.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
     /// The folder for mesh.obj, attached.obj and skin.png.
@@ -57,14 +59,14 @@ pub struct Skin {
     out: PathBuf,
 }
 
-/// Of skin.png.
+/// How skin.png is drawn.
 const PORTRAIT: Portrait =
     Portrait { edge: 768, finer: 2, background: [0.02, 0.025, 0.03], clay: [0.6, 0.3, 0.16] };
 
-/// What is written.
+/// The output of the command.
 struct Made {
     model: Model,
-    /// Of each mesh.
+    /// The vertices of each mesh.
     vertices: Vec<Vec<Vertex>>,
     picture: RgbaImage,
 }
@@ -88,7 +90,7 @@ impl Skin {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// The picture alone, for the demonstration.
+    /// The picture only, for `relievo demo`; writes no files.
     pub fn picture(&self, context: &Context) -> Result<RgbaImage, Error> {
         Ok(self.made(context)?.picture)
     }
@@ -122,7 +124,7 @@ impl Skin {
     }
 }
 
-/// `full`, `truncate:K` or `fade:LAMBDA`.
+/// Parses `full`, `truncate:K` or `fade:LAMBDA`.
 fn instance_lod(text: &str) -> Result<InstanceLod, InputError> {
     let refused = || InputError::new("influences", text, "must be full, truncate:K or fade:LAMBDA");
     let named =

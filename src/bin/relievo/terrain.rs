@@ -1,4 +1,4 @@
-//! `relievo terrain`
+//! `relievo terrain`: heights, colour maps and views of patches of terrain.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -39,42 +39,44 @@ const FEATURE_MODES: [(&str, FeatureMode); 2] =
 const WEIGHT_MODES: [(&str, WeightMode); 2] =
     [("normalized", WeightMode::Normalized), ("additive", WeightMode::Additive)];
 
-/// Generates terrain from B's JSON: heights, a colour map and a perspective view.
+/// Generates terrain from a JSON configuration: heights, a colour map and a perspective view. The fields of the
+/// configuration are those of Tanca's dissertation (2012).
 ///
-/// Writes `terrain.png` (perspective; needs an adapter), `map.png` (from above, north up, one pixel a sample),
-/// for each patch `heights_<px>_<py>.png` (16-bit; the mapping is in report.json and in the PNG's text chunk
-/// `relievo-heights`) and `heights_<px>_<py>.i32` (little-endian rows, 1/65536 units), and `report.json`.
+/// Writes `terrain.png` (perspective; needs an adapter), `map.png` (from above, north up, one pixel per sample),
+/// `heights_<px>_<py>.png` for each patch (16-bit; report.json and the PNG's text chunk `relievo-heights` have the
+/// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
 /// coarseLevels, offset, border, corners, terrainScale, textureTile, zones. A feature file: {"patchCoordinates":
 /// [0, 0], "precomputedHeights": [x, y, height, …]}.
 #[derive(Args)]
 pub struct Terrain {
-    /// The configuration.
+    /// The configuration, a JSON file.
     #[arg(long, value_name = "FILE")]
     pub config: PathBuf,
-    /// Injected heights; may be given several times.
+    /// A feature file of heights to inject; may be given several times.
     #[arg(long, value_name = "FILE")]
     features: Vec<PathBuf>,
-    /// keep: injected points stay as they are. additive: the computed value is added to them.
+    /// keep: injected points keep their heights. additive: the computed value is added to them.
     #[arg(long, value_name = "MODE", default_value = "keep", value_parser = one_of(FEATURE_MODES))]
     feature_mode: FeatureMode,
-    /// Injects samples of a 16-bit greyscale PNG, its first sample at the first of the grid.
+    /// Injects samples of a 16-bit greyscale PNG; its first sample goes to the first sample of the grid.
     #[arg(long, value_name = "PNG", requires = "every")]
     heights_from: Option<PathBuf>,
     /// Injects every K-th sample of --heights-from, along both axes.
     #[arg(long, value_name = "K", requires = "heights_from")]
     every: Option<u32>,
-    /// Heights of black and white in --heights-from. Default: what the PNG states, else ± scaleFactor.
+    /// The heights of black and white in --heights-from. Default: those that the PNG states, else ±
+    /// scaleFactor.
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, requires = "heights_from")]
     heights_range: Option<String>,
-    /// Columns and rows of patches.
+    /// Number of columns and rows of patches.
     #[arg(long, value_name = "WxH", default_value = "1x1")]
     patches: String,
-    /// Coordinates of the first patch.
+    /// Coordinates of the first patch, in patches.
     #[arg(long, value_name = "PX,PY", default_value = "0,0", allow_hyphen_values = true)]
     origin: String,
-    /// Iterations of thermal erosion, after despiking.
+    /// Number of iterations of thermal erosion, which follows despiking.
     #[arg(long, value_name = "ITERATIONS")]
     thermal: Option<u32>,
     /// The steepest slope that thermal erosion leaves alone, in degrees.
@@ -86,16 +88,17 @@ pub struct Terrain {
         allow_hyphen_values = true
     )]
     talus: f64,
-    /// Replaces points further than TAU (height units) from the mean of their neighbours by it.
+    /// Replaces each point that is further than TAU (in height units) from the mean of its neighbours by this
+    /// mean.
     #[arg(long, value_name = "TAU", allow_hyphen_values = true)]
     despike: Option<f64>,
-    /// How zone weights make a colour; additive is B's.
+    /// How zone weights blend colours; additive is the method of Tanca's dissertation (2012).
     #[arg(long, value_name = "MODE", default_value = "normalized", value_parser = one_of(WEIGHT_MODES))]
     weights: WeightMode,
-    /// What computes: the heights are the same bits.
+    /// The processor that computes; the heights are the same bits on both.
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
-    /// Pixels of terrain.png.
+    /// Width and height of terrain.png, in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: String,
     /// Also writes each patch as a mesh at its place in the world, `patch_<px>_<py>.obj`.
@@ -104,7 +107,7 @@ pub struct Terrain {
     /// Draws triangle edges in terrain.png instead of textures.
     #[arg(long)]
     wireframe: bool,
-    /// The folder.
+    /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -127,7 +130,7 @@ struct Seconds {
     render: f64,
 }
 
-/// What the arguments mean, checked.
+/// The checked arguments.
 struct Plan {
     recipe: Recipe,
     grid: Grid,
@@ -137,21 +140,21 @@ struct Plan {
     textures: Vec<Texture>,
 }
 
-/// What either backend computes.
+/// The output of either backend.
 #[derive(Default)]
 struct Made {
-    // With one sample of margin.
+    // One window per patch, with one sample of margin.
     windows: Vec<Vec<i32>>,
-    // One pixel a sample of each patch.
+    // One map per patch, with one pixel per sample.
     maps: Vec<Vec<u32>>,
     view: Option<RgbaImage>,
     seconds: Seconds,
-    // Where something was drawn or computed by one.
+    // The device, if it computed or drew anything.
     gpu: Option<Gpu>,
     notes: Vec<String>,
 }
 
-/// What the demo shows of a terrain.
+/// The pictures of a terrain that `relievo demo` shows.
 pub struct Pictures {
     pub view: Option<RgbaImage>,
     pub map: RgbaImage,
@@ -218,7 +221,7 @@ impl Terrain {
             let image = HeightImage::from_file(path)?;
             let range = self.heights_range.as_deref().map(height_range).transpose()?.or(image.range);
             let symmetric = HeightRange { low: -config.scale_factor, high: config.scale_factor };
-            // As many as there are, as far as the grid goes.
+            // The number of samples inside both the image and the grid.
             let samples = grid.samples(width).min(image.samples.len() as u128);
             let injected = samples / u128::from(every.max(1)).pow(2);
             memory::check(&self.patches, grid.bytes(width, injected as u64))?;
@@ -261,7 +264,7 @@ impl Terrain {
         Ok(made)
     }
 
-    /// Draws heights that the CPU made, where there is an adapter: the heights need none.
+    /// Draws heights that the CPU computed, if there is an adapter; the heights themselves need none.
     fn draw_on_host(&self, plan: &Plan, context: &Context, made: &mut Made) -> Result<(), Error> {
         let drawn = context.gpu().and_then(|gpu| {
             let parts = Fields::of_windows(&gpu, plan.recipe.config.patch_size + 2, &made.windows)?;
@@ -310,7 +313,7 @@ impl Terrain {
         staged.write_png("map.png", &plan.grid.mosaic(size, &made.maps))?;
         match &made.view {
             Some(view) => staged.write_png("terrain.png", view)?,
-            // One of an earlier run would show other heights.
+            // A picture of an earlier run would show other heights.
             None => staged.remove("terrain.png"),
         }
         let adapter = made.gpu.as_ref().map(|gpu| gpu.adapter());

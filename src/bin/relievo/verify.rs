@@ -1,4 +1,4 @@
-//! `relievo verify`
+//! `relievo verify`: compares every kernel with its CPU reference.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -12,13 +12,14 @@ use relievo::verify::run;
 use crate::Context;
 use crate::output::say;
 
-/// Runs every kernel against its CPU reference on your adapter and says what holds. Exits 1 when something does not.
+/// Compares every kernel with its CPU reference on your adapter, and prints which of them agree. Exits with 1
+/// if one does not.
 #[derive(Args)]
 pub struct Verify {
-    /// Only kernels whose name contains this, such as `terrain/height` or `thermal`.
+    /// Compares only kernels whose name contains this text, such as `terrain/height` or `thermal`.
     #[arg(long, value_name = "STEM")]
     only: Option<String>,
-    /// Writes every case with its error and bound.
+    /// Also writes every case with its error and bound to this file.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

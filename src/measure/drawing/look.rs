@@ -1,4 +1,4 @@
-//! A variant with its own vertices, and what was found of it.
+//! One variant of a drawn crowd with its own vertices, and its measurements.
 
 use super::{Animation, SKY, Variant};
 use crate::Error;
@@ -12,19 +12,19 @@ use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::lod::LodJob;
 use crate::skinning::morph_weights::MorphWeightsJob;
 
-/// A way to animate and skin, and its own vertices.
+/// A variant of animation and skinning, its own vertices, and its measurements so far.
 pub(super) struct Look {
     pub variant: Variant,
     pub meshes: Vec<Drawable>,
     pub times: Times,
     pub errors: VertexMeter,
-    /// Those that were skinned, and all.
+    /// Number of clusters that were skinned, and of all clusters.
     clusters: [u64; 2],
-    /// Those that were drawn, and all.
+    /// Number of triangles that were drawn, and of all triangles.
     triangles: [u64; 2],
 }
 
-/// Nanoseconds, frame by frame.
+/// Times in nanoseconds, one per timed frame.
 #[derive(Default)]
 pub(super) struct Times {
     pub frame: Vec<f64>,
@@ -33,10 +33,10 @@ pub(super) struct Times {
     pub skin: Vec<f64>,
 }
 
-/// A mesh of a look.
+/// A mesh of one look.
 pub(super) struct Drawable {
     pub skin: SkinFrame,
-    /// Where each of the mesh's vertices lies among an instance's.
+    /// For each vertex of the mesh, its index among the vertices of an instance.
     pub places: Vec<u32>,
     pub lod: LodJob,
     pub weights: MorphWeightsJob,
@@ -55,7 +55,7 @@ impl Look {
         }
     }
 
-    /// Palettes, the choice of clusters, and vertices.
+    /// Records the skinning: palettes, the choice of clusters, and vertices.
     pub(super) fn skin(&self, encoder: &mut wgpu::CommandEncoder) {
         for mesh in &self.meshes {
             match self.variant.animation {
@@ -65,7 +65,8 @@ impl Look {
         }
     }
 
-    /// Who is seen and how far they fade, and the weights of their morph targets.
+    /// Records the decisions before skinning: visibility and fade of each instance, and the weights of its
+    /// morph targets.
     pub(super) fn decide(&self, encoder: &mut wgpu::CommandEncoder) {
         for mesh in &self.meshes {
             mesh.lod.record(encoder);
@@ -73,7 +74,7 @@ impl Look {
         }
     }
 
-    /// The same, and skinning.
+    /// Records the decisions and the skinning.
     pub(super) fn compute(&self, encoder: &mut wgpu::CommandEncoder) {
         self.decide(encoder);
         self.skin(encoder);
@@ -83,7 +84,7 @@ impl Look {
         target.record(encoder, SKY, |pass| self.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)));
     }
 
-    /// Counts the clusters and triangles of a frame of a mesh.
+    /// Reads back how many clusters and triangles of a mesh a frame used, and adds them up.
     pub(super) fn count(
         &mut self,
         gpu: &Gpu,

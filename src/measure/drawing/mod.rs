@@ -1,5 +1,5 @@
-//! A crowd with its skin, on screen: looks at the same frames, each with what it takes and how far its vertices lie from
-//! where full animation and full skinning put them.
+//! Draws a crowd with its skin in several variants ("looks") that show the same frames, and measures the time
+//! of each and how far its vertices lie from those of full animation and full skinning.
 
 mod look;
 mod world;
@@ -19,24 +19,24 @@ use crate::{Error, InputError};
 use look::Look;
 use world::World;
 
-/// Frames of a run that are timed.
+/// Largest number of frames of a run that are timed.
 const TIMED: u32 = 45;
 
-/// Linear.
+/// Colour of the background, in linear light.
 const SKY: [f64; 3] = [0.02, 0.025, 0.03];
 
-/// Width of the picture over its height.
+/// Width and height of the picture, as a ratio.
 const ASPECT: [u32; 2] = [16, 9];
 
-/// In pixels.
+/// Width and height of the picture, in pixels.
 const PICTURE: [u32; 2] = [LINES * ASPECT[0] / ASPECT[1], LINES];
 
-/// Who animates.
+/// Which of the two crowds animates a look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Animation {
     /// The crowd under the gate; clusters with a bone that moved are skinned.
     Gated,
-    /// Everything of everybody, in animation and skinning.
+    /// The crowd in full; all bones are sampled and all clusters are skinned.
     Full,
 }
 
@@ -49,22 +49,23 @@ pub(crate) struct Variant {
 }
 
 impl Variant {
-    /// Without level of detail.
+    /// The variant without level of detail.
     pub(crate) const FULL: Self =
         Self { animation: Animation::Full, skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
 
-    /// With what is drawn, all of it animated.
+    /// The variant that draws by these options, with all bones animated.
     pub(crate) fn of(drawn: &DrawnOptions) -> Self {
         Self { skinning: drawn.skinning, mesh: drawn.mesh, ..Self::FULL }
     }
 }
 
-/// Turns until each of so many variants was timed as a whole and in its parts, and all of their skinning once.
+/// Number of turns in which each variant is timed once as a whole and once in its parts, and once all of them
+/// in their skinning.
 fn turns(variants: usize) -> usize {
     2 * variants + 1
 }
 
-/// Refuses too few frames to take each time of so many variants once.
+/// Refuses a number of frames that is too small to take each time of each variant once.
 pub(crate) fn check_frames(options: &CrowdOptions, variants: usize) -> Result<(), InputError> {
     let least = turns(variants);
     if options.frames as usize >= least {
@@ -74,7 +75,7 @@ pub(crate) fn check_frames(options: &CrowdOptions, variants: usize) -> Result<()
     Err(InputError::new("frames", options.frames, bound))
 }
 
-/// Looks at a crowd. The first is what the others are compared with.
+/// Looks at one crowd. All looks are compared with the first.
 pub(crate) struct Drawing<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage<'a>,
@@ -86,7 +87,7 @@ pub(crate) struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    /// A look for each of `variants`.
+    /// Makes a look for each of `variants`.
     pub(crate) fn new(
         gpu: &'a Gpu,
         stage: &'a Stage<'a>,
@@ -108,7 +109,7 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// Plays all frames, and says of each look what it took. `step` is called after each frame.
+    /// Plays all frames, and returns the cost of each look. Calls `step` after each frame.
     pub(crate) fn run(&mut self, step: impl Fn()) -> Result<Vec<FrameCost>, Error> {
         let CrowdOptions { frames, rate, .. } = *self.stage.options;
         let mut timed = 0..;
@@ -134,20 +135,21 @@ impl<'a> Drawing<'a> {
         Ok(self.looks.iter().map(Look::cost).collect())
     }
 
-    /// What clock takes the times.
+    /// The clock that takes the times.
     pub(crate) fn timed_by(gpu: &Gpu) -> Result<TimedBy, Error> {
         Ok(Timer::for_drawing(gpu)?.timed_by())
     }
 
-    /// A picture of the last frame.
+    /// Draws the last frame of a look.
     pub(crate) fn picture(&self, look: usize) -> Result<RgbaImage, Error> {
         let look = &self.looks[look];
         self.target.draw(self.gpu, SKY, |pass| look.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)))?;
         Ok(self.target.read(self.gpu)?)
     }
 
-    /// A frame of all looks. The gated crowd can be stepped once alone, so that looks take turns: one is timed as a
-    /// whole, or what is computed and what is drawn apart; in the last turn, of each look its skinning.
+    /// Plays a frame of all looks. The gated crowd can advance only once per frame, so looks take turns: each
+    /// turn times one look, as a whole or with its compute and its drawing apart. The last turn times the
+    /// skinning of every look.
     fn play_timed(&mut self, turn: usize) -> Result<(), Error> {
         let chosen = (turn < 2 * self.looks.len()).then_some(turn / 2);
         for animation in [Animation::Gated, Animation::Full] {
@@ -173,7 +175,7 @@ impl<'a> Drawing<'a> {
         Ok(())
     }
 
-    /// A look's frame with its animation, in one piece or in two.
+    /// Times a look's frame with its animation, as a whole or as compute and drawing.
     fn time_look(&mut self, chosen: usize, is_whole: bool) -> Result<(), Error> {
         let Self { gpu, timer, target, device, looks, .. } = self;
         let look = &looks[chosen];
@@ -228,7 +230,7 @@ impl<'a> Drawing<'a> {
 }
 
 impl Device {
-    /// A frame of one of the crowds.
+    /// Records the animation of a frame of one of the crowds.
     fn record(&self, animation: Animation, encoder: &mut wgpu::CommandEncoder) {
         match animation {
             Animation::Gated => self.gated.frame.record(encoder),

@@ -1,4 +1,4 @@
-//! What all looks share, and how each is set up.
+//! What all looks of a crowd share, and how a look is set up.
 
 use glam::{Mat4, Vec3, camera};
 use image::{Rgba, RgbaImage};
@@ -24,17 +24,17 @@ use crate::skinning::vertex::Blend;
 use crate::surface::mips::Mips;
 use crate::{Error, InputError};
 
-/// Steps of the fade.
+/// Number of steps of the influence fade.
 const STEPS: u32 = 64;
 
-/// What all looks share.
+/// The placements, camera and textures that all looks share.
 pub(super) struct World<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage<'a>,
     placements: Buffer<Affine>,
     clip_from_world: Mat4,
     renderer: SkinnedRenderer,
-    /// One a mesh.
+    /// One base-colour texture per mesh.
     albedos: Vec<Albedo>,
 }
 
@@ -91,7 +91,7 @@ impl<'a> World<'a> {
         })
     }
 
-    /// The draw of a mesh.
+    /// The scene that draws a mesh.
     fn scene(&self, skin: &SkinFrame, drawn: &Buffer<u32>, index: usize) -> Result<SkinnedScene, Error> {
         let instances = SkinnedInstances {
             mesh: &skin.mesh,
@@ -106,7 +106,7 @@ impl<'a> World<'a> {
         Ok(scene)
     }
 
-    /// The weights of its morph targets, at the times of the crowd that animates it.
+    /// The weights of a mesh's morph targets, at the clip times of the crowd that animates it.
     fn weights(
         &self,
         device: &Device,
@@ -124,7 +124,7 @@ impl<'a> World<'a> {
         MorphWeightsPass::new(gpu)?.prepare(gpu, &keys, playing, &skin.crowd)
     }
 
-    /// Who is seen, and how far they fade.
+    /// The pass that decides which instances are seen and how far their influences fade.
     fn lod(
         &self,
         skinning: SkinningDetail,
@@ -155,7 +155,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// Clay in two colours.
+/// A checkerboard of clay in two colours, for meshes without a material.
 fn checks() -> Mips {
     let square = |x: u32, y: u32| match (x / 16 + y / 16) % 2 {
         0 => Rgba([214, 150, 104, 255]),

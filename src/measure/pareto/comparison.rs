@@ -1,50 +1,52 @@
-//! Which gate is how much better.
+//! Compares the curves of error against cost of the gates.
 
 use serde::Serialize;
 
 use super::ParetoPoint;
 use crate::measure::gates::GateName;
 
-/// What gates are compared with.
+/// The gates that the others are compared with.
 const RIVALS: [GateName; 2] = [GateName::Uniform, GateName::Random];
 
-/// Comparisons along curves: the least error that a gate reached at a cost or below it, interpolated between its points
-/// (by the error's logarithm); full evaluation, cost 1 and error 0, ends every curve.
+/// Comparisons along curves. A curve gives the least error that a gate reached at a cost or below it, and
+/// interpolates between its points by the error's logarithm; full evaluation, with cost 1 and error 0, ends
+/// every curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparisons {
-    /// The largest error at equal cost.
+    /// The largest error of the bounded gate and its rivals at equal cost.
     pub bounded_max_pixels: Vec<AtCost>,
-    /// The rms error at equal cost.
+    /// The root-mean-square error of the budget gate and its rivals at equal cost.
     pub budget_rms_pixels: Vec<AtCost>,
-    /// Interpolations at equal largest error, at the errors of uniform updates every 2, 3, … frames.
+    /// The costs of the bounded gate and of uniform updates at equal largest error; the errors are those of
+    /// uniform updates every 2, 3, … frames.
     pub bounded_cost: Vec<AtError>,
 }
 
 /// Errors in pixels at equal cost.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtCost {
-    /// Bones interpolated, of all that move.
+    /// The share of the moving bones that are interpolated, 0 to 1.
     pub cost: f64,
-    /// The gate's error.
+    /// The error of the gate in pixels.
     pub gate: f64,
-    /// A rival's.
+    /// The error of uniform updates in pixels.
     pub uniform: f64,
-    /// A rival's.
+    /// The error of random updates in pixels.
     pub random: f64,
     /// The gate's error divided by the lesser of its rivals'; below 1 the gate is better.
     pub ratio: Option<f64>,
 }
 
-/// Costs at equal largest error: bones interpolated, of all that move.
+/// Costs at equal largest error. A cost is the share of the moving bones that are interpolated, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtError {
-    /// The error.
+    /// The error in pixels.
     pub max_pixels: f64,
     /// The cost of uniform updates.
     pub uniform: f64,
-    /// That of the bounded gate.
+    /// The cost of the bounded gate.
     pub bounded: f64,
-    /// The latter divided by the former.
+    /// The cost of the bounded gate divided by that of uniform updates; below 1 the bounded gate is cheaper.
     pub ratio: f64,
 }
 
@@ -90,7 +92,7 @@ fn at_errors(points: &[ParetoPoint]) -> Vec<AtError> {
     points.iter().filter(is_whole).filter_map(at).collect()
 }
 
-/// Cost and error: costs ascend, errors fall.
+/// Points of cost and error: costs ascend, errors descend.
 struct Curve(Vec<[f64; 2]>);
 
 impl Curve {
@@ -111,7 +113,7 @@ impl Curve {
         Self(points)
     }
 
-    /// Nothing below the least cost.
+    /// The error at a cost; `None` below the curve's least cost.
     fn error_at(&self, cost: f64) -> Option<f64> {
         let after = self.0.partition_point(|point| point[0] <= cost);
         let before = self.0.get(after.checked_sub(1)?)?;
@@ -119,11 +121,11 @@ impl Curve {
         Some(between(before[1], after[1], (cost - before[0]) / (after[0] - before[0])))
     }
 
-    /// The least cost; nothing where every point is better.
+    /// The least cost at which the error is reached; `None` if every point of the curve is better.
     fn cost_at(&self, error: f64) -> Option<f64> {
         let after = self.0.partition_point(|point| point[1] > error);
         let (before, after) = (self.0.get(after.checked_sub(1)?)?, self.0.get(after)?);
-        // Bisection: errors fall between the two.
+        // Bisection finds the cost, as errors descend from one point to the next.
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
             let middle = (low + high) / 2.0;
@@ -133,7 +135,7 @@ impl Curve {
     }
 }
 
-/// Between two errors, by their logarithms where they have any.
+/// Interpolates between two errors: by their logarithms if both are above 0, else linearly.
 fn between(a: f64, b: f64, weight: f64) -> f64 {
     if a > 0.0 && b > 0.0 { a * (b / a).powf(weight) } else { a + (b - a) * weight }
 }
@@ -144,7 +146,7 @@ mod tests {
 
     #[test]
     fn curves_are_envelopes_and_interpolated() {
-        // The third point is worse than the second, and dearer.
+        // The third point has a larger error and a higher cost than the second, so the curve leaves it out.
         let curve = Curve::new(vec![[0.2, 4.0], [0.4, 1.0], [0.6, 2.0], [0.8, 0.25]]);
         assert_eq!(curve.0, [[0.2, 4.0], [0.4, 1.0], [0.8, 0.25], [1.0, 0.0]]);
         let near = |found: Option<f64>, expected: f64| {

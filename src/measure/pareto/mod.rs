@@ -1,4 +1,4 @@
-//! Error against cost for every gate, on the CPU.
+//! Measures error against cost for every gate, on the CPU.
 
 mod comparison;
 
@@ -19,64 +19,65 @@ use crate::measure::play::play;
 use crate::measure::progress::{Listener, Steps};
 use crate::measure::stage::{Stage, moving_bones};
 
-/// Gates in the order of reports.
+/// The gates in the order of the report.
 const GATES: [GateName; 5] =
     [GateName::Bounded, GateName::Budget, GateName::Uniform, GateName::Random, GateName::SkipPeriod];
 
-/// A gate at one setting.
+/// The cost and error of a gate at one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParetoPoint {
     /// The gate.
     pub gate: GateName,
-    /// Pixels of bounded, the part of the moving bones that budget may sample, Ω of the others.
+    /// The setting: pixels for bounded; for budget, the share of the moving bones that it may sample; Ω for
+    /// the others.
     pub parameter: f64,
-    /// Bones interpolated, of all that move, over all frames but the first.
+    /// The share of the moving bones that were interpolated, over all frames but the first, 0 to 1.
     pub cost: f64,
-    /// Bones whose matrices were computed, of all.
+    /// The share of all bones whose matrices were computed, 0 to 1.
     pub concatenated_fraction: f64,
-    /// Of points a bone's length from each bone, along its axes.
+    /// Errors of the points that lie one bone length from each bone's origin along its axes.
     #[serde(flatten)]
     pub error: Errors,
-    /// Of the same.
+    /// The largest change of these errors from one frame to the next.
     pub jump: Jump,
 }
 
-/// Every gate's errors and costs.
+/// The errors and costs of every gate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParetoReport {
     /// The model's name.
     pub model: String,
     /// The clip's name.
     pub clip: String,
-    /// How many.
+    /// Number of instances.
     pub instances: usize,
-    /// Bones of an instance.
+    /// Number of bones of an instance.
     pub bones: usize,
-    /// Those that the clip moves.
+    /// Number of bones of an instance that the clip moves.
     pub moving_bones: usize,
-    /// Frames that were measured.
+    /// Number of frames that were measured.
     pub frames: u32,
-    /// Frames a second.
+    /// Frames per second.
     pub rate: f64,
-    /// Seconds of [`GateMode::SkipPeriod`].
+    /// Period of [`GateMode::SkipPeriod`], in seconds.
     pub period: f64,
-    /// Of the same.
+    /// Weights of the priorities of [`GateMode::SkipPeriod`].
     pub weights: Weights,
-    /// Pixels that the model's largest extent takes.
+    /// Size on screen of the model's largest extent, in pixels.
     pub tall_pixels: f32,
-    /// Gate by gate.
+    /// The measurements, gate by gate.
     pub points: Vec<ParetoPoint>,
-    /// What they say of the gates.
+    /// How the gates compare.
     #[serde(rename = "verdicts")]
     pub comparisons: Comparisons,
 }
 
-/// Plays instances at one place, turned every way, under every gate at many settings, each beside the same in full.
-/// Everything runs on the CPU, by the references; the camera does not move.
+/// Plays instances at one place, each turned by another angle, under every gate at many settings, and beside
+/// them the same instances in full. Everything runs on the CPU, by the references; the camera does not move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their bounds, a clip that the model lacks, and a model that is a
-/// point at rest.
+/// [`InputError`](crate::InputError) for options out of their ranges, a clip that the model lacks, and a
+/// model whose bones all lie in one point at rest.
 pub fn pareto(
     subject: Subject<'_>,
     options: &ParetoOptions,
@@ -104,13 +105,13 @@ pub fn pareto(
     })
 }
 
-/// What a gate tries.
+/// The settings at which a gate is measured.
 fn parameters(gate: GateName) -> Vec<f64> {
     let twentieths = || (1..20).map(|twentieth| f64::from(twentieth) / 20.0);
     match gate {
         GateName::Off => vec![1.0],
         GateName::Random | GateName::Budget => twentieths().collect(),
-        // Between whole periods it is as far off as the longer one.
+        // Between two whole periods the largest error is that of the longer period.
         GateName::Uniform => {
             let mut all: Vec<f64> =
                 (2..=16).map(|frames| 1.0 / f64::from(frames)).chain([0.6, 0.75, 0.9]).collect();
@@ -124,7 +125,7 @@ fn parameters(gate: GateName) -> Vec<f64> {
     }
 }
 
-/// A gate with a parameter, in a crowd with so many moving bones.
+/// The gate at a setting, for a crowd with `moving` moving bones.
 fn mode(gate: GateName, parameter: f64, moving: usize, options: &ParetoOptions) -> GateMode {
     match gate {
         GateName::Off => GateMode::Off,
@@ -147,7 +148,7 @@ fn points(
     let mut settings = Vec::new();
     for gate in GATES {
         let mode = |parameter| mode(gate, parameter, moving, options);
-        // The table is the same at every parameter.
+        // The gate's table is the same at every setting.
         let made = stage.gate(&mode(1.0))?;
         let setting = |parameter| (mode(parameter), parameter, with_budget(made.clone(), &mode(parameter)));
         settings.extend(parameters(gate).into_iter().map(setting));
@@ -161,7 +162,7 @@ fn points(
     points.collect()
 }
 
-/// The gate with the mode's budget, if it has one.
+/// Sets the gate's budget to that of the mode, if it has one.
 fn with_budget(gate: Gate, mode: &GateMode) -> Gate {
     match (gate, mode) {
         (Gate::Budget { table, .. }, GateMode::Budget { bones }) => Gate::Budget { table, bones: *bones },
@@ -178,7 +179,7 @@ fn point(
 ) -> Result<ParetoPoint, Error> {
     let mut lods = stage.lods(placements, gate, mode.pixels());
     if matches!(mode, GateMode::Uniform | GateMode::Random | GateMode::SkipPeriod { .. }) {
-        // Up, so that each whole number of frames is one.
+        // Rounded up, so that Ω = 1/n samples exactly every n-th frame.
         let omega = (parameter * f64::from(OMEGA_ONE)).ceil() as u32;
         lods.iter_mut().for_each(|lod| lod.omega = omega);
     }

@@ -1,4 +1,4 @@
-//! Error and cost of every method, over angles.
+//! Error and cost of every ray-height method, at several angles.
 
 use std::fmt::Write as _;
 
@@ -10,56 +10,57 @@ use crate::gpu::Gpu;
 use crate::surface::{March, Measured, Method, Ray, SquareView};
 use crate::{Error, InputError};
 
-/// Linear steps, fixed over the angles, of the methods that have them.
+/// The numbers of linear steps that are tried at every angle, for methods that have linear steps.
 const STEPS: [u32; 8] = [4, 8, 16, 32, 64, 128, 256, 512];
 
-/// A method at one angle.
+/// The error and cost of a method at one angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Entry {
     /// Degrees between the eye and the square's normal.
     pub angle: f64,
-    /// The method.
+    /// The ray-height method.
     pub method: Method,
-    /// Linear steps, of methods that have them.
+    /// Number of linear steps; `None` for methods that have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steps: Option<u32>,
-    /// Error and cost.
+    /// Error and cost of the method.
     #[serde(flatten)]
     pub measured: Measured,
-    /// [`Measured::mean_samples`].
+    /// Equal to [`Measured::mean_samples`].
     pub samples_per_pixel: f64,
 }
 
-/// Every method at every angle.
+/// The error and cost of every method at every angle.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// The device's name; none of the CPU.
+    /// The device's adapter; `None` on the CPU.
     pub adapter: Option<String>,
-    /// The device's driver.
+    /// The device's driver; `None` on the CPU.
     pub driver: Option<String>,
-    /// `gpu` or `cpu`.
+    /// The processor that computed: `gpu` or `cpu`.
     pub backend: &'static str,
-    /// Texels of the map.
+    /// Width and height of the map, in texels.
     pub map: [u32; 2],
     /// Depth of the relief, in tiles of the texture.
     pub scale: f32,
     /// What lies beyond the map's edge.
     pub address: &'static str,
-    /// Degrees of the eye around the normal.
+    /// Degrees by which the eye is turned around the normal.
     pub azimuth: f64,
-    /// Of methods that have them.
+    /// Number of binary steps of the methods that have them.
     pub binary_steps: u32,
-    /// What was measured: method by method, angle by angle, with more and more steps.
+    /// The measurements: method by method, angle by angle, by increasing number of steps.
     pub entries: Vec<Entry>,
 }
 
 impl ReliefSquare {
-    /// Measures every method at each of [`Comparison::ANGLES`], with 4 to 512 linear steps where it has them; the square's
-    /// own angle and steps do not count. Without a device, the CPU traces. `progress` hears of each measurement, and how
-    /// many there are.
+    /// Measures every method at each of [`Comparison::ANGLES`], with 4 to 512 linear steps if the method has
+    /// them; the square's own angle and steps are not used. Without a device, the CPU traces. `progress` is
+    /// called for each measurement, with the method and the number of all measurements.
     ///
     /// # Errors
-    /// [`InputError`] for a picture so small that no pixel sees the square; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a picture so small that no pixel sees the square; [`crate::gpu::GpuError`] for
+    /// errors of the device.
     pub fn compare(&self, gpu: Option<&Gpu>, progress: &dyn Fn(Method, usize)) -> Result<Comparison, Error> {
         let lists = self.lists()?;
         let runs = |method: Method| if method.is_stepped() { STEPS.len() } else { 1 };
@@ -91,7 +92,7 @@ impl ReliefSquare {
         })
     }
 
-    /// The rays of each angle.
+    /// The rays of the picture at each angle.
     fn lists(&self) -> Result<[Vec<Ray>; 4], InputError> {
         let lists = Comparison::ANGLES.map(|angle| {
             let rays = SquareView { angle, ..self.view }.rays(self.material.scale, self.material.plane);
@@ -110,10 +111,11 @@ impl ReliefSquare {
 }
 
 impl Comparison {
-    /// Degrees between the eye and the square's normal.
+    /// The angles that are measured: degrees between the eye and the square's normal.
     pub const ANGLES: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 
-    /// Markdown: one row a method and step count, then the cheapest method for an error.
+    /// The measurements as Markdown: one row per method and number of steps, then the cheapest method that
+    /// reaches each error.
     pub fn table(&self) -> String {
         let mut text = format!(
             "Relief depth {}, {} × {} texels, {} addressing, {}. Errors in texels against the exact intersection; loads \
@@ -170,7 +172,7 @@ impl Entry {
     }
 }
 
-/// An error, small ones by their order.
+/// Formats an error in texels; small errors are rounded to their order of magnitude.
 fn texels(error: f64) -> String {
     match error {
         0.0 => "0".to_owned(),

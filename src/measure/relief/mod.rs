@@ -1,5 +1,5 @@
-//! Surface mapping of the caller's own maps: a picture with any method, and every method's error and cost against the exact
-//! intersection.
+//! Surface mapping of the caller's own maps: draws a picture by any ray-height method, and measures error and
+//! cost of every method against the exact intersection.
 
 mod compare;
 mod tracer;
@@ -17,64 +17,66 @@ use crate::{Error, InputError};
 pub use compare::{Comparison, Entry};
 use tracer::Tracer;
 
-/// A square of relief under a parallel projection, so that every pixel sees it at the same angle.
+/// A square of relief under a parallel projection, so that every pixel sees the square at the same angle.
 #[derive(Debug, Clone)]
 pub struct ReliefSquare {
-    /// Heights.
+    /// The height map.
     pub map: HeightMap,
-    /// Colours.
+    /// The colour map.
     pub albedo: Mips,
-    /// Normals in tangent space; else those of the heights.
+    /// The normal map, in tangent space; if it is `None`, normals are computed from the heights.
     pub normals: Option<Mips>,
-    /// Where green of the normals points.
+    /// The direction of green in the normal map.
     pub green: Green,
-    /// Self-shadow.
+    /// The self-shadow of the relief.
     pub shadow: Shadow,
     /// Whether what leaves the square is cut away.
     pub silhouette: bool,
-    /// How rays are marched.
+    /// How rays are marched through the relief.
     pub march: March,
-    /// Depth and light; the light in the square's tangent space.
+    /// Depth and light; the light's direction is in the square's tangent space.
     pub material: Material,
-    /// Where it is seen from.
+    /// The direction from which the square is seen.
     pub view: SquareView,
 }
 
-/// A picture with what was measured on the way.
+/// A picture, and the measurements made with it.
 #[derive(Debug, Clone)]
 pub struct Drawn {
     /// The picture.
     pub picture: RgbaImage,
-    /// The ray of each pixel's centre, row by row, where it sees the square.
+    /// For each pixel, row by row, the ray through its centre; `None` where the pixel does not see the
+    /// square.
     pub rays: Vec<Option<Ray>>,
-    /// What they met; default ones where there is no ray.
+    /// For each pixel, the hit of its ray; the default where there is no ray.
     pub hits: Vec<Hit>,
     /// Error and cost of these rays.
     pub measured: Measured,
-    /// How long it took.
+    /// The time that each step took.
     pub seconds: Seconds,
 }
 
-/// Wall time.
+/// Wall-clock times, in seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Seconds {
-    /// Of making acceleration maps, and compiling.
+    /// Making acceleration maps, and compiling pipelines.
     pub maps: f64,
-    /// Of tracing the rays of all pixels' centres.
+    /// Tracing the rays through all pixels' centres.
     pub rays: f64,
-    /// Of drawing.
+    /// Drawing the picture.
     pub picture: f64,
-    /// Of the exact intersections.
+    /// Computing the exact intersections.
     pub exact: f64,
 }
 
 impl ReliefSquare {
-    /// Draws the square over a linear `background` with `finer` × `finer` samples a pixel (one where the device has no room
-    /// for more), and measures the method. Without a device, the CPU does. `progress` hears what comes next, after
-    /// each of four steps.
+    /// Draws the square over a linear `background` with `finer` × `finer` samples per pixel (one if the
+    /// device has no room for more), and measures the method. Without a device, the CPU computes. `progress`
+    /// is called after each of four steps, with the step that comes next.
     ///
     /// # Errors
-    /// [`InputError`] for a view in which no pixel sees the square, and what cannot be drawn; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a view in which no pixel sees the square, and for maps that cannot be drawn;
+    /// [`crate::gpu::GpuError`] for errors of the device.
     pub fn draw(
         &self,
         method: Method,

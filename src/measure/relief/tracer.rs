@@ -1,4 +1,4 @@
-//! What traces rays and draws pictures: the adapter or the CPU.
+//! Traces rays and draws pictures, on the adapter or the CPU.
 
 use image::RgbaImage;
 
@@ -11,10 +11,10 @@ use crate::surface::relief::ReliefPass;
 use crate::surface::relief::reference::Surface;
 use crate::surface::{Address, HeightMap, Hit, March, Method, Ray, SurfaceTextures};
 
-/// Rays of one list: their hits fit a binding of any device.
+/// Largest number of rays of a list: the hits of so many rays fit a binding of any device.
 const LIST: usize = 1 << 22;
 
-/// A method with its maps, ready to trace.
+/// A method with its acceleration maps, ready to trace rays.
 pub(super) enum Tracer<'a> {
     Cpu(Method, Surface<'a>),
     Gpu(Box<Device>),
@@ -46,7 +46,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// The picture, drawn with `finer` × `finer` samples a pixel.
+    /// Draws the picture with `finer` × `finer` samples per pixel.
     pub fn picture(
         &self,
         square: &ReliefSquare,

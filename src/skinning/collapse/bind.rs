@@ -1,4 +1,4 @@
-//! Skins and influences of fewer bones.
+//! Rebinds skins and influences to the kept bones.
 
 use glam::{DAffine3, DVec3};
 
@@ -8,11 +8,11 @@ use crate::InputError;
 use crate::asset::skeleton::inverse_bind;
 use crate::asset::{Influence, Influences, Mesh, Model, Skin};
 
-/// Two joints of one bone are one where they take the vertices of a skin to places that are nearer than this, of the
-/// model's size at rest.
+/// Two joints of one bone become one if they take each vertex of a skin to places nearer to each other than
+/// this, as a fraction of the model's size at rest.
 const SAME: f64 = 1e-4;
 
-/// The model's skins and meshes, as they follow the kept bones.
+/// Rebinds the model's skins and meshes to the kept bones.
 pub(super) fn rebound(
     model: &Model,
     remap: &Remap,
@@ -41,14 +41,15 @@ pub(super) fn rebound(
     Ok((skins, meshes))
 }
 
-/// A joint of a skin: the kept bone that it follows, and what takes vertices into that one's space.
+/// A joint of a skin: the kept bone that it follows, and the transform of vertices into that bone's space.
 struct Joint {
     bone: usize,
     bind: DAffine3,
     stored: [f32; 16],
 }
 
-/// A skin whose joints are kept bones, first those that were its joints; and what each of its joints has become.
+/// Makes a skin whose joints are kept bones, those that were joints already first. Returns it with the new
+/// index of each joint of the old skin.
 fn rebound_skin(model: &Model, index: usize, remap: &Remap, rest: &Rest) -> (Skin, Vec<u32>) {
     let skin = &model.skins[index];
     let corners = corners(model, index);
@@ -88,7 +89,7 @@ fn rebound_skin(model: &Model, index: usize, remap: &Remap, rest: &Rest) -> (Ski
     (Skin { name: skin.name.clone(), bones, inverse_binds }, became)
 }
 
-/// Of a box around all vertices that follow a skin.
+/// The corners of a box around all vertices that follow a skin.
 fn corners(model: &Model, skin: usize) -> Vec<DVec3> {
     let meshes = model.meshes.iter().filter(|mesh| mesh.skin == skin);
     let places = meshes.flat_map(|mesh| &mesh.positions).map(|place| DVec3::from(place.map(f64::from)));

@@ -1,4 +1,4 @@
-//! Which bones collapse: one after another the one whose collapse is seen least.
+//! Chooses the bones that collapse: one after another, the bone whose collapse displaces vertices least.
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -15,15 +15,15 @@ use crate::asset::transform::column_major;
 use crate::asset::{Model, Skeleton};
 use crate::skinning::poses_of;
 
-/// Poses of each clip that are looked at, at most.
+/// The largest number of poses of each clip in which costs are measured.
 const POSES: usize = 64;
 
-/// What vertices stray by less than this, of the model's size, is rounding.
+/// Displacements below this fraction of the model's size are taken for rounding.
 const UNSEEN: f64 = 1e-6;
 
-/// Which bones are kept, and what becomes of the others.
+/// The kept bones, and the kept bone that each other bone follows.
 pub(super) struct Remap {
-    /// For each bone the kept one that it is, or that it follows.
+    /// For each bone, itself if it is kept, or the kept bone that it follows.
     follows: Vec<usize>,
     parents: Vec<Option<usize>>,
 }
@@ -38,7 +38,7 @@ impl Remap {
         self.follows[bone] == bone
     }
 
-    /// The kept bone that a bone is, or that it follows.
+    /// The bone itself if it is kept, or the kept bone that it follows.
     pub(super) fn follows(&self, bone: usize) -> usize {
         self.follows[bone]
     }
@@ -48,7 +48,7 @@ impl Remap {
         (0..self.follows.len()).filter(|bone| self.is_kept(*bone))
     }
 
-    /// The bones from below the nearest kept bone above, down to this one.
+    /// The bones from the one below the nearest kept bone above `bone` down to `bone` itself.
     pub(super) fn chain(&self, bone: usize) -> Vec<usize> {
         let above = |bone: &usize| self.parents[*bone].filter(|parent| !self.is_kept(*parent));
         let mut chain: Vec<usize> = std::iter::successors(Some(bone), above).collect();
@@ -56,14 +56,14 @@ impl Remap {
         chain
     }
 
-    /// For each bone the place among the kept ones of what it is, or follows.
+    /// For each bone, the index among the kept bones of the bone that it is or follows.
     pub(super) fn indices(&self) -> Vec<u32> {
         let mut places = vec![0; self.follows.len()];
         self.kept().zip(0..).for_each(|(bone, place)| places[bone] = place);
         self.follows.iter().map(|bone| places[*bone]).collect()
     }
 
-    /// The nearest kept bone above.
+    /// The nearest kept bone above a bone.
     fn kept_above(&self, bone: usize) -> Option<usize> {
         self.parents[bone].map(|parent| self.follows[parent])
     }
@@ -73,17 +73,19 @@ impl Remap {
     }
 }
 
-/// What a collapse costs: how far a vertex strays at most, then how far a vertex lies from the bone, by weight.
+/// The cost of a collapse, compared in this order: the largest displacement of a vertex, then the largest
+/// weighted distance of a vertex from the bone.
 type Cost = [f64; 2];
 
-/// What the choice looks at.
+/// The poses and the bones from which to choose.
 pub(super) struct Choice<'a> {
     rest: &'a Rest,
-    /// Of each bone, in each pose.
+    /// For each pose, the matrices of all bones.
     poses: Vec<Vec<DAffine3>>,
     /// Bones that never collapse.
     stays: Vec<bool>,
-    /// Bones whose scale is the same along all axes, but for signs, at rest and in every clip.
+    /// For each bone, whether its scale is the same along all axes except for signs, at rest and in every
+    /// clip.
     is_even: Vec<bool>,
     remap: Remap,
     costs: Vec<Option<Cost>>,
@@ -112,10 +114,10 @@ impl<'a> Choice<'a> {
         })
     }
 
-    /// Collapses bones until so many are left, or none may go.
+    /// Collapses bones until `count` are left or none may collapse.
     ///
     /// # Errors
-    /// [`InputError`] for fewer than those that stay.
+    /// [`InputError`] for a `count` below the number of bones that must be kept.
     pub(super) fn collapsed_to(mut self, count: usize) -> Result<Remap, InputError> {
         let least = self.stays.iter().filter(|stays| **stays).count();
         if count < least {
@@ -130,7 +132,8 @@ impl<'a> Choice<'a> {
         Ok(self.remap)
     }
 
-    /// Collapses the bone that costs least, if there is one. Of equal ones the last, which lies deepest in its chain.
+    /// Collapses the bone with the least cost, if there is one. Of equal costs the last bone is taken, which
+    /// is the deepest of its chain.
     fn collapse(&mut self) -> bool {
         let holds = self.holds();
         let is_candidate = |bone: &usize| !self.stays[*bone] && (self.is_even[*bone] || !holds[*bone]);
@@ -147,7 +150,8 @@ impl<'a> Choice<'a> {
         };
         let Some(best) = candidates.into_iter().rev().min_by(order) else { return false };
         let Some(into) = self.remap.kept_above(best) else { return false };
-        // Whatever hung on it hangs on another one now, and that one gets its vertices.
+        // The costs of these bones change: those below now follow another bone, and that bone receives the
+        // vertices.
         let below: Vec<usize> =
             self.remap.kept().filter(|bone| self.remap.kept_above(*bone) == Some(best)).collect();
         below.into_iter().chain([into]).for_each(|bone| self.costs[bone] = None);
@@ -155,7 +159,7 @@ impl<'a> Choice<'a> {
         true
     }
 
-    /// Whether kept bones lie below each bone.
+    /// For each bone, whether there are kept bones below it.
     fn holds(&self) -> Vec<bool> {
         let mut holds = vec![false; self.stays.len()];
         for bone in self.remap.kept() {
@@ -166,7 +170,7 @@ impl<'a> Choice<'a> {
         holds
     }
 
-    /// What it costs that a bone, and what has collapsed into it, follows the next kept bone above.
+    /// The cost of letting a bone, and what has collapsed into it, follow the next kept bone above.
     fn cost(&self, bone: usize) -> Cost {
         let Some(above) = self.remap.kept_above(bone) else { return [f64::INFINITY; 2] };
         let group: Vec<usize> =
@@ -199,7 +203,7 @@ impl<'a> Choice<'a> {
         [if stray > UNSEEN * self.rest.size { stray } else { 0.0 }, bone_radius]
     }
 
-    /// Where a bone is at rest in the space of one above it.
+    /// The rest transform of a bone in the space of a bone above it.
     fn offset(&self, above: usize, bone: usize) -> DAffine3 {
         let parent = |bone: &usize| self.remap.parents[*bone].filter(|parent| *parent != above);
         let mut chain: Vec<usize> = std::iter::successors(Some(bone), parent).collect();
@@ -212,7 +216,7 @@ fn difference(a: DAffine3, b: DAffine3) -> (DMat3, DVec3) {
     (a.matrix3 - b.matrix3, a.translation - b.translation)
 }
 
-/// All bones of poses of a clip, evenly spaced from start to end, at most [`POSES`].
+/// The matrices of all bones in poses of a clip, evenly spaced from start to end, at most [`POSES`].
 fn looked_at(skeleton: &Skeleton, clip: &Clip) -> Result<Vec<Vec<DAffine3>>, InputError> {
     let poses = poses_of(clip)?.min(POSES);
     let pose = |at: usize| {
@@ -223,7 +227,8 @@ fn looked_at(skeleton: &Skeleton, clip: &Clip) -> Result<Vec<Vec<DAffine3>>, Inp
     Ok((0..poses).into_par_iter().map(pose).collect())
 }
 
-/// Which bones never collapse: roots, the uppermost that a clip moves, end effectors, and those that are named.
+/// For each bone, whether it never collapses: roots, the uppermost bones that a clip moves, end effectors,
+/// and named bones.
 fn stays(model: &Model, options: &CollapseOptions) -> Result<Vec<bool>, InputError> {
     let bones = model.skeleton.bones();
     let mut stays: Vec<bool> = bones.iter().map(|bone| bone.parent.is_none()).collect();

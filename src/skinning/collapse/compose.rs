@@ -1,15 +1,16 @@
-//! Chains of bones as one translation, rotation and scale.
+//! Composes a chain of bones into one translation, rotation and scale.
 
 use glam::{DQuat, DVec3};
 
 use crate::asset::clip::{Clip, Interpolation, Part};
 use crate::asset::{Skeleton, Transform};
 
-/// By how much scales along the axes may differ, of the largest of a bone's.
+/// The largest difference between a bone's scales along the axes, as a fraction of the largest, that still
+/// counts as uniform scale.
 const UNEVEN: f32 = 1e-4;
 
-/// A bone in the space of one above it. The scale of all bones but the last is even: the same along all axes, but for
-/// `signs`.
+/// The transform of a bone in the space of a bone above it. All bones of the chain but the last have uniform
+/// scale: the same along all axes, except for `signs`.
 #[derive(Clone, Copy)]
 pub(super) struct Composed {
     pub translation: DVec3,
@@ -30,13 +31,13 @@ impl Composed {
         self.rotation * (self.scale * vector)
     }
 
-    /// The rotation of what turns below: an even scale passes it, and mirrors its axis.
+    /// The rotation of a bone below: uniform scale leaves it, and the signs mirror its axis.
     pub(super) fn turned(&self, below: DQuat) -> DQuat {
         let axis = self.signs.element_product() * self.signs * DVec3::new(below.x, below.y, below.z);
         self.rotation * DQuat::from_xyzw(axis.x, axis.y, axis.z, below.w)
     }
 
-    /// One more bone below, whose scale has these signs.
+    /// Adds a bone below, whose scale has these signs.
     pub(super) fn with(&self, below: &Transform, signs: DVec3) -> Self {
         let [translation, scale] =
             [below.translation, below.scale].map(|vector| DVec3::from(vector.map(f64::from)));
@@ -57,7 +58,7 @@ impl Composed {
     }
 }
 
-/// The signs of scales that are the same along all axes but for these; `None` where they are not.
+/// The signs of scales that are uniform except for these signs; `None` if the scales are not uniform.
 pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3> {
     let scales: Vec<[f32; 3]> = scales.into_iter().collect();
     let largest = scales.iter().max_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
@@ -69,12 +70,12 @@ pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3>
     scales.iter().all(is_even).then(|| DVec3::from(signs.map(f64::from)))
 }
 
-/// Those of a bone in a clip, between its keys too.
+/// The signs of a bone's scales in a clip, between its keys too; `None` if the scales are not uniform.
 pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
     signs(clip.stored_keys(clip.track(bone, Part::Scale)).values.into_iter().map(|[x, y, z, _]| [x, y, z]))
 }
 
-/// Whether a clip leaves a part of a bone as it is all the time.
+/// Whether a part of a bone, its translation, rotation or scale, is constant in a clip.
 pub(super) fn is_constant(clip: &Clip, bone: usize, part: Part) -> bool {
     let keys = clip.stored_keys(clip.track(bone, part));
     let is_spline = keys.interpolation == Interpolation::CubicSpline && !keys.times.is_empty();
@@ -85,7 +86,7 @@ pub(super) fn is_constant(clip: &Clip, bone: usize, part: Part) -> bool {
     })
 }
 
-/// Where the last bone of a chain is at rest, in the space of the bone above the first.
+/// The rest transform of the last bone of a chain, in the space of the bone above the first.
 pub(super) fn rest(skeleton: &Skeleton, chain: &[usize]) -> Transform {
     let rest = |bone: usize| skeleton.bones()[bone].rest;
     let [bone] = chain else {

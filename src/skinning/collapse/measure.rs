@@ -1,4 +1,4 @@
-//! How far a collapsed model is off.
+//! Measures how far a collapsed model is from the original.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::{Affine, Mesh, Model, Transform};
 use crate::skinning::pose::{Pose, poses_of};
 
-/// The largest of the distances in a pose, of bones and of vertices, and the sum of the squares of the latter.
+/// The largest distances of bones and of vertices in a pose, and the sum of the squares of the latter.
 #[derive(Default)]
 struct Off {
     bones: f64,
@@ -20,7 +20,7 @@ struct Off {
     squares: f64,
 }
 
-/// Looks at every clip 60 times a second; at rest, where there are none.
+/// Compares the models 60 times a second in every clip, or at rest if there are none.
 pub(super) fn error(model: &Model, collapsed: &Model, remap: &Remap) -> Result<CollapseError, InputError> {
     let mut moments: Vec<Option<(usize, f32)>> = Vec::new();
     for (index, clip) in model.clips.iter().enumerate() {

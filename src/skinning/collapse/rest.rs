@@ -1,4 +1,5 @@
-//! A model at rest: where its bones and its vertices are, and how far vertices lie from the bones that take them along.
+//! A model at rest: the transforms of its bones, the positions of its vertices, and the distances of vertices
+//! from the bones that they follow.
 
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -6,29 +7,30 @@ use crate::asset::{Model, Transform};
 
 /// A vertex that follows a bone.
 pub(super) struct Follower {
-    /// Counted over all meshes.
+    /// Index of the vertex, counted over all meshes.
     pub vertex: usize,
-    /// In the bone's space.
+    /// Position of the vertex in the bone's space.
     pub local: DVec3,
     pub weight: f64,
 }
 
 /// A model at rest.
 pub(super) struct Rest {
-    /// Each bone in its parent's space.
+    /// The transform of each bone in its parent's space.
     pub locals: Vec<DAffine3>,
-    /// Each bone in the model's space.
+    /// The transform of each bone in the model's space.
     pub models: Vec<DAffine3>,
-    /// What follows each bone.
+    /// The vertices that follow each bone.
     pub followers: Vec<Vec<Follower>>,
-    /// How far the vertices that follow each bone or one below it, and the origins of bones below it, lie from its origin;
-    /// in the model's units.
+    /// For each bone, the largest distance from its origin of the vertices that follow it or a bone below it,
+    /// and of the origins of bones below it; in the model's units.
     pub radii: Vec<f64>,
-    /// Half of the diagonal of a box around all vertices; without vertices, around the origins of bones.
+    /// Half the diagonal of a box around all vertices, or around the origins of all bones if there are no
+    /// vertices.
     pub size: f64,
 }
 
-/// In f64; the rotation of length 1.
+/// Converts a transform to f64, with its rotation normalized.
 pub(super) fn affine(transform: &Transform) -> DAffine3 {
     let [scale, translation] =
         [transform.scale, transform.translation].map(|v| DVec3::from(v.map(f64::from)));
@@ -36,7 +38,7 @@ pub(super) fn affine(transform: &Transform) -> DAffine3 {
     DAffine3::from_scale_rotation_translation(scale, rotation, translation)
 }
 
-/// A skin's inverse bind matrix.
+/// Converts a skin's inverse bind matrix to f64.
 pub(super) fn bind(matrix: &[f32; 16]) -> DAffine3 {
     DAffine3::from_mat4(glam::DMat4::from_cols_array(&matrix.map(f64::from)))
 }
@@ -68,7 +70,7 @@ impl Rest {
         Self { locals, models, followers, radii, size: low.distance(high) / 2.0 }
     }
 
-    /// What takes points from the last bone's space into that of the bone above the first.
+    /// The transform from the last bone's space to the space of the bone above the first.
     pub(super) fn offset(&self, chain: &[usize]) -> DAffine3 {
         chain.iter().fold(DAffine3::IDENTITY, |offset, bone| offset * self.locals[*bone])
     }

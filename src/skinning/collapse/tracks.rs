@@ -1,4 +1,5 @@
-//! Tracks of bones whose parents have collapsed: what the whole chain did to the space of the kept bone above it.
+//! Computes the tracks of bones whose parents have collapsed: the composed motion of the chain in the space
+//! of the kept bone above it.
 
 use glam::{DQuat, DVec3};
 
@@ -12,18 +13,19 @@ use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::finite;
 use crate::asset::{Model, Skeleton, Transform};
 
-/// How far the composed keys of a bone may move points that follow it, or bones below it, off between two keys, as each
-/// of translation, rotation and scale counts at a quarter, half and three quarters of the way; as a part of the model's
-/// size at rest, half of the diagonal of a box around it. Where it would be more, keys are added, up to 63 between two.
+/// How far interpolation between two composed keys of a bone may displace the points that follow it or bones
+/// below it, as a fraction of the model's size at rest (half the diagonal of a box around it). Translation,
+/// rotation and scale are each tested at a quarter, half and three quarters of the way. If the displacement
+/// is larger, up to 63 keys are added between the two.
 const BETWEEN_KEYS: f64 = 1e-3;
 
-/// How often a stretch between two keys is halved at most.
+/// The largest number of times that a stretch between two keys is halved.
 const HALVINGS: u32 = 6;
 
-/// Values that are nearer than this, of the larger, are equal.
+/// Two values count as equal if they differ by less than this fraction of the larger.
 const ROUNDING: f32 = 1e-6;
 
-/// A clip of the kept bones, whose skeleton this is.
+/// Makes a clip of the kept bones; `skeleton` is theirs.
 pub(super) fn clip(
     model: &Model,
     clip: &Clip,
@@ -46,7 +48,8 @@ pub(super) fn clip(
     Clip::of_stored(clip.name(), clip.duration(), tracks)
 }
 
-/// A track without keys is at rest: one whose value is another one gets a key.
+/// Gives a track without keys one key if its constant value differs from the rest transform, because tracks
+/// without keys stand for that.
 fn settled(mut keys: Keys, part: Part, rest: &Transform) -> Keys {
     if keys.times.is_empty() {
         let rest = value(rest, part);
@@ -60,7 +63,7 @@ fn settled(mut keys: Keys, part: Part, rest: &Transform) -> Keys {
     keys
 }
 
-/// On which side of a jump.
+/// The side of a jump from which a track is sampled.
 #[derive(Clone, Copy, PartialEq)]
 enum Side {
     Before,
@@ -70,10 +73,11 @@ enum Side {
 /// A kept bone in a clip, with the collapsed bones between it and the next kept bone above.
 struct Chain<'a> {
     clip: &'a Clip,
-    /// Each with the signs of its scale.
+    /// The collapsed bones, each with the signs of its scale.
     collapsed: Vec<(usize, DVec3)>,
     bone: usize,
-    /// How far points of the model are off where translation, rotation (radians) and scale are off by 1.
+    /// How far points of the model are displaced if translation, rotation (in radians) and scale are off by
+    /// 1.
     levers: [f64; 3],
     tolerance: f64,
 }
@@ -109,14 +113,14 @@ impl<'a> Chain<'a> {
         Ok([next()?, next()?, next()?])
     }
 
-    /// Tracks of these bones that are not the same all the time.
+    /// The keys of those tracks of these bones that are not constant.
     fn moving(&self, bones: impl Iterator<Item = usize>) -> Vec<Keys> {
         let tracks = bones.flat_map(|bone| Part::ALL.map(|part| (bone, part)));
         let moving = tracks.filter(|(bone, part)| !is_constant(self.clip, *bone, *part));
         moving.map(|(bone, part)| self.clip.stored_keys(self.clip.track(bone, part))).collect()
     }
 
-    /// The collapsed bones at a time.
+    /// The composed transform of the collapsed bones at a time.
     fn above(&self, time: f32, side: Side) -> Composed {
         let add = |above: Composed, (bone, signs): &(usize, DVec3)| {
             above.with(&local(self.clip, *bone, time, side), *signs)
@@ -128,7 +132,8 @@ impl<'a> Chain<'a> {
         self.above(time, side).with(&local(self.clip, self.bone, time, side), DVec3::ONE).transform()
     }
 
-    /// The bone's own keys below bones that do not move: exactly what they do, since all of it is linear in the values.
+    /// The bone's own keys mapped through collapsed bones that do not move. This is exact, because the map is
+    /// linear in the values.
     fn mapped(&self, part: Part) -> Keys {
         let above = self.above(0.0, Side::After);
         let mut keys = self.clip.stored_keys(self.clip.track(self.bone, part));
@@ -149,7 +154,8 @@ impl<'a> Chain<'a> {
         keys
     }
 
-    /// Keys at the times of all tracks of the chain, and between them where it bends.
+    /// Keys at the key times of all tracks of the chain, and between them where linear interpolation would
+    /// not suffice.
     fn sampled(&self) -> [Keys; 3] {
         let tracks = self.moving(self.collapsed.iter().map(|(bone, _)| *bone).chain([self.bone]));
         let mut times: Vec<f32> = tracks.iter().flat_map(|keys| keys.times.iter().copied()).collect();
@@ -171,7 +177,7 @@ impl<'a> Chain<'a> {
         Part::ALL.map(|part| keys(&poses, part, interpolation))
     }
 
-    /// Adds keys between two, where the straight way would be too far off.
+    /// Adds keys between two keys if linear interpolation would be too far off.
     fn halve(&self, ends: [(f32, Transform); 2], halvings: u32, poses: &mut Vec<(f32, Transform)>) {
         let [(from, start), (to, end)] = ends;
         let at = |fraction: f32| from + (to - from) * fraction;
@@ -193,7 +199,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// A part of poses; without times where it is the same in all.
+/// The keys of one part of poses; none if the part is the same in all poses.
 fn keys(poses: &[(f32, Transform)], part: Part, interpolation: Interpolation) -> Keys {
     let (times, values): (Vec<f32>, Vec<[f32; 4]>) =
         poses.iter().map(|(time, pose)| (*time, value(pose, part))).unzip();
@@ -203,7 +209,7 @@ fn keys(poses: &[(f32, Transform)], part: Part, interpolation: Interpolation) ->
     Keys { times, values, interpolation }
 }
 
-/// A part as tracks hold it.
+/// The value of a part as tracks store it.
 fn value(transform: &Transform, part: Part) -> [f32; 4] {
     let vector = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
     match part {
@@ -213,7 +219,7 @@ fn value(transform: &Transform, part: Part) -> [f32; 4] {
     }
 }
 
-/// A bone in its parent's space.
+/// The transform of a bone in its parent's space at a time.
 fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
     let of = |part| {
         let track = clip.track(bone, part);
@@ -234,7 +240,7 @@ fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
 
-/// Where a moment lies among key times, as seen from before it: at a key, a jump to it has not happened.
+/// The keyframe cursor at a time, approached from before: at a key, a jump to it has not happened yet.
 fn place_before(times: &[f32], interpolation: Interpolation, time: f32) -> KeyframeCursor {
     let first = times.partition_point(|other| *other < time);
     if times.get(first) != Some(&time) {
@@ -252,12 +258,13 @@ fn between(part: Part, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4
     slerp(start, if dot < 0.0 { end.map(|x| -x) } else { end }, fraction)
 }
 
-/// Between two values of a part: between vectors, the largest difference of scales, or radians.
+/// The distance between two values of a part: of vectors for translation, in radians for rotation, and the
+/// largest difference for scale.
 fn distance(part: Part, a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|value| glam::DVec4::from_array(value.map(f64::from)));
     match part {
         Part::Translation => a.distance(b),
-        // From the chord of q and the nearer one of ±q.
+        // The angle follows from the chord between a and the nearer of ±b.
         Part::Rotation => {
             let (near, far) = (a.distance(b).min((a + b).length()), a.distance(b).max((a + b).length()));
             4.0 * near.atan2(far)

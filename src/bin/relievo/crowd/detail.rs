@@ -1,10 +1,10 @@
-//! `--skinning` and `--mesh`
+//! Parsers of `--skinning` and `--mesh`.
 
 use relievo::InputError;
 use relievo::measure::{MeshDetail, SkinningDetail};
 use relievo::skinning::instance_lod::InstanceLod;
 
-/// Which bones vertices follow.
+/// Parses `--skinning`: the influences that vertices follow.
 pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
     let refused = || InputError::new("skinning", text, "must be full, truncate:K, fade or bounded:PIXELS");
     if let Some(pixels) = bounded("skinning", text) {
@@ -26,7 +26,7 @@ pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
     }
 }
 
-/// Which triangles meshes have.
+/// Parses `--mesh`: the triangles that meshes have.
 pub fn mesh(text: &str) -> Result<MeshDetail, InputError> {
     match bounded("mesh", text) {
         Some(pixels) => Ok(MeshDetail::Bounded { pixels: pixels? }),
@@ -35,7 +35,7 @@ pub fn mesh(text: &str) -> Result<MeshDetail, InputError> {
     }
 }
 
-/// The pixels of `bounded:PIXELS`, if that is what it is.
+/// Parses the pixels of `bounded:PIXELS`; `None` if the text does not begin with `bounded:`.
 fn bounded(field: &str, text: &str) -> Option<Result<f32, InputError>> {
     let pixels = text.strip_prefix("bounded:")?;
     let within = pixels.parse().ok().filter(|pixels| (0.0..=1e6).contains(pixels));

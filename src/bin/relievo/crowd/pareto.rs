@@ -13,10 +13,10 @@ use super::report::{self, picture};
 use crate::output::say;
 use relievo::plot::{Chart, Series};
 
-/// Files of this command with `--pareto`.
+/// The names of the files that this command writes with `--pareto`.
 pub const FILES: [&str; 3] = ["pareto.json", "pareto_max.png", "pareto_rms.png"];
 
-/// Costs and errors in pixels below which plots show nothing: nobody would see it either.
+/// The smallest cost and the smallest error in pixels that plots show; smaller ones would not be visible.
 const LEAST: [f64; 2] = [0.01, 1e-3];
 
 pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
@@ -31,7 +31,7 @@ pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
     say(format_args!("{}\n{}", table(&report.points), comparison_table(&report.comparisons).trim_end()))
 }
 
-/// The plot of the largest errors alone, for the demonstration.
+/// The plot of the largest errors only, for `relievo demo`.
 pub fn largest_errors(plan: &Plan) -> Result<image::RgbaImage, Error> {
     Ok(picture(chart(&measured(plan)?, "Largest", |error| error.max_pixels))?)
 }

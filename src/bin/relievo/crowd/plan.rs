@@ -1,4 +1,4 @@
-//! What the arguments mean, checked before a model is read.
+//! Converts and checks the arguments of `relievo crowd` before a model is read.
 
 use relievo::animation::Range;
 use relievo::animation::priority::Weights;
@@ -11,7 +11,7 @@ use crate::arguments::Backend;
 use crate::pose::{find, open, open_bare, place};
 use crate::priorities;
 
-/// Checked arguments.
+/// The checked arguments.
 pub struct Plan {
     name: String,
     model: Model,
@@ -47,7 +47,7 @@ impl Plan {
         Ok(Self { name, model, clip, backend: a.backend, lod, drawn, pareto })
     }
 
-    /// What plays.
+    /// The model and the clip to measure.
     pub fn subject(&self) -> Subject<'_> {
         Subject { name: &self.name, model: &self.model, clip: self.clip }
     }
@@ -72,7 +72,7 @@ fn crowd(a: &Crowd) -> Result<CrowdOptions, InputError> {
     })
 }
 
-/// The gate; its weights follow from the model.
+/// The gate that the arguments name. Weights of `analyze` are derived later, from the model.
 fn gate(a: &Crowd) -> Result<GateMode, InputError> {
     Ok(match a.gate {
         None | Some(Gate::Off) => GateMode::Off,

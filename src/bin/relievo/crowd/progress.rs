@@ -1,4 +1,4 @@
-//! A measurement's progress, as bars.
+//! Shows a measurement's progress as progress bars.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,13 +7,13 @@ use relievo::measure::{Listener, Progress};
 
 use crate::progress::bar;
 
-/// Shows the progress of what is measured; nothing where standard error is not a terminal.
+/// Runs a measurement and shows its progress, if standard error is a terminal.
 pub fn shown<T>(measure: impl FnOnce(Listener<'_>) -> T) -> T {
     let current: Mutex<Option<ProgressBar>> = Mutex::default();
     let measured = measure(&|Progress { part, done, of }| {
         let mut current = current.lock().unwrap_or_else(PoisonError::into_inner);
         match &*current {
-            // Steps of several threads are told in any order.
+            // Several threads report their steps in any order.
             Some(bar) if done > 0 => bar.set_position(bar.position().max(done)),
             _ => {
                 clear(&mut current);

@@ -1,4 +1,4 @@
-//! A crowd at several distances: report, table and plots.
+//! Measures a crowd at several distances, and writes the report, a table and plots.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -17,7 +17,7 @@ use crate::arguments::Backend;
 use crate::output::say;
 use relievo::plot::{Chart, Series, grid};
 
-/// Pixels of a plot.
+/// Width and height of a plot, in pixels.
 const SIZE: (u32, u32) = (800, 500);
 
 pub fn run(plan: &Plan, is_drawn: bool, context: &Context, out: &Path) -> Result<(), Error> {
@@ -35,7 +35,7 @@ pub fn run(plan: &Plan, is_drawn: bool, context: &Context, out: &Path) -> Result
     say(table(&report).trim_end())
 }
 
-/// The report, and a picture a distance where the crowd is drawn.
+/// Measures the crowd: the report, and one picture per distance if the crowd is drawn.
 pub fn measured(
     plan: &Plan,
     is_drawn: bool,
@@ -52,7 +52,7 @@ pub fn measured(
     })
 }
 
-/// What the times are taken by.
+/// The name of the clock that took the times.
 pub fn clock(timed_by: TimedBy) -> &'static str {
     match timed_by {
         TimedBy::Timestamp => "timestamp",
@@ -100,7 +100,7 @@ fn table(report: &AnimationReport) -> String {
     text
 }
 
-/// File names and what they show.
+/// The name of each plot's file, and its chart.
 fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
     let series = |name: &str, of: &dyn Fn(&AnimationRow) -> Option<f64>| Series {
         name: name.to_owned(),
@@ -141,20 +141,20 @@ fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
     ]
 }
 
-/// A chart by itself.
+/// Draws one chart.
 pub fn picture(chart: Chart) -> Result<image::RgbaImage, InputError> {
     Ok(image::DynamicImage::ImageRgb8(grid("", &[chart], 1, SIZE)?).into_rgba8())
 }
 
-/// Files of this command without `--pareto`.
+/// The names of the files that this command writes without `--pareto`.
 const FILES: [&str; 4] = ["report.json", "cost.png", "interpolations.png", "error.png"];
 
-/// The picture of a distance.
+/// The file name of the picture at a distance.
 pub fn file_name(distance: f32) -> String {
     format!("crowd_{distance}.png")
 }
 
-/// Whether this command writes files of this name.
+/// Whether this command writes a file of this name.
 pub fn is_ours(name: &str) -> bool {
     let is_picture = name.strip_prefix("crowd_").and_then(|name| name.strip_suffix(".png"));
     [&FILES[..], &pareto::FILES, &scene::FILES].concat().contains(&name)

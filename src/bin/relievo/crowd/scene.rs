@@ -1,4 +1,4 @@
-//! The whole frame against distance, with and without level of detail.
+//! Times the whole frame against distance, with and without level of detail.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::Context;
 use crate::output::say;
 use relievo::plot::{Chart, Series};
 
-/// Files of this command with `--scene`, besides pictures.
+/// The names of the files that this command writes with `--scene`, besides the pictures.
 pub const FILES: [&str; 2] = ["scene.json", "scene.png"];
 
-/// Plays the scene, and writes what it found.
+/// Measures the scene, and writes the report, the plot and the pictures.
 pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     let gpu = context.gpu()?;
     let mut staged = Staged::new(out)?;

@@ -1,4 +1,4 @@
-//! A crowd, and a plot of animation level of detail.
+//! The pictures of `relievo crowd`: a crowd, and a plot of animation level of detail.
 
 use std::time::Instant;
 
@@ -19,10 +19,10 @@ const PLOT: Entry = entry(
     "--pareto --model builtin --clip walk --instances 8 --frames 120",
 );
 
-/// How many pictures there are.
+/// Number of pictures.
 pub const COUNT: usize = 2;
 
-/// Draws both onto the page.
+/// Draws both pictures onto the page.
 pub fn draw(page: &mut Page<'_>) -> Result<(), Error> {
     page.draw("crowd", &[PICTURE], &[], |command: &Crowd, context| {
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Pictures of surface mapping.
+//! The pictures of surface mapping.
 
 use relievo::Error;
 use relievo::surface::Measured;
@@ -65,7 +65,7 @@ const COMPARISON: Entry = entry(
     "--builtin bricks --texels 256 --compare",
 );
 
-/// How many entries there are.
+/// Number of entries.
 pub const COUNT: usize = ENTRIES.len() + 1;
 
 /// Draws every entry onto the page.

@@ -1,4 +1,4 @@
-//! The built-in creature.
+//! The pictures of the built-in creature.
 
 use std::time::Instant;
 
@@ -30,7 +30,7 @@ const ENTRIES: &[Entry] = &[
     ),
 ];
 
-/// How many pictures there are.
+/// Number of pictures.
 pub const COUNT: usize = ENTRIES.len();
 
 /// Draws every entry onto the page.

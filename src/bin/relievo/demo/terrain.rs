@@ -1,4 +1,4 @@
-//! Pictures of terrain.
+//! The pictures of terrain.
 
 use relievo::Error;
 use relievo::files::write_file;
@@ -6,7 +6,7 @@ use relievo::files::write_file;
 use super::{Entry, Page, entry};
 use crate::terrain::{Pictures, Terrain};
 
-/// A picture, its configuration, and whether the valley is injected.
+/// A picture, the configuration of its terrain, and whether a valley is injected.
 struct Configured {
     entry: Entry,
     config: &'static str,
@@ -106,7 +106,7 @@ const ENTRIES: &[Configured] = &[
     ),
 ];
 
-/// How many entries there are.
+/// Number of entries.
 pub const COUNT: usize = ENTRIES.len();
 
 /// Draws every entry onto the page.

@@ -6,7 +6,7 @@ use relievo::measure::relief::Comparison;
 use relievo::plot::{Chart, Series, grid};
 use relievo::surface::{Measured, Method};
 
-/// One panel an angle.
+/// Draws one panel per angle.
 pub fn plot(comparison: &Comparison) -> Result<RgbaImage, InputError> {
     let chart = |angle: f64| {
         let series = Method::ALL.into_iter().map(|method| {
