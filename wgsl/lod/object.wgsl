@@ -6,6 +6,8 @@ const OBJECT_LEVELS = 8u;
 const OBJECT_LISTS = 16u;
 // The number of instances in a block. The instances of an object take whole blocks.
 const BLOCK = 64u;
+// What stands for the object of a block that belongs to none.
+const NO_OBJECT = 0xffffffffu;
 
 // How the instances of an object are selected and listed.
 struct LodObject {
