@@ -74,6 +74,12 @@ impl Camera {
         self.clip_from_view * self.view_from_world
     }
 
+    /// The unit vector ahead, relative to the cell: the direction from the eye into the picture for a perspective
+    /// camera, the direction of growing distance for a parallel one.
+    pub(crate) fn ahead(&self) -> Vec3 {
+        -self.view_from_world.inverse().z_axis.truncate().normalize_or(Vec3::Z)
+    }
+
     /// The position of the eye relative to the cell's corner.
     pub fn eye(&self) -> Vec3 {
         self.view_from_world.inverse().w_axis.truncate()

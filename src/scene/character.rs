@@ -9,12 +9,16 @@ use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
 use crate::lod::assign::{AssignBuffers, AssignPass};
 use crate::scene::Shares;
 use crate::scene::instances::Changed;
+use crate::scene::drawable::Drawable;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
+use crate::scene::mesh;
 use crate::scene::placement::Play;
 use crate::shared::lod::assign::AssignParams;
+use crate::shared::lod::object::SceneDraw;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::merged::Merged;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::vertex::Blend;
 use crate::skinning::{Extent, poses_of};
@@ -26,7 +30,7 @@ const EPOCH: f64 = 128.0;
 /// A character and all of its instances.
 #[derive(Debug)]
 pub(super) struct Character {
-    model: Model,
+    merged: Merged,
     set: ClipSet,
     gate: Gate,
     /// Metres of the model per unit of the gate's table.
@@ -65,7 +69,8 @@ struct Runtime {
 
 impl Character {
     /// Prepares a model that has clips, with room for `capacity` instances.
-    pub fn new(gpu: &Gpu, model: Model, capacity: usize) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize) -> Result<Self, Error> {
+        let model = &merged.model;
         let clips: Vec<_> = model.clips.iter().collect();
         let set = ClipSet::new(&clips)?;
         let radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
@@ -73,32 +78,48 @@ impl Character {
         let unit = table.unit();
         let poses = clips.iter().map(|clip| poses_of(clip)).collect::<Result<Vec<_>, _>>()?;
         let every: Vec<usize> = (0..clips.len()).collect();
-        let stray = Extent::of_model(&model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
-        let spheres = every.iter().map(|clip| BoundingSphere::in_clip(&model, *clip)).collect();
+        let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
+        let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
         let gate = Gate::Bounded(table);
         let plays = vec![Playing::REST; capacity];
-        let runtime = Runtime::new(gpu, &model, &set, &gate, capacity)?;
+        let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
         let mut changed = Changed::default();
         changed.all(capacity);
-        Ok(Self { model, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, runtime })
+        Ok(Self { merged, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, runtime })
     }
 
     /// Makes room for more instances. All of them start afresh.
     pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        self.runtime = Runtime::new(gpu, &self.model, &self.set, &self.gate, capacity)?;
+        self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         Ok(())
     }
 
-    /// Lets every instance be sampled and skinned in full in the next frame.
-    pub fn refresh(&mut self, gpu: &Gpu) -> Result<(), Error> {
-        self.grow(gpu, self.plays.len())
+    /// A sphere around an instance that plays the first clip.
+    pub fn sphere(&self) -> BoundingSphere {
+        self.spheres[0]
     }
 
-    /// The skinned meshes, one for each mesh of the model.
-    pub fn skins(&self) -> &[SkinFrame] {
-        &self.runtime.skins
+    /// The errors of all levels.
+    pub fn errors(&self) -> Vec<f32> {
+        mesh::errors(&self.merged)
+    }
+
+    /// What is drawn: each mesh, from the vertices of each instance.
+    pub fn drawables(&self, gpu: &Gpu) -> Result<Vec<Drawable>, Error> {
+        let skins = self.runtime.skins.iter().enumerate();
+        let drawable = |(index, skin): (usize, &SkinFrame)| {
+            let mesh = (&skin.mesh, &skin.clusters);
+            mesh::drawable(gpu, &self.merged, index, mesh, skin.skinned.clone(), true)
+        };
+        skins.map(drawable).collect()
+    }
+
+    /// The draws of all parts.
+    pub fn draws(&self) -> Vec<SceneDraw> {
+        let skins = self.runtime.skins.iter().enumerate();
+        skins.flat_map(|(index, skin)| mesh::part_draws(&self.merged, index, &skin.mesh)).collect()
     }
 
     /// Sets what an instance plays, and returns a sphere around it.
@@ -119,8 +140,8 @@ impl Character {
     }
 
     fn clip(&self, name: &str) -> Result<usize, InputError> {
-        let clip = self.model.clip(name).map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
-        Ok(self.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+        let clip = self.merged.model.clip(name).map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
+        Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
     }
 
     /// Prepares the assignment of levels for a layout, unless it is prepared.
@@ -186,7 +207,7 @@ impl Character {
     /// whole repetitions, so that it stays near.
     fn on_device(&self, play: &Playing) -> Instance {
         let mut start = play.start - self.epoch;
-        let duration = f64::from(self.model.clips[play.clip as usize].duration());
+        let duration = f64::from(self.merged.model.clips[play.clip as usize].duration());
         let period = duration / f64::from(play.rate.abs());
         if play.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
             start %= period;

@@ -16,6 +16,7 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::{Merged, Part, merged};
+use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 
 /// An object of a model's meshes at rest.
@@ -37,7 +38,7 @@ pub(super) fn object(gpu: &Gpu, model: &Model, capacity: usize) -> Result<Object
         let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
         draws.extend(part_draws(&merged, index, &buffers));
         let vertices = buffers.vertices.clone();
-        drawables.push(drawable(gpu, &merged, index, (&buffers, &clusters), vertices)?);
+        drawables.push(drawable(gpu, &merged, index, (&buffers, &clusters), vertices, false)?);
     }
     Ok(Object {
         kind: Kind::Mesh,
@@ -112,7 +113,8 @@ pub(super) fn drawable(
     merged: &Merged,
     index: usize,
     (buffers, clusters): (&MeshBuffers, &Clusters),
-    vertices: Buffer<crate::skinning::vertex::Vertex>,
+    vertices: Buffer<Vertex>,
+    is_skinned: bool,
 ) -> Result<Drawable, Error> {
     let mesh = &merged.model.meshes[index];
     let own: Vec<&Part> = merged.parts.iter().filter(|part| part.mesh == index).collect();
@@ -129,13 +131,10 @@ pub(super) fn drawable(
             Ok(MeshPart { surface, materials: PartMaterials::new(gpu, &merged.model, table)? })
         })
         .collect::<Result<_, Error>>()?;
-    let is_skinned = vertices.len() > mesh.vertices();
-    let params = MeshParams {
-        first_instance: 0,
-        vertices: if is_skinned { mesh.vertices() as u32 } else { 0 },
-    };
+    let params = MeshParams { first_instance: 0, stride: if is_skinned { mesh.vertices() as u32 } else { 0 } };
     Ok(Drawable::Mesh(MeshDrawable {
         params: Uniform::new(gpu, "mesh", &params)?,
+        stride: params.stride,
         vertices,
         uv: buffers.uv.clone(),
         material_of: Buffer::from_slice(gpu, "materials of vertices", &placed)?,

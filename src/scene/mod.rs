@@ -34,7 +34,7 @@ use crate::gpu::{Gpu, GpuError, Staged, StagingRing, Upload as _, compute_pass};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
-use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::terrain::mesh::GroundPoint;
 use crate::{Error, InputError};
 use handles::{Slots, stale};
 use layout::Layout;
@@ -150,6 +150,21 @@ impl Scene {
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         let object = terrain::object(&self.gpu, source)?;
         Ok(self.add(object))
+    }
+
+    /// The ground of a terrain that is drawn, at a position of the world in world units east and south of its origin: height
+    /// and normal of the triangle there. `None` where the terrain has no patch.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene, or no terrain.
+    pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
+        let ObjectId { index, generation } = terrain;
+        let object =
+            self.objects.get([index, generation]).ok_or_else(|| stale("terrain", index, generation))?;
+        match &object.kind {
+            Kind::Terrain(terrain) => Ok(terrain.point_at(x, z)),
+            _ => Err(InputError::new("terrain", "a mesh or a character", "must be terrain")),
+        }
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
@@ -444,8 +459,9 @@ impl Scene {
 
     fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
+        let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
         for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, layout, &self.light, at == 0)?;
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
         for object in self.objects.iter_mut() {

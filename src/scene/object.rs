@@ -1,11 +1,13 @@
 //! Objects: what all instances of one model or one terrain share.
 
-use crate::asset::Model;
-use crate::gpu::{Gpu, GpuError};
+use crate::Error;
+use crate::gpu::Gpu;
+use crate::lod::assign::AssignPass;
+use crate::scene::Shares;
 use crate::scene::character::Character;
 use crate::scene::drawable::Drawable;
 use crate::scene::instances::Instances;
-use crate::scene::layout::ObjectRange;
+use crate::scene::layout::{Layout, ObjectRange};
 use crate::scene::terrain::Terrain;
 use crate::shared::lod::object::SceneDraw;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -40,6 +42,48 @@ impl Object {
     /// Number of levels of detail.
     pub(crate) fn levels(&self) -> usize {
         self.errors.len()
+    }
+
+    /// World units between the samples of a terrain.
+    pub(super) fn spacing(&self) -> Option<f64> {
+        match &self.kind {
+            Kind::Terrain(terrain) => Some(terrain.spacing),
+            Kind::Mesh | Kind::Character(_) => None,
+        }
+    }
+
+    /// Makes room for twice as many instances.
+    pub(super) fn grow(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        self.instances.grow(2 * self.instances.capacity());
+        if let Kind::Character(character) = &mut self.kind {
+            character.grow(gpu, self.instances.capacity())?;
+            self.drawables = character.drawables(gpu)?;
+        }
+        Ok(())
+    }
+
+    /// Lets everything start afresh.
+    pub(super) fn refresh(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        self.instances.change_all();
+        if let Kind::Character(character) = &mut self.kind {
+            character.grow(gpu, self.instances.capacity())?;
+            self.drawables = character.drawables(gpu)?;
+        }
+        Ok(())
+    }
+
+    /// Prepares what depends on the layout.
+    pub(super) fn fit(
+        &mut self,
+        gpu: &Gpu,
+        layout: &Layout,
+        pass: &AssignPass,
+        shares: Shares,
+    ) -> Result<(), Error> {
+        match &mut self.kind {
+            Kind::Character(character) => character.fit(gpu, layout, pass, (self.range, &self.errors, shares)),
+            Kind::Mesh | Kind::Terrain(_) => Ok(()),
+        }
     }
 
     /// Number of instances that there is room for.

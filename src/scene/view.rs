@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{IVec3, Vec3};
+use glam::{DVec3, IVec2, IVec3, Mat4, Vec3, Vec4};
 
+use crate::asset::Light;
 use crate::gpu::{Buffer, Gpu, Job, Staged, Uniform, Upload as _};
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
@@ -12,7 +13,10 @@ use crate::scene::camera::{Camera, Depth};
 use crate::scene::layout::Layout;
 use crate::scene::placement::Placement;
 use crate::shared::lod::object::SceneDraw;
-use crate::shared::lod::view::{SelectView, VIEW_CAMERAS};
+use crate::shared::render::scene_terrain::TerrainView;
+use crate::shared::render::scene_view::SceneView;
+use crate::lod::{SelectView, VIEW_CAMERAS};
+use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
 
 /// How fine a view is.
@@ -41,6 +45,7 @@ pub struct View {
     mask: u16,
     casters: bool,
     select: Uniform<SelectView>,
+    drawn: Uniform<SceneView>,
     pub(crate) lists: Option<ViewLists>,
 }
 
@@ -54,6 +59,8 @@ pub(crate) struct ViewLists {
     pub lists: Buffer<u32>,
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
+    /// For each terrain, its slot among the objects and where its samples lie.
+    pub terrain: Vec<(usize, Uniform<TerrainView>)>,
     select: Job,
     list: Job,
 }
@@ -61,7 +68,8 @@ pub(crate) struct ViewLists {
 impl View {
     pub(super) fn new(gpu: &Gpu, scene: &Arc<()>, quality: Quality) -> Result<Self, Error> {
         check_pixels(quality)?;
-        let select = Uniform::new(gpu, "view", &SelectView::nothing())?;
+        let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
+        let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
             scene: scene.clone(),
             quality,
@@ -70,6 +78,7 @@ impl View {
             mask: u16::MAX,
             casters: false,
             select,
+            drawn,
             lists: None,
         })
     }
@@ -147,8 +156,14 @@ impl View {
         Ok(true)
     }
 
-    /// Stages the view's uniforms.
-    pub(super) fn stage(&self, staged: &mut Staged, blocks: u32, is_first: bool) -> Result<Camera, Error> {
+    /// Stages the view's uniforms. `spacings` gives the distance between the samples of each terrain.
+    pub(super) fn stage(
+        &self,
+        staged: &mut Staged,
+        (blocks, light): (u32, &Light),
+        spacings: &[f64],
+        is_first: bool,
+    ) -> Result<(), Error> {
         let Some(camera) = self.camera else {
             return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded").into());
         };
@@ -168,7 +183,12 @@ impl View {
             *to = lod_camera(from, camera.cell, self.quality.pixels)?;
         }
         staged.uniform(&self.select, &view)?;
-        Ok(camera)
+        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
+        let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
+        for ((_, uniform), spacing) in terrain.zip(spacings) {
+            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
+        }
+        Ok(())
     }
 
     /// Adds culling, choice of levels and lists to a compute pass.
@@ -219,10 +239,41 @@ impl ViewLists {
     }
 }
 
+impl SceneView {
+    fn new(camera: &Camera, own: &LodCamera, light: &Light) -> Self {
+        let eye = match own.perspective > 0.0 {
+            true => camera.eye().extend(1.0),
+            false => (-camera.ahead()).extend(0.0),
+        };
+        Self {
+            clip_from_world: camera.clip_from_world(),
+            eye,
+            light: light.direction.normalize().extend(light.ambient),
+            light_color: light.color,
+            side: if is_mirrored(&camera.clip_from_world()) { -1.0 } else { 1.0 },
+        }
+    }
+
+    fn nothing() -> Self {
+        let (clip_from_world, eye, light) = (Mat4::IDENTITY, Vec4::W, Vec4::Y);
+        Self { clip_from_world, eye, light, light_color: Vec3::ONE, side: 1.0 }
+    }
+}
+
+/// Where the samples of a terrain, `spacing` world units apart, lie in a view: counted from the one nearest to the eye.
+fn terrain_view(camera: &Camera, spacing: f64) -> TerrainView {
+    let corner = DVec3::from(camera.cell.map(f64::from)) * f64::from(Placement::CELL);
+    let eye = corner + camera.eye().as_dvec3();
+    // Conversion saturates; samples so far away are not drawn precisely.
+    let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
+    let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
+    TerrainView { base, rest: (place - corner).as_vec3() }
+}
+
 impl SelectView {
     /// A view that sees nothing.
     fn nothing() -> Self {
-        let camera = crate::shared::lod::view::LodCamera {
+        let camera = LodCamera {
             eye: Vec3::ZERO,
             focal: 1.0,
             ahead: Vec3::NEG_Z,
@@ -233,7 +284,7 @@ impl SelectView {
             unused_b: 0.0,
         };
         Self {
-            planes: [glam::Vec4::NEG_W; 6],
+            planes: [Vec4::NEG_W; 6],
             cameras: [camera; VIEW_CAMERAS as usize],
             cell: IVec3::ZERO,
             mask: 0,
