@@ -3,13 +3,13 @@
 use super::crowd::Crowd;
 use super::lod::Lod;
 use crate::gpu::{Buffer, Gpu, GpuError};
-use crate::shared::animation::gate_state::ClipClock;
+use crate::shared::animation::gate_state::{self, ClipClock};
 
 /// What gates know of a crowd, and keep from frame to frame. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
 pub struct GateState {
     /// One level of detail per instance, written by the host; full detail at first.
-    pub lods: Buffer<Lod>,
+    pub(crate) lods: Buffer<gate_state::Lod>,
     /// The clip clocks that [`crate::animation::clip_clock::ClipClockPass`] writes.
     pub clip_clocks: Buffer<ClipClock>,
     /// For each instance: the last clip + 1, with the highest bit set if layers were above it; a hash of what
@@ -28,10 +28,24 @@ impl GateState {
     pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
         let instances = crowd.len();
         Ok(Self {
-            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
+            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL.packed(); instances])?,
             clip_clocks: Buffer::new(gpu, "clip_clocks", instances)?,
             history: Buffer::new(gpu, "history", instances)?,
             sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
         })
+    }
+
+    /// Replaces the levels of detail of the first `lods.len()` instances, for submissions that follow.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] for more levels of detail than instances.
+    pub fn write_lods(&self, gpu: &Gpu, lods: &[Lod]) -> Result<(), GpuError> {
+        self.lods.write(gpu, &lods.iter().map(Lod::packed).collect::<Vec<_>>())
+    }
+
+    /// The levels of detail on the device, one per instance, for kernels of the caller: the struct `Lod` of the
+    /// WGSL module `animation` ([`crate::gpu::shaders::MODULES`]), 16 bytes.
+    pub fn lods(&self) -> &wgpu::Buffer {
+        self.lods.raw()
     }
 }
