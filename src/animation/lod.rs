@@ -3,8 +3,10 @@
 //! alike.
 
 use crate::InputError;
-#[cfg(feature = "gpu")]
 use crate::shared::animation::gate_state;
+/// A [`Lod`] as kernels read and write it: the struct `Lod` of the WGSL module `animation`, whose `flags` are
+/// `LOD_HIDDEN`, `LOD_FORCED` or 0.
+pub use crate::shared::animation::gate_state::Lod as PackedLod;
 pub use crate::shared::animation::gate_state::OMEGA_ONE;
 
 /// An instance's level of detail.
@@ -39,14 +41,13 @@ impl Lod {
     pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, sampling: Sampling::Gated };
 
     /// The level of detail as kernels read it.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn packed(&self) -> gate_state::Lod {
+    pub fn packed(&self) -> PackedLod {
         let flags = match self.sampling {
             Sampling::Gated => 0,
             Sampling::Hidden => gate_state::LOD_HIDDEN,
             Sampling::Forced => gate_state::LOD_FORCED,
         };
-        gate_state::Lod { omega: self.omega, allowed: self.allowed, weight: self.weight, flags }
+        PackedLod { omega: self.omega, allowed: self.allowed, weight: self.weight, flags }
     }
 }
 

@@ -92,7 +92,7 @@ impl CrowdScene {
         let Character { model, matrices, placements, fade_range, levels, blend, albedos } = *character;
         let (meshes, count) = (model.meshes.len(), placements.len());
         if meshes == 0 {
-            return Err(InputError::new("model.meshes", "none", "must be at least one").into());
+            return Err(InputError::new("model.meshes.len", 0, "must be at least 1").into());
         }
         if albedos.len() != meshes {
             let bound = format!("must be {meshes}, one a mesh");

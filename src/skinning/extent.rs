@@ -57,7 +57,7 @@ impl Extent {
     /// As [`Extent::new`], and [`InputError`] for a model without meshes.
     pub fn of_model(model: &Model, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         if model.meshes.is_empty() {
-            return Err(InputError::new("model.meshes", "none", "must be at least one"));
+            return Err(InputError::new("model.meshes.len", 0, "must be at least 1"));
         }
         let mut all = Self { center: BoundingSphere::in_clips(model).center, radius: 0.0, stray: 0.0 };
         for index in 0..model.meshes.len() {
@@ -225,7 +225,7 @@ mod tests {
             (2.0 * all.center, 2.0 * all.radius, 2.0 * all.stray)
         );
         model.meshes.clear();
-        assert_eq!(Extent::of_model(&model, &[0], 9).expect_err("refused").path, "model.meshes");
+        assert_eq!(Extent::of_model(&model, &[0], 9).expect_err("refused").path, "model.meshes.len");
     }
 
     #[test]

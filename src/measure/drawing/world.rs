@@ -43,7 +43,7 @@ impl<'a> World<'a> {
         let model = stage.subject.model;
         if model.meshes.is_empty() {
             let bound = "must be at least one that is not compressed with Draco";
-            return Err(InputError::new("model.meshes", "none", bound).into());
+            return Err(InputError::new("model.meshes.len", 0, bound).into());
         }
         let deepest = placements.origins.iter().map(|origin| origin[2]).fold(0.0, f32::max);
         let far = 2.0 * deepest + 4.0 * stage.options.size * stage.metres_a_unit;

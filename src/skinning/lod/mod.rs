@@ -112,9 +112,13 @@ impl LodView {
     /// # Errors
     /// [`InputError`] that names the field.
     pub fn validate(&self) -> Result<(), InputError> {
-        if !self.clip_from_world.is_finite() || !self.eye.is_finite() || !self.center.is_finite() {
-            let value = format!("{} {} {}", self.clip_from_world, self.eye, self.center);
-            return Err(InputError::new("view.clip_from_world, eye, center", value, "must be finite"));
+        if !self.clip_from_world.is_finite() {
+            return Err(InputError::new("view.clip_from_world", self.clip_from_world, "must be finite"));
+        }
+        for (field, position) in [("view.eye", self.eye), ("view.center", self.center)] {
+            if !position.is_finite() {
+                return Err(InputError::new(field, position, "must be finite"));
+            }
         }
         if !(self.radius >= 0.0 && self.radius.is_finite()) {
             return Err(InputError::new("view.radius", self.radius, "must be finite, and not negative"));
@@ -195,7 +199,11 @@ mod tests {
     fn views_are_checked_field_by_field() {
         assert_eq!(view().validate(), Ok(()));
         let refused = |view: LodView| view.validate().expect_err("refused").path;
-        assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.clip_from_world, eye, center");
+        assert_eq!(refused(LodView { clip_from_world: Mat4::NAN, ..view() }), "view.clip_from_world");
+        assert_eq!(refused(LodView { eye: Vec3::NAN, ..view() }), "view.eye");
+        assert_eq!(refused(LodView { center: Vec3::INFINITY, ..view() }), "view.center");
+        let error = LodView { center: Vec3::INFINITY, ..view() }.validate().expect_err("refused");
+        assert_eq!((error.value.as_str(), error.bound.as_str()), ("[inf, inf, inf]", "must be finite"));
         assert_eq!(refused(LodView { radius: -1.0, ..view() }), "view.radius");
         assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
         assert_eq!(refused(LodView { max_influences: 0, ..view() }), "view.max_influences");
