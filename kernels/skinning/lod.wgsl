@@ -9,7 +9,7 @@ struct LodParams {
     eye: vec4<f32>,
     // The unit vector ahead, with w = 1; w = 0 for a parallel view.
     ahead: vec4<f32>,
-    // A bounding sphere of the model in all of its clips: centre and radius.
+    // A bounding sphere of the model in all of its clips: center and radius.
     bounding_sphere: vec4<f32>,
     // The distance from which on vertices are rigid.
     fade_end: f32,

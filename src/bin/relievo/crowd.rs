@@ -39,7 +39,7 @@ use plan::Plan;
 ///
 /// Units: --size is the number of units in the largest extent of the model at rest. --range and --distance are in
 /// these units, as the 200 to 1700 of A are. The picture is 1080 pixels high with a vertical field of view of 60
-/// degrees. The camera looks at the crowd's centre at half its height, and is --distance units from the nearest
+/// degrees. The camera looks at the crowd's center at half its height, and is --distance units from the nearest
 /// instance, so that the whole crowd is in front of it: from the second distance of --range on, Ω is 0 for all
 /// instances.
 ///

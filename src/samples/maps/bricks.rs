@@ -36,7 +36,7 @@ impl Bricks {
     }
 }
 
-/// The brick at a point: its cell, and the point relative to its centre, in tiles.
+/// The brick at a point: its cell, and the point relative to its center, in tiles.
 fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
     let (course, y) = cell(v * COURSES as f64, COURSES);
     let shift = 0.5 * (course % 2) as f64;

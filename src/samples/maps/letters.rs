@@ -5,7 +5,7 @@ use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 /// Straight segments per curve.
 const PIECES: usize = 8;
 
-/// A line of text around a centre.
+/// A line of text around a center.
 #[derive(Debug, Clone)]
 pub struct Line {
     glyphs: Vec<Glyph>,
@@ -20,7 +20,7 @@ struct Glyph {
 }
 
 impl Line {
-    /// Sets `text` `width` wide, advances included, and stretched by `stretch` vertically; capitals are centred
+    /// Sets `text` `width` wide, advances included, and stretched by `stretch` vertically; capitals are centered
     /// on `middle`.
     pub fn new(text: &str, middle: [f64; 2], width: f64, stretch: f64) -> Self {
         let font =

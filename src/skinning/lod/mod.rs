@@ -42,7 +42,7 @@ pub struct LodView {
     pub steps: u32,
     /// The largest number of influences of instances that are seen, 1 to 8.
     pub max_influences: u32,
-    /// The centre of a sphere around the model in all of its clips.
+    /// The center of a sphere around the model in all of its clips.
     pub center: Vec3,
     /// The radius of the sphere.
     pub radius: f32,

@@ -30,7 +30,7 @@ pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
     if !low.cmple(high).all() {
         return wide;
     }
-    // The contents are centred and fill nine tenths.
+    // The contents are centered and fill nine tenths.
     let zoom = 1.8 / (high - low).max_element().max(1e-3);
     let middle = low.midpoint(high) * zoom;
     let crop = Mat4::from_translation(-middle.extend(0.0)) * Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
