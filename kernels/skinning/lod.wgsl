@@ -110,10 +110,10 @@ fn main(
             level++;
         }
         instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.max_influences, level);
-        let place = atomicAdd(&arguments[level].listed.instances, 1u);
-        drawn[level * params.stride + place] = instance;
+        let slot = atomicAdd(&arguments[level].listed.instances, 1u);
+        drawn[level * params.stride + slot] = instance;
         if may_mirror(x.xyz, y.xyz, z.xyz, params.side) {
-            atomicMax(&arguments[level].mirrored.instances, place + 1u);
+            atomicMax(&arguments[level].mirrored.instances, slot + 1u);
         }
     }
     instance_lods[instance] = instance_lod;

@@ -77,7 +77,7 @@ impl Extent {
     /// The projected distances at which a crowd may begin to fade and may be rigid
     /// ([`LodView::fade_start`](super::lod::LodView::fade_start),
     /// [`LodView::fade_end`](super::lod::LodView::fade_end)), so that no vertex is drawn more than `pixels` from
-    /// its place, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
+    /// its position, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
     /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
     pub fn fade_range(&self, projection: &Projection, pixels: f32) -> [f32; 2] {

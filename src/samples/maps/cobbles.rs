@@ -58,12 +58,12 @@ impl Cobbles {
     }
 
     /// From a point in cell `[x, y]` to the center of the stone `step` cells away.
-    fn towards(&self, [x, y]: [usize; 2], place: [f64; 2], step: [i32; 2]) -> ([usize; 2], [f64; 2]) {
+    fn towards(&self, [x, y]: [usize; 2], point: [f64; 2], step: [i32; 2]) -> ([usize; 2], [f64; 2]) {
         let wrapped =
             |index: usize, step: i32| (index + STONES).saturating_add_signed(step as isize) % STONES;
         let id = [wrapped(x, step[0]), wrapped(y, step[1])];
         let middle = self.middles[id[1] * STONES + id[0]];
-        (id, [0, 1].map(|axis| f64::from(step[axis]) + middle[axis] - place[axis]))
+        (id, [0, 1].map(|axis| f64::from(step[axis]) + middle[axis] - point[axis]))
     }
 
     fn stone(&self, u: f64, v: f64) -> Stone {
