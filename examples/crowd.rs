@@ -41,8 +41,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let projection = Projection::new(1080, 1.0, 0.1);
     let lods: Vec<Lod> = (0..count)
         .map(|at| {
-            let centre = [0.0, 0.0, 10.0 + 0.1 * at as f32];
-            let metres = projection.allowed(centre, table.radius(), 1.0);
+            let center = [0.0, 0.0, 10.0 + 0.1 * at as f32];
+            let metres = projection.allowed(center, table.radius(), 1.0);
             Lod { allowed: table.units(metres), ..Lod::FULL }
         })
         .collect();

@@ -111,11 +111,11 @@ impl Projection {
     }
 
     /// The largest distance, in metres, by which every point inside a sphere may be off while none is drawn
-    /// more than `pixels` from its place. `centre` is in the camera's space: x and y across, z along the view.
+    /// more than `pixels` from its place. `center` is in the camera's space: x and y across, z along the view.
     /// The result is 0 if a part of the sphere may reach the near plane. `docs/pixel-bounds.md` has the
     /// derivation.
-    pub fn allowed(&self, centre: [f32; 3], radius: f32, pixels: f32) -> f32 {
-        let [x, y, z] = centre.map(f64::from);
+    pub fn allowed(&self, center: [f32; 3], radius: f32, pixels: f32) -> f32 {
+        let [x, y, z] = center.map(f64::from);
         let (radius, pixels, focal) = (f64::from(radius), f64::from(pixels), f64::from(self.focal_pixels));
         let depth = z - radius;
         if depth <= f64::from(self.near) {
@@ -161,8 +161,8 @@ mod tests {
             let screen = |[x, y, z]: [f64; 3]| [x / z, y / z].map(|s| s * f64::from(projection.focal_pixels));
             for (at, to) in (0..144).flat_map(|at| (0..144).map(move |to| (at, to))) {
                 let (out, way) = (around(12, at), around(12, to));
-                let centre = [f64::from(x), 0.5, f64::from(z)];
-                let fresh: [f64; 3] = std::array::from_fn(|i| centre[i] + f64::from(radius) * out[i]);
+                let center = [f64::from(x), 0.5, f64::from(z)];
+                let fresh: [f64; 3] = std::array::from_fn(|i| center[i] + f64::from(radius) * out[i]);
                 let stale: [f64; 3] = std::array::from_fn(|i| fresh[i] + allowed * way[i]);
                 let ([ax, ay], [bx, by]) = (screen(fresh), screen(stale));
                 let off = (ax - bx).hypot(ay - by) / f64::from(pixels);

@@ -169,7 +169,7 @@ pub(crate) fn mean_omega(lods: &[Lod]) -> f64 {
 }
 
 /// Number of bones of an instance that its clip moves.
-pub(crate) fn moving_bones(gate: &Gate) -> usize {
+pub(crate) fn animated_bones(gate: &Gate) -> usize {
     gate.animated_bones().count(0)
 }
 

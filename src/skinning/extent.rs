@@ -21,7 +21,7 @@ const STRAY_MARGIN: f32 = 1.01;
 /// morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// The centre of a sphere around all vertices in all poses.
+    /// The center of a sphere around all vertices in all poses.
     pub center: Vec3,
     /// The radius of the sphere.
     pub radius: f32,
@@ -49,7 +49,7 @@ impl Extent {
     }
 
     /// The extent of all meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them. The
-    /// sphere's centre is that of [`BoundingSphere::in_clips`], from which a scene measures distances; the
+    /// sphere's center is that of [`BoundingSphere::in_clips`], from which a scene measures distances; the
     /// sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
     /// [`Extent::new`].
     ///
@@ -77,7 +77,7 @@ impl Extent {
 
     /// The projected distances at which a crowd may begin to fade and may be rigid
     /// ([`LodView::fade_range`](super::lod::LodView::fade_range)), so that no vertex is drawn more than `pixels` from
-    /// its place, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
+    /// its position, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
     /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
     pub fn fade_range(&self, projection: &Projection, pixels: f32) -> FadeRange {
@@ -148,7 +148,7 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
     all
 }
 
-/// The radius of a sphere around a centre that contains all vertices.
+/// The radius of a sphere around a center that contains all vertices.
 fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     let farthest = |moment: &Moment| {
         let points = Pose::new(model, mesh, *moment).positions(mesh);
@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(field(0, &[0], 0), "poses");
     }
 
-    /// The sphere contains every mesh, and its centre is that of the sphere that scenes use.
+    /// The sphere contains every mesh, and its center is that of the sphere that scenes use.
     #[test]
     fn models_have_one_extent() {
         let mut model = crate::samples::creature().expect("valid");
@@ -271,7 +271,7 @@ mod tests {
             for pixels in [0.25, 1.0, 8.0] {
                 let mut largest = 0.0_f32;
                 for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
-                    // A centre whose projected distance is the same.
+                    // A center whose projected distance is the same.
                     let middle = towards * (begin / (towards.z * towards.z));
                     let bounding_sphere = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
                     for (point, off) in bounding_sphere

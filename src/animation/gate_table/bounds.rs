@@ -14,7 +14,7 @@ use crate::shared::animation::gate;
 use crate::shared::animation::order::NO_PARENT;
 
 /// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
-/// needed if fractions alone decide; with 0, all moving bones get equal fractions.
+/// needed if fractions alone decide; with 0, all animated bones get equal fractions.
 const EVENNESS: f64 = 0.5;
 
 /// The factor by which a bone may exceed its fraction. The bound holds for any factor, because bones below use

@@ -83,7 +83,7 @@ impl<'a> World<'a> {
         let drawn = Buffer::new(gpu, "drawn", list_words(count, 1 + levels.distances().len()))?;
         let scene = self.scene(&skin, &drawn, index)?;
         Ok(Drawable {
-            places: skin.clusters.places(),
+            slots: skin.clusters.slots(),
             weights: self.weights(device, variant, &skin, index)?,
             lod: self.lod(variant.skinning, levels, index, (&skin, &drawn, &scene))?,
             skin,

@@ -39,7 +39,7 @@ pub struct LodView {
     pub steps: u32,
     /// The largest number of influences of instances that are seen, 1 to 8.
     pub max_influences: u32,
-    /// The centre of a sphere around the model in all of its clips.
+    /// The center of a sphere around the model in all of its clips.
     pub center: Vec3,
     /// The radius of the sphere.
     pub radius: f32,
@@ -142,8 +142,8 @@ impl LodView {
     /// side, where perspective enlarges, and is 0 beside the eye and behind it. For a point at depth z and
     /// distance d it is z²/d, because a small displacement there moves the point on screen by at most
     /// focal·displacement·d/z² pixels. In a parallel view it is the distance.
-    pub fn projected_distance(&self, place: Vec3) -> f32 {
-        let towards = place - self.eye;
+    pub fn projected_distance(&self, position: Vec3) -> f32 {
+        let towards = position - self.eye;
         let distance = towards.length();
         match self.ahead() {
             None => distance,

@@ -179,8 +179,8 @@ mod tests {
             radius: 10.0,
             levels: LevelRanges::new(distances).expect("ascending"),
         };
-        let places = [0.5, 1.5, 2.5, 3.5].map(|x| placed(Vec3::X * x, 0.0, 1.0));
-        let placements = Buffer::from_slice(&gpu, "placements", &places).expect("uploaded");
+        let placements = [0.5, 1.5, 2.5, 3.5].map(|x| placed(Vec3::X * x, 0.0, 1.0));
+        let placements = Buffer::from_slice(&gpu, "placements", &placements).expect("uploaded");
         let instance_lods = Buffer::new(&gpu, "instance_lods", 4).expect("allocated");
         let drawn = Buffer::new(&gpu, "drawn", list_words(4, 3)).expect("allocated");
         let arguments = Buffer::new(&gpu, "arguments", 30).expect("allocated");

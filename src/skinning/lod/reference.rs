@@ -12,7 +12,7 @@ use crate::skinning::picture::is_mirrored;
 pub struct Seen {
     /// How far the model's sphere extends into the view volume; negative if it is outside.
     pub depth: f32,
-    /// The projected distance of the sphere's centre.
+    /// The projected distance of the sphere's center.
     pub projected_distance: f32,
     /// The position between the beginning and the end of the fade, 0 to 1, before it is rounded to steps.
     pub fade_fraction: f32,
