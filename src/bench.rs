@@ -50,6 +50,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/palette", run: skinning::palette::bench::cases },
     Stem { name: "skinning/morph_weights", run: skinning::morph_weights::bench::cases },
     Stem { name: "skinning/morph", run: skinning::morph::bench::cases },
+    Stem { name: "skinning/pages", run: skinning::pages::bench::cases },
     Stem { name: "skinning/select", run: skinning::select::bench::cases },
     Stem { name: "skinning/skin", run: skinning::skin::bench::cases },
     // It draws pictures, so it comes last: afterwards lavapipe's timestamps are too short (see its cases).

@@ -1,10 +1,9 @@
 // Pages of skinned vertices: an instance that is seen holds a page for each cluster of its level of detail, and gives back
 // what it no longer needs. One workgroup serves all instances, so that the pages that it deals out are the same on every run.
 import package::wgsl::skinning::instance_lod::InstanceLod;
+import package::wgsl::skinning::page::NO_PAGE;
 
 const LANES = 64u;
-// The page of a cluster that has none.
-const NO_PAGE: u32 = 4294967295u;
 
 struct PageParams {
     instances: u32,

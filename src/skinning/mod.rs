@@ -18,6 +18,8 @@ pub mod levels;
 pub mod lod;
 pub mod morph;
 pub mod morph_weights;
+pub mod paged;
+pub mod pages;
 pub mod palette;
 pub mod picture;
 mod pose;

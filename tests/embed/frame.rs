@@ -139,7 +139,8 @@ impl Frame {
     pub fn read(&self, gpu: &Gpu) -> RgbaImage {
         let [width, height] = self.size;
         let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = relievo::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize).expect("room");
+        let buffer =
+            relievo::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize).expect("room");
         let from = self.resolved.as_ref().unwrap_or(&self.color);
         let run = gpu.run("readback", |encoder| {
             encoder.copy_texture_to_buffer(

@@ -27,7 +27,9 @@ fn stale_handles_are_errors() {
     scene.remove(world.creature).expect("there");
     assert_eq!(path(scene.despawn(new)), "object");
     assert_eq!(path(scene.remove(world.creature)), "object");
-    assert!(scene.spawn(world.land, Placement::default()).expect_err("refused").to_string().contains("terrain"));
+    assert!(
+        scene.spawn(world.land, Placement::default()).expect_err("refused").to_string().contains("terrain")
+    );
 }
 
 /// More instances than there is room for let an object grow: the picture is that of a scene with enough room.

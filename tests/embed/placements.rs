@@ -15,12 +15,18 @@ fn shot(gpu: &relievo::gpu::Gpu, cell: [i32; 3], mirror: bool) -> RgbaImage {
     let creature = scene.add_character(&model(), 2).expect("added");
     for (at, x) in [(0.25, -1.5), (1.0, 1.5)] {
         let scale = Vec3::new(if mirror { -1.0 } else { 1.0 }, 1.0, 1.0);
-        let placement = Placement { cell, at: Vec3::new(if mirror { -x } else { x }, 0.0, 0.0), scale, ..Default::default() };
+        let placement = Placement {
+            cell,
+            at: Vec3::new(if mirror { -x } else { x }, 0.0, 0.0),
+            scale,
+            ..Default::default()
+        };
         let angle = if mirror { -at } else { at };
         scene.spawn(creature, placement.turned(angle)).expect("room");
     }
     scene.advance(0.4).expect("finite");
-    let mut camera = Camera::looking_at(Vec3::new(0.0, 2.5, 9.0), Vec3::new(0.0, 1.5, 0.0), 0.6, [0.5, 60.0], SIZE);
+    let mut camera =
+        Camera::looking_at(Vec3::new(0.0, 2.5, 9.0), Vec3::new(0.0, 1.5, 0.0), 0.6, [0.5, 60.0], SIZE);
     camera.cell = cell;
     if mirror {
         camera.view_from_world = camera.view_from_world * Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
@@ -68,7 +74,8 @@ fn scale_counts() {
         let mut view = scene.view(Quality { pixels: 1.0 }).expect("a view");
         let eye = Vec3::new(0.0, 2.5, 12.0) * scale;
         let planes = [0.5 * scale, 60.0 * scale];
-        view.set(Camera::looking_at(eye, Vec3::new(0.0, 1.5, 0.0) * scale, 0.6, planes, SIZE)).expect("a camera");
+        view.set(Camera::looking_at(eye, Vec3::new(0.0, 1.5, 0.0) * scale, 0.6, planes, SIZE))
+            .expect("a camera");
         let frame = Frame::plain(&gpu, SIZE);
         let renderer = frame.renderer(&gpu, &scene);
         frame.shot(&mut scene, &mut view, &renderer)

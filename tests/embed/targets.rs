@@ -40,7 +40,8 @@ fn depth_of_every_kind_hides_the_same() {
     ];
     for (format, camera) in cases {
         let name = format!("{:?}", format.depth);
-        let tolerance = if name.contains("Depth16") { Tolerance { outliers: 0.02, flip: 0.01, ..SAME } } else { SAME };
+        let tolerance =
+            if name.contains("Depth16") { Tolerance { outliers: 0.02, flip: 0.01, ..SAME } } else { SAME };
         let frame = Frame::new(&gpu, format, SIZE);
         view.set(camera).expect("a camera");
         let renderer = frame.renderer(&gpu, &world.scene);
@@ -132,5 +133,6 @@ fn a_jittered_camera_is_a_camera() {
 /// The fraction of pixels that are not sky.
 pub fn coverage(picture: &image::RgbaImage) -> f64 {
     let sky = picture.get_pixel(0, 0);
-    picture.pixels().filter(|pixel| *pixel != sky).count() as f64 / f64::from(picture.width() * picture.height())
+    picture.pixels().filter(|pixel| *pixel != sky).count() as f64
+        / f64::from(picture.width() * picture.height())
 }

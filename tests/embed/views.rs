@@ -108,15 +108,13 @@ fn views_are_checked() {
     let gpu = device();
     let (mut world, other) = (World::new(&gpu, 1), World::new(&gpu, 1));
     let mut encoder = gpu.encoder("refused");
-    let mut refused = |views: &mut [&mut View]| {
-        world.scene.record(&mut encoder, views).expect_err("refused").to_string()
-    };
+    let mut refused =
+        |views: &mut [&mut View]| world.scene.record(&mut encoder, views).expect_err("refused").to_string();
     assert!(refused(&mut []).contains("views"));
     assert!(refused(&mut [&mut other.view(1.0)]).contains("views[0]"));
     let mut blind = world.scene.view(Quality::default()).expect("a view");
-    let mut refused = |views: &mut [&mut View]| {
-        world.scene.record(&mut encoder, views).expect_err("refused").to_string()
-    };
+    let mut refused =
+        |views: &mut [&mut View]| world.scene.record(&mut encoder, views).expect_err("refused").to_string();
     assert!(refused(&mut [&mut blind]).contains("camera"));
     let path = |quality: f32| other.scene.view(Quality { pixels: quality }).expect_err("refused").to_string();
     assert!(path(-1.0).contains("quality.pixels") && path(f32::NAN).contains("quality.pixels"));
@@ -129,12 +127,14 @@ fn casters_outside_the_view_are_in_the_shadow_map() {
     let gpu = device();
     let mut world = World::new(&gpu, 10);
     let mut eye = world.view(1.0);
-    let away = Camera::looking_at(Vec3::new(0.0, 6.0, 40.0), Vec3::new(0.0, 6.0, 80.0), 0.6, [0.5, 300.0], SIZE);
+    let away =
+        Camera::looking_at(Vec3::new(0.0, 6.0, 40.0), Vec3::new(0.0, 6.0, 80.0), 0.6, [0.5, 300.0], SIZE);
     eye.set(away).expect("a camera");
     let mut sun = world.scene.view(Quality::default()).expect("a view");
     sun.set_casters_only(true);
     sun.set_lod_cameras(&[away]).expect("cameras");
-    let look = glam::camera::rh::view::look_at_mat4(Vec3::new(20.0, 60.0, 20.0), Vec3::new(0.0, 0.0, -6.0), Vec3::Y);
+    let look =
+        glam::camera::rh::view::look_at_mat4(Vec3::new(20.0, 60.0, 20.0), Vec3::new(0.0, 0.0, -6.0), Vec3::Y);
     let project = Mat4::orthographic_rh(-25.0, 25.0, -25.0, 25.0, 1.0, 200.0);
     let light = Camera { view_from_world: look, clip_from_view: project, ..camera([256; 2]) };
     sun.set(light).expect("a parallel camera");
@@ -180,7 +180,10 @@ fn shadow_map(gpu: &relievo::gpu::Gpu, world: &mut World, eye: &mut View, sun: &
             color_attachments: &[],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &map.create_view(&wgpu::TextureViewDescriptor::default()),
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
                 stencil_ops: None,
             }),
             ..Default::default()

@@ -15,7 +15,8 @@ pub(crate) mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{PageBuffers, PagesPass};
 
-pub use crate::shared::skinning::pages::{NO_PAGE, PageState};
+pub use crate::shared::skinning::page::NO_PAGE;
+pub use crate::shared::skinning::pages::PageState;
 
 /// The bytes of a page.
 pub const PAGE_BYTES: usize = super::clusters::CLUSTER * size_of::<super::vertex::Vertex>();
