@@ -11,6 +11,7 @@ const FLOORS: &[&[&str]] = &[
     &["harness", "mesh"],
     &["animation", "surface", "terrain"],
     &["baseline", "skinning"],
+    &["lod"],
     &["render"],
     &["samples"],
     &["bench", "measure", "verify"],
@@ -44,38 +45,110 @@ impl Source {
         self.module().iter().skip(1).any(|name| ["verify", "bench"].contains(name))
     }
 
+    /// Whether the file is an operation's CPU reference, or a part of one.
+    fn is_reference(&self) -> bool {
+        self.module().iter().skip(2).any(|name| *name == "reference")
+    }
+
     /// The modules and items of this crate that the source names by written-out paths.
     fn paths(&self) -> Vec<Vec<String>> {
         let mut found = Vec::new();
-        for start in ["crate::", "super::"] {
-            for (at, _) in self.text.match_indices(start) {
-                let is_inside =
-                    self.text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
-                if !is_inside {
-                    found.extend(self.resolved(&self.text[at..]));
-                }
+        let mut rest = 0;
+        while let Some(at) =
+            ["crate::", "super::"].iter().filter_map(|start| self.text[rest..].find(start)).min()
+        {
+            let at = rest + at;
+            let is_inside = self.text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
+            let mut leaves = Vec::new();
+            let read = use_tree(&self.text[at..], &[], &mut leaves);
+            if !is_inside {
+                found.extend(leaves.iter().map(|leaf| self.absolute(&leaf.path)));
             }
+            rest = at + read;
         }
         found
     }
 
-    /// The paths at the beginning of a text: `crate::a::{b, c}` has two.
-    fn resolved(&self, text: &str) -> Vec<Vec<String>> {
-        let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(text.len());
-        let names: Vec<&str> = text[..end].split("::").filter(|name| !name.is_empty()).collect();
-        let up = names.iter().take_while(|name| **name == "super").count();
+    /// A path from the crate's root for one that starts with `crate`, `super`, `self` or a child of this module.
+    fn absolute(&self, path: &[String]) -> Vec<String> {
         let module = self.module();
-        let mut path: Vec<String> = if up > 0 { &module[..module.len().saturating_sub(up)] } else { &[] }
-            .iter()
-            .map(|name| (*name).to_owned())
-            .collect();
-        path.extend(names.iter().skip(up.max(1)).map(|name| (*name).to_owned()));
-        let Some(list) = text[end..].strip_prefix('{') else { return vec![path] };
-        let inside = list.split('}').next().unwrap_or_default();
-        let words =
-            inside.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty());
-        words.map(|word| path.iter().cloned().chain([word.to_owned()]).collect()).collect()
+        let up = path.iter().take_while(|name| *name == "super").count();
+        let prefix = match path.first().map(String::as_str) {
+            Some("crate") => 0,
+            _ => module.len().saturating_sub(up),
+        };
+        let names = path.iter().filter(|name| !["crate", "super", "self"].contains(&name.as_str()));
+        module[..prefix].iter().map(|name| (*name).to_owned()).chain(names.cloned()).collect()
     }
+
+    /// What `use` lines bring into this module: the path that other modules can write, and the item's own.
+    fn imports(&self) -> Vec<(String, String)> {
+        let mut leaves = Vec::new();
+        for (at, _) in self.text.match_indices("use ") {
+            if self.text[..at]
+                .lines()
+                .next_back()
+                .is_none_or(|line| ["", "pub ", "pub(crate) "].contains(&line))
+            {
+                use_tree(&self.text[at + "use ".len()..], &[], &mut leaves);
+            }
+        }
+        let module = self.module().join("::");
+        let named = |leaf: Leaf| (format!("{module}::{}", leaf.name), self.absolute(&leaf.path).join("::"));
+        leaves.into_iter().map(named).collect()
+    }
+}
+
+/// An item that a `use` names: its path, and the name that it gets.
+struct Leaf {
+    path: Vec<String>,
+    name: String,
+}
+
+/// Reads a path or a tree of paths, such as `a::{b::{c, d as e}, self}`, from the beginning of a text; appends an
+/// item for each of its ends. Returns how many bytes it read.
+fn use_tree(text: &str, prefix: &[String], found: &mut Vec<Leaf>) -> usize {
+    let spaces = |at: usize| at + text[at..].len() - text[at..].trim_start().len();
+    let word = |at: usize| {
+        let is_part = |c: char| c.is_alphanumeric() || c == '_';
+        &text[at..at + text[at..].find(|c: char| !is_part(c)).unwrap_or(text[at..].len())]
+    };
+    let mut path = prefix.to_vec();
+    let mut at = spaces(0);
+    loop {
+        if text[at..].starts_with('{') {
+            at = spaces(at + 1);
+            while at < text.len() && !text[at..].starts_with('}') {
+                // What is neither a path nor a comma is no `use`: the text is skipped a character at a time.
+                let read = use_tree(&text[at..], &path, found);
+                at = spaces(at + read);
+                let other = text[at..].chars().next().filter(|c| *c == ',' || (read == 0 && *c != '}'));
+                at = spaces(at + other.map_or(0, char::len_utf8));
+            }
+            return (at + 1).min(text.len());
+        }
+        let name = word(at);
+        if name.is_empty() {
+            if text[at..].starts_with('*') {
+                found.push(Leaf { path, name: "*".to_owned() });
+                return at + 1;
+            }
+            break;
+        }
+        at += name.len();
+        if name != "self" || path.is_empty() {
+            path.push(name.to_owned());
+        }
+        let Some(rest) = text[spaces(at)..].strip_prefix("::") else { break };
+        at = spaces(text.len() - rest.len());
+    }
+    if path.len() > prefix.len() || at > 0 {
+        let renamed = text[spaces(at)..].strip_prefix("as ").map(|rest| text.len() - rest.len());
+        let name = renamed.map(|start| word(start).to_owned()).or_else(|| path.last().cloned());
+        at = renamed.map_or(at, |start| start + word(start).len());
+        found.extend(name.map(|name| Leaf { path, name }));
+    }
+    at
 }
 
 /// Every source file below `src/` except those of the program.
@@ -126,37 +199,46 @@ fn arrows_upward(sources: &[Source]) -> BTreeSet<String> {
     found
 }
 
-/// What a domain's `mod.rs` exports: the path that users write, and the module that it comes from.
-fn exports(sources: &[Source]) -> BTreeMap<String, String> {
-    let mut found = BTreeMap::new();
-    for source in sources.iter().filter(|source| source.path.ends_with("/mod.rs")) {
-        let module = source.module().join("::");
-        for (at, _) in source.text.match_indices("pub use ") {
-            let rest = &source.text[at + "pub use ".len()..];
-            let statement = rest.split(';').next().unwrap_or_default();
-            let Some((child, items)) = statement.split_once("::") else { continue };
-            let items =
-                items.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|item| !item.is_empty());
-            for item in items {
-                found.insert(format!("{module}::{item}"), format!("{module}::{child}"));
-            }
-        }
+/// What modules import: the path that others can write, and the path of the item itself. A module's own path
+/// names the module, also where an item with the same name is imported.
+fn imports(sources: &[Source]) -> BTreeMap<String, String> {
+    let modules = modules(sources);
+    let all = sources.iter().flat_map(Source::imports);
+    all.filter(|(path, item)| path != item && !modules.contains(path)).collect()
+}
+
+fn modules(sources: &[Source]) -> BTreeSet<String> {
+    sources.iter().map(|source| source.module().join("::")).collect()
+}
+
+/// Where the item of a path is declared: follows imports, eight of them at most.
+fn origin(path: &[String], imports: &BTreeMap<String, String>) -> Vec<String> {
+    let mut path = path.to_vec();
+    for _ in 0..8 {
+        let Some((length, item)) = (1..=path.len())
+            .rev()
+            .find_map(|length| Some((length, imports.get(&path[..length].join("::"))?)))
+        else {
+            break;
+        };
+        path = item.split("::").map(str::to_owned).chain(path[length..].iter().cloned()).collect();
     }
-    found
+    path
 }
 
 /// Which rooms use which: a room is an operation's folder, or a file beside such folders.
 fn rooms(sources: &[Source]) -> BTreeMap<String, BTreeSet<String>> {
-    let modules: BTreeSet<String> = sources.iter().map(|source| source.module().join("::")).collect();
-    let exports = exports(sources);
+    let (modules, imports) = (modules(sources), imports(sources));
     let room = |module: &str| module.split("::").take(2).collect::<Vec<_>>().join("/");
     let mut rooms: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for source in sources.iter().filter(|source| !source.is_case() && source.module().len() > 1) {
         let own = room(&source.module().join("::"));
         for path in source.paths() {
-            let known = (1..=path.len()).rev().map(|length| path[..length].join("::")).find_map(|path| {
-                exports.get(&path).cloned().or_else(|| modules.contains(&path).then_some(path))
-            });
+            let path = origin(&path, &imports);
+            let known = (1..=path.len())
+                .rev()
+                .map(|length| path[..length].join("::"))
+                .find(|path| modules.contains(path));
             let other = known.map(|known| room(&known)).filter(|other| other.contains('/') && *other != own);
             rooms.entry(own.clone()).or_default().extend(other);
         }
@@ -206,7 +288,7 @@ fn a_planted_arrow_is_found() {
     let expected = [
         "asset/mesh.rs uses skinning::skin::Vertex",
         "attic is on no floor",
-        "gpu/buffer.rs uses animation",
+        "gpu/buffer.rs uses animation::Crowd",
         "terrain/height/pass.rs uses surface::map::f",
     ];
     assert_eq!(found, expected);
@@ -231,16 +313,108 @@ fn a_planted_circle_is_found() {
     assert!(found[0].starts_with("animation/compact → ") && found[1].starts_with("animation/gate → "));
 }
 
-/// The files that make an operation, below its folder.
-const FILES: [&str; 4] = ["mod", "reference", "verify", "bench"];
+#[test]
+fn nested_lists_of_uses_are_read() {
+    let text = "use crate::{\n    asset::{mesh::{Mesh, Skin as S}, clip::Clip},\n    hash::{self, *},\n};\n\
+        pub(super) fn f(a: super::Config) -> u32 { crate::hash::<u32>(a) as u32 }\n";
+    let paths: Vec<String> =
+        Source::new("terrain/pad/mod.rs", text).paths().iter().map(|path| path.join("::")).collect();
+    let expected = [
+        "asset::mesh::Mesh",
+        "asset::mesh::Skin",
+        "asset::clip::Clip",
+        "hash",
+        "hash",
+        "terrain::Config",
+        "hash",
+    ];
+    assert_eq!(paths, expected);
+    let planted =
+        [Source::new("gpu/buffer.rs", "use crate::{hash::{a, b}, animation::{crowd::Crowd, pose}};\n")];
+    let found: Vec<String> = arrows_upward(&planted).into_iter().collect();
+    assert_eq!(found, ["gpu/buffer.rs uses animation::crowd::Crowd", "gpu/buffer.rs uses animation::pose"]);
+}
 
-/// What an operation lacks. A pass of few lines may stand in `mod.rs`.
-fn lacking(operation: &str) -> Vec<String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(operation);
-    let exists = |name: &str| {
-        [format!("{name}.rs"), format!("{name}/mod.rs")].iter().any(|file| root.join(file).exists())
+/// The uses of passes by CPU references, which must also be there where no GPU is.
+fn references_that_use_a_pass(sources: &[Source]) -> Vec<String> {
+    let imports = imports(sources);
+    let mut found = Vec::new();
+    for source in sources.iter().filter(|source| source.is_reference()) {
+        let items = source.paths().into_iter().map(|path| origin(&path, &imports));
+        let of_passes = items.filter(|item| item.iter().any(|name| name == "pass"));
+        found.extend(of_passes.map(|item| format!("{} uses {}", source.path, item.join("::"))));
+    }
+    found
+}
+
+#[test]
+fn no_reference_uses_a_pass() {
+    assert_eq!(references_that_use_a_pass(&sources()), Vec::<String>::new());
+}
+
+#[test]
+fn a_planted_reference_that_uses_a_pass_is_found() {
+    let planted = [
+        Source::new("terrain/mod.rs", "pub use pad::{PadPass as Pad, surrounds};\n"),
+        Source::new(
+            "terrain/pad/mod.rs",
+            "mod pass;\npub(crate) use pass::PadPass;\npub fn surrounds() {}\n",
+        ),
+        Source::new("terrain/pad/pass.rs", "pub struct PadPass;\n"),
+        Source::new("terrain/pad/reference.rs", "use super::PadPass;\n"),
+        Source::new("terrain/wrap/reference/mod.rs", "use crate::terrain::{Pad, surrounds};\n"),
+        Source::new("terrain/blend/reference.rs", "fn f() { super::pass::count() }\n"),
+        // This use is allowed.
+        Source::new("terrain/pad/verify.rs", "use super::pass::PadPass;\n"),
+    ];
+    let expected = [
+        "terrain/pad/reference.rs uses terrain::pad::pass::PadPass",
+        "terrain/wrap/reference/mod.rs uses terrain::pad::pass::PadPass",
+        "terrain/blend/reference.rs uses terrain::blend::pass::count",
+    ];
+    assert_eq!(references_that_use_a_pass(&planted), expected);
+}
+
+/// The files that make an operation, below its folder.
+const FILES: [&str; 5] = ["mod", "reference", "pass", "verify", "bench"];
+
+/// The folders that have some of these files and no kernel, each with the reason.
+const WITHOUT_A_KERNEL: [(&str, &str); 1] =
+    [("animation/frame", "records the passes of other operations one after another")];
+
+/// What is wrong with the folders of operations, given the files below `src/` and the kernels' paths below
+/// `kernels/` without extension: a kernel without a folder, a folder that lacks a file, a folder without a
+/// kernel, and an exception that is none.
+fn misplaced(files: &[&str], kernels: &[String], exceptions: &[&str]) -> BTreeSet<String> {
+    let is_there = |operation: &str, name: &str| {
+        [format!("{operation}/{name}.rs"), format!("{operation}/{name}/mod.rs")]
+            .iter()
+            .any(|file| files.contains(&file.as_str()))
     };
-    FILES.into_iter().filter(|name| !exists(name)).map(|name| format!("{operation}/{name}.rs")).collect()
+    let mut found = BTreeSet::new();
+    for kernel in kernels {
+        if !files.iter().any(|file| file.starts_with(&format!("{kernel}/"))) {
+            found.insert(format!("kernels/{kernel}.wgsl has no folder src/{kernel}"));
+            continue;
+        }
+        let lacking = FILES.iter().filter(|name| !is_there(kernel, name));
+        found.extend(lacking.map(|name| format!("src/{kernel} has no {name}.rs")));
+    }
+    let folders: BTreeSet<String> =
+        files.iter().map(|file| file.split('/').take(2).collect::<Vec<_>>().join("/")).collect();
+    for folder in folders {
+        let is_operation = FILES[1..].iter().any(|name| is_there(&folder, name));
+        let (has_kernel, is_named) = (kernels.contains(&folder), exceptions.contains(&folder.as_str()));
+        if is_operation && !has_kernel && !is_named {
+            found.insert(format!("src/{folder} has no kernels/{folder}.wgsl"));
+        }
+        if is_named && (has_kernel || !is_operation) {
+            found.insert(format!("src/{folder} is no exception"));
+        }
+    }
+    let is_gone = |named: &&&str| !files.iter().any(|file| file.starts_with(&format!("{named}/")));
+    found.extend(exceptions.iter().filter(is_gone).map(|named| format!("src/{named} is gone")));
+    found
 }
 
 /// The kernels' paths below `kernels/`, without extension.
@@ -258,11 +432,41 @@ fn kernels() -> Vec<String> {
 }
 
 #[test]
-fn every_kernel_has_a_folder_with_all_its_files() {
-    let kernels = kernels();
+fn every_kernel_has_a_folder_with_all_its_files_and_every_folder_a_kernel() {
+    let (sources, kernels) = (sources(), kernels());
     assert!(!kernels.is_empty());
-    for kernel in kernels {
-        assert_eq!(lacking(&kernel), Vec::<String>::new());
-    }
-    assert_eq!(lacking("terrain/nothing").len(), FILES.len());
+    let files: Vec<&str> = sources.iter().map(|source| source.path.as_str()).collect();
+    let exceptions = WITHOUT_A_KERNEL.map(|(folder, _)| folder);
+    assert_eq!(misplaced(&files, &kernels, &exceptions), BTreeSet::new());
+}
+
+#[test]
+fn planted_folders_and_kernels_are_found() {
+    let complete = |folder: &str| FILES.map(|name| format!("{folder}/{name}.rs")).to_vec();
+    let mut files = complete("terrain/pad");
+    // This folder has no pass. Its reference is a folder of its own, which is allowed.
+    files.extend(complete("terrain/wrap").into_iter().filter(|file| !file.ends_with("/pass.rs")));
+    files.retain(|file| file != "terrain/wrap/reference.rs");
+    files.extend(["terrain/wrap/reference/mod.rs", "terrain/config/json.rs"].map(str::to_owned));
+    // These have no kernel.
+    files.extend(
+        ["terrain/erode/mod.rs", "terrain/erode/pass.rs", "animation/frame/pass.rs"].map(str::to_owned),
+    );
+    // The verify.rs and the bench.rs of a domain are no operations.
+    files.extend(
+        ["animation/verify/mod.rs", "animation/verify/edges.rs", "animation/bench.rs"].map(str::to_owned),
+    );
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let kernels = ["terrain/pad", "terrain/wrap", "terrain/nothing"].map(str::to_owned);
+    let found =
+        misplaced(&files, &kernels, &["animation/frame", "terrain/pad", "terrain/config", "terrain/old"]);
+    let expected = [
+        "kernels/terrain/nothing.wgsl has no folder src/terrain/nothing",
+        "src/terrain/config is no exception",
+        "src/terrain/erode has no kernels/terrain/erode.wgsl",
+        "src/terrain/old is gone",
+        "src/terrain/pad is no exception",
+        "src/terrain/wrap has no pass.rs",
+    ];
+    assert_eq!(found.iter().map(String::as_str).collect::<Vec<_>>(), expected);
 }

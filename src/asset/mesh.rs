@@ -115,11 +115,12 @@ impl Mesh {
         in_range("mesh.normals", &self.normals)?;
         in_range("mesh.tangents", &self.tangents)?;
         in_range("mesh.uv", &self.uv)?;
-        if let Some(wrong) =
-            self.influences.all().iter().find(|influence| influence.bone as usize >= skin.bones.len())
-        {
-            let bound = format!("must be below {}, the skin's bones", skin.bones.len());
-            return Err(InputError::new("mesh.influences", wrong.bone, bound));
+        for vertex in 0..vertices {
+            let mut bones = self.influences.of(vertex).iter().map(|influence| influence.bone);
+            if let Some(bone) = bones.find(|bone| *bone as usize >= skin.bones.len()) {
+                let bound = format!("must be below {}, the skin's bones", skin.bones.len());
+                return Err(InputError::new(format!("mesh.influences[{vertex}].bone"), bone, bound));
+            }
         }
         check_triangles("mesh.indices", &self.indices, vertices)?;
         self.validate_levels()?;
@@ -165,23 +166,27 @@ impl Mesh {
             let bound = format!("must be {targets}, one a target");
             return Err(InputError::new("mesh.weights.len", self.weights.len(), bound));
         }
-        in_range("mesh.weights", &[self.weights.as_slice()])?;
+        numbers_in_range(|| "mesh.weights".to_owned(), &self.weights)?;
         for (at, target) in self.targets.iter().enumerate() {
             let path = format!("mesh.targets[{at}]");
-            let last = target.vertices.last().is_some_and(|last| *last as usize >= self.vertices());
-            if last
-                || !target.vertices.is_sorted_by(|a, b| a < b)
-                || target.vertices.len() != target.deltas.len()
-            {
-                let bound = format!("must ascend below {}, with one delta each", self.vertices());
-                return Err(InputError::new(
-                    format!("{path}.vertices"),
-                    format!("[{} vertices]", target.vertices.len()),
-                    bound,
-                ));
+            let (vertices, deltas) = (&target.vertices, &target.deltas);
+            if vertices.len() != deltas.len() {
+                let bound = format!("must be {}, one a vertex", vertices.len());
+                return Err(InputError::new(format!("{path}.deltas.len"), deltas.len(), bound));
             }
-            for delta in &target.deltas {
-                in_range(&format!("{path}.deltas"), &[delta.position, delta.normal, delta.tangent])?;
+            let is_wrong = |at: &usize| {
+                vertices[*at] as usize >= self.vertices() || (*at > 0 && vertices[at - 1] >= vertices[*at])
+            };
+            if let Some(at) = (0..vertices.len()).find(is_wrong) {
+                let bound = format!("must ascend below {}", self.vertices());
+                return Err(InputError::new(format!("{path}.vertices[{at}]"), vertices[at], bound));
+            }
+            for (at, delta) in deltas.iter().enumerate() {
+                for (field, vector) in
+                    [("position", delta.position), ("normal", delta.normal), ("tangent", delta.tangent)]
+                {
+                    numbers_in_range(|| format!("{path}.deltas[{at}].{field}"), &vector)?;
+                }
             }
         }
         Ok(())
@@ -200,17 +205,23 @@ impl Mesh {
     }
 }
 
-/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`].
+/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` is that of the list of vectors.
 pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
-    for (vertex, vector) in vectors.iter().enumerate() {
-        // The comparison is false for NaN.
-        let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
-        if let Some(axis) = vector.as_ref().iter().position(|value| !is_within(value)) {
+    (vectors.iter().enumerate())
+        .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
+}
+
+/// As [`in_range`], for one list of numbers.
+fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Result<(), InputError> {
+    // The comparison is false for NaN.
+    let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
+    match numbers.iter().position(|value| !is_within(value)) {
+        None => Ok(()),
+        Some(at) => {
             let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
-            return Err(InputError::new(format!("{path}[{vertex}][{axis}]"), vector.as_ref()[axis], bound));
+            Err(InputError::new(format!("{}[{at}]", path()), numbers[at], bound))
         }
     }
-    Ok(())
 }
 
 /// Normals for vertices that have none: the normals of adjacent triangles, weighted by area. A vertex without
@@ -368,16 +379,51 @@ mod tests {
         assert_eq!(refused(&|mesh| mesh.indices.truncate(2)), "mesh.indices.len");
         assert_eq!(refused(&|mesh| mesh.indices[1] = 3), "mesh.indices[1]");
         assert_eq!(refused(&|mesh| mesh.weights.clear()), "mesh.weights.len");
-        assert_eq!(refused(&|mesh| mesh.targets[0].vertices[0] = 3), "mesh.targets[0].vertices");
-        assert_eq!(
-            refused(&|mesh| mesh.targets[0].deltas[0].normal[0] = f32::NAN),
-            "mesh.targets[0].deltas[1][0]"
-        );
-        let far = |mesh: &mut Mesh| {
-            let given = vec![Influence { bone: 2, weight: 1.0 }];
-            mesh.influences = Influences::new("w", 3, vec![given; 3]).expect("valid");
+    }
+
+    #[test]
+    fn targets_and_influences_are_refused_with_their_place() {
+        let refused = |change: &dyn Fn(&mut Mesh)| {
+            let (mut mesh, skins) = triangle();
+            change(&mut mesh);
+            mesh.validate(&skins).expect_err("refused")
         };
-        assert_eq!(refused(&far), "mesh.influences");
+        let far = |mesh: &mut Mesh| {
+            let near = vec![Influence { bone: 0, weight: 1.0 }];
+            let far = vec![Influence { bone: 2, weight: 1.0 }];
+            mesh.influences = Influences::new("w", 3, vec![near.clone(), far, near]).expect("valid");
+        };
+        let doubled = |mesh: &mut Mesh| {
+            let delta = mesh.targets[0].deltas[0];
+            (mesh.targets[0].vertices, mesh.targets[0].deltas) = (vec![1, 1], vec![delta; 2]);
+        };
+        let range = "must be finite and within ±1e18";
+        let cases: [(&dyn Fn(&mut Mesh), &str, &str, &str); 6] = [
+            (&far, "mesh.influences[1].bone", "2", "must be below 2, the skin's bones"),
+            (&|mesh| mesh.weights[0] = f32::NAN, "mesh.weights[0]", "NaN", range),
+            (
+                &|mesh| mesh.targets[0].deltas.clear(),
+                "mesh.targets[0].deltas.len",
+                "0",
+                "must be 1, one a vertex",
+            ),
+            (
+                &|mesh| mesh.targets[0].vertices[0] = 3,
+                "mesh.targets[0].vertices[0]",
+                "3",
+                "must ascend below 3",
+            ),
+            (&doubled, "mesh.targets[0].vertices[1]", "1", "must ascend below 3"),
+            (
+                &|mesh| mesh.targets[0].deltas[0].normal[1] = f32::NAN,
+                "mesh.targets[0].deltas[0].normal[1]",
+                "NaN",
+                range,
+            ),
+        ];
+        for (change, path, value, bound) in cases {
+            assert_eq!(refused(change), InputError::new(path, value, bound));
+        }
     }
 
     #[test]

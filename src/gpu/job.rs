@@ -5,13 +5,13 @@ use super::{Gpu, GpuError};
 
 /// One dispatch with its pipeline and bind groups.
 #[derive(Debug, Clone)]
-pub struct Step {
+pub(crate) struct Step {
     /// The pipeline.
     pub(crate) kernel: Kernel,
     /// Its bind groups, in order.
     pub(crate) groups: Vec<Group>,
     /// Workgroups along x, y and z.
-    pub workgroups: [u32; 3],
+    pub(crate) workgroups: [u32; 3],
 }
 
 impl Step {
@@ -33,7 +33,7 @@ impl Step {
 
 /// The number of invocations after which [`Job::run`] submits: some tenths of a second of work on a slow GPU.
 /// Operating systems abort work that takes seconds.
-pub const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
+const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
 
 /// Dispatches that belong together: prepared once, recorded as often as wanted without allocation.
 #[derive(Debug, Clone)]
@@ -72,12 +72,17 @@ impl Job {
         self.steps.iter().for_each(|step| step.dispatch(pass));
     }
 
-    /// Runs all steps and waits. Long jobs are split into several submissions, each with at most `most`
-    /// invocations (see [`INVOCATIONS_A_SUBMISSION`]) or one step.
+    /// Runs all steps and waits. A long job is split into several submissions, so that none takes seconds of a
+    /// slow GPU: operating systems abort such work.
     ///
     /// # Errors
     /// Errors of the device.
-    pub fn run(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
+    pub fn run(&self, gpu: &Gpu) -> Result<(), GpuError> {
+        self.run_split(gpu, INVOCATIONS_A_SUBMISSION)
+    }
+
+    /// As [`Job::run`], in submissions of at most `most` invocations or of one step.
+    fn run_split(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
         self.submissions(most).into_iter().try_for_each(|steps| {
             gpu.run(self.label, |encoder| {
                 let mut pass = compute_pass(encoder, self.label);
@@ -86,8 +91,8 @@ impl Job {
         })
     }
 
-    /// The steps of each submission of [`Job::run`].
-    pub fn submissions(&self, most: u64) -> Vec<&[Step]> {
+    /// The steps of each submission of at most `most` invocations or of one step.
+    fn submissions(&self, most: u64) -> Vec<&[Step]> {
         let mut submissions = Vec::new();
         let (mut start, mut work) = (0, 0_u64);
         for (index, step) in self.steps.iter().enumerate() {
@@ -143,4 +148,40 @@ impl IndirectJob {
 /// Begins a compute pass. One pass for many jobs is cheaper than one for each.
 pub fn compute_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, label: &'static str) -> wgpu::ComputePass<'a> {
     encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{INVOCATIONS_A_SUBMISSION, Step};
+    use crate::gpu::{Gpu, Options};
+    use crate::terrain::fields::Fields;
+    use crate::terrain::thermal::{Thermal, ThermalPass};
+
+    #[test]
+    fn long_jobs_go_to_the_device_in_pieces() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let pass = ThermalPass::new(&gpu).expect("compiled");
+        let (width, iterations) = (67, 20);
+        let heights: Vec<i32> =
+            (0..width * width).map(|index: u32| (index.wrapping_mul(0x9e37_79b9) >> 8) as i32).collect();
+        let run = |most| {
+            let [windows, other] = [0, 1].map(|_| Fields::new(&gpu, "windows", width, 1).expect("allocated"));
+            windows.heights.write(&gpu, &heights).expect("written");
+            let params = Thermal { iterations, ..Thermal::default() };
+            let job = pass.prepare(&gpu, params, 1.0, &windows, &other).expect("prepared");
+            let pieces = job.submissions(most);
+            assert_eq!(pieces.iter().map(|steps| steps.len()).sum::<usize>(), iterations as usize);
+            let invocations = |steps: &[Step]| {
+                steps.iter().map(|step| 64 * step.workgroups.iter().product::<u32>()).sum::<u32>()
+            };
+            assert!(pieces.iter().all(|steps| steps.len() == 1 || u64::from(invocations(steps)) <= most));
+            job.run_split(&gpu, most).expect("run");
+            (pieces.len(), windows.cropped(iterations).heights.read_blocking(&gpu).expect("read"))
+        };
+        let whole = run(INVOCATIONS_A_SUBMISSION);
+        let (some, one) = (run(40_000), run(1));
+        assert_eq!((whole.0, one.0), (1, 20));
+        assert!((2..20).contains(&some.0), "{} submissions", some.0);
+        assert!(whole.1 == some.1 && whole.1 == one.1);
+    }
 }

@@ -136,11 +136,11 @@ impl LodOptions {
         self.crowd.validate()?;
         self.gate.validate()?;
         if self.distances.is_empty() {
-            return Err(InputError::new("distance", "nothing", "must be at least one"));
+            return Err(InputError::new("distances.len", 0, "must be at least 1"));
         }
-        self.distances
-            .iter()
-            .try_for_each(|distance| check("distance", (*distance).into(), f64::from(NEAR)..=1e6))
+        (self.distances.iter().enumerate()).try_for_each(|(at, distance)| {
+            check(&format!("distances[{at}]"), (*distance).into(), f64::from(NEAR)..=1e6)
+        })
     }
 }
 
@@ -202,11 +202,11 @@ impl DrawnOptions {
             SkinningDetail::Truncate { max_influences } => {
                 crate::skinning::instance_lod::InstanceLod::truncate(max_influences).map(drop)?;
             }
-            SkinningDetail::Bounded { pixels } => check("skinning", pixels.into(), 0.0..=1e6)?,
+            SkinningDetail::Bounded { pixels } => check("skinning.pixels", pixels.into(), 0.0..=1e6)?,
             SkinningDetail::Full | SkinningDetail::Fade => {}
         }
         match self.mesh {
-            MeshDetail::Bounded { pixels } => check("mesh", pixels.into(), 0.0..=1e6),
+            MeshDetail::Bounded { pixels } => check("mesh.pixels", pixels.into(), 0.0..=1e6),
             MeshDetail::Full => Ok(()),
         }
     }
@@ -240,7 +240,7 @@ impl ParetoOptions {
     pub fn validate(&self) -> Result<(), InputError> {
         self.crowd.validate()?;
         GateMode::SkipPeriod { period: self.period, weights: self.weights }.validate()?;
-        check("tall", self.tall_pixels.into(), 1.0..=1e4)
+        check("tall_pixels", self.tall_pixels.into(), 1.0..=1e4)
     }
 }
 

@@ -80,9 +80,10 @@ pub fn grid(title: &str, charts: &[Chart], columns: usize, size: (u32, u32)) -> 
     }
     let rows = charts.len().div_ceil(columns).max(1);
     let least = (LEAST.0 * columns as u32, LEAST.1 * rows as u32);
-    if size.0 < least.0 || size.1 < least.1 || size.0 > 16_384 || size.1 > 16_384 {
-        let bound = format!("must be {}x{} to 16384x16384 pixels", least.0, least.1);
-        return Err(InputError::new("size", format!("{}x{}", size.0, size.1), bound));
+    for (field, edge, least) in [("size.0", size.0, least.0), ("size.1", size.1, least.1)] {
+        if !(least..=16_384).contains(&edge) {
+            return Err(InputError::new(field, edge, format!("must be in {least}..=16384 pixels")));
+        }
     }
     let (width, height) = (size.0 * FINER, size.1 * FINER);
     let mut pixels = vec![u8::MAX; 3 * width as usize * height as usize];
@@ -182,8 +183,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_is_refused_and_nothing_is_drawn_as_nothing() {
-        assert_eq!(Chart::default().draw((100, 900)).expect_err("refused").path, "size");
-        assert_eq!(Chart::default().draw((1200, 1 << 20)).expect_err("refused").path, "size");
+        assert_eq!(Chart::default().draw((100, 900)).expect_err("refused").path, "size.0");
+        assert_eq!(Chart::default().draw((1200, 1 << 20)).expect_err("refused").path, "size.1");
         assert_eq!(grid("", &[], 0, (800, 600)).expect_err("refused").path, "columns");
         let odd = series("odd", &[(f64::NAN, 1.0), (1.0, f64::INFINITY), (-1.0, 2.0)]);
         for series in [vec![], vec![odd]] {

@@ -101,7 +101,7 @@ impl Materials {
     pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[Texture]) -> Result<Self, Error> {
         if zones.is_empty() || zones.len() != textures.len() {
             let bound = format!("must be one for each of the {} zones", zones.len());
-            return Err(InputError::new("textures", textures.len(), bound).into());
+            return Err(InputError::new("textures.len", textures.len(), bound).into());
         }
         let range = |zone: &Zone| zones::Zone { min: zone.min as f32, max: zone.max as f32 };
         let ranges: Vec<_> = zones.iter().map(range).collect();

@@ -34,7 +34,7 @@ pub use at_rest::at_rest;
 pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;
-pub use instance_lod::InstanceLod;
+pub use instance_lod::{FadeRange, InstanceLod};
 pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};
 pub use merged::{Merged, merged};
 pub use pose::poses_of;

@@ -45,4 +45,5 @@ impl HeightBatch {
 }
 
 /// What helps where maps are larger than a binding.
-pub(crate) const REMEDY: &str = "use smaller or fewer height maps, or compute on the CPU (--backend cpu)";
+pub(crate) const REMEDY: &str =
+    "use smaller or fewer height maps, or compute on the CPU with the functions in the `reference` modules";

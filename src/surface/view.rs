@@ -36,11 +36,14 @@ impl SquareView {
             return refuse("azimuth", self.azimuth.to_string(), "must be a finite number of degrees");
         }
         if !(1e-3..=64.0).contains(&self.tiles) {
-            return refuse("tile", self.tiles.to_string(), "must be in 0.001..=64");
+            return refuse("tiles", self.tiles.to_string(), "must be in 0.001..=64");
         }
-        if self.size.iter().any(|edge| !(1..=8192).contains(edge)) {
-            let size = format!("{}x{}", self.size[0], self.size[1]);
-            return refuse("size", size, "must be at least 1x1 and at most 8192x8192 pixels");
+        if let Some(axis) = self.size.iter().position(|edge| !(1..=8192).contains(edge)) {
+            return refuse(
+                &format!("size[{axis}]"),
+                self.size[axis].to_string(),
+                "must be in 1..=8192 pixels",
+            );
         }
         Ok(())
     }
@@ -96,7 +99,7 @@ impl SquareView {
         self.uv(x, y).map(|uv| Ray::new(uv.map(|axis| axis as f32), view, scale, plane))
     }
 
-    /// The rays through the centres of all pixels, row by row.
+    /// The rays through the centers of all pixels, row by row.
     pub fn rays(&self, scale: f32, plane: f32) -> Vec<Option<Ray>> {
         let [width, height] = self.size;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -119,11 +122,13 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 /// angle above the square, both in degrees.
 ///
 /// # Errors
-/// [`InputError`] for an elevation outside 0 to 90 degrees.
+/// [`InputError`] that names `light.azimuth` where it is not finite, and `light.elevation` outside 0 to 90 degrees.
 pub fn towards_light(azimuth: f64, elevation: f64) -> Result<[f64; 3], InputError> {
-    if !azimuth.is_finite() || !(0.0..=90.0).contains(&elevation) {
-        let bound = "must be a finite azimuth, and an elevation in 0..=90 degrees";
-        return Err(InputError::new("light", format!("{azimuth},{elevation}"), bound));
+    if !azimuth.is_finite() {
+        return Err(InputError::new("light.azimuth", azimuth, "must be a finite number of degrees"));
+    }
+    if !(0.0..=90.0).contains(&elevation) {
+        return Err(InputError::new("light.elevation", elevation, "must be in 0..=90 degrees"));
     }
     let view = SquareView { angle: 90.0 - elevation, azimuth, tiles: 1.0, size: [1, 1] };
     Ok(view.towards())
@@ -144,8 +149,8 @@ mod tests {
         let [left, top] = [200.0 - edge / 2.0 + 0.01, 150.0 - edge / 2.0 + 0.01];
         let corner = view.uv(left, top).expect("inside");
         assert!(corner[0] < 0.001 && corner[1] < 0.001, "{corner:?}");
-        let centre = view.uv(200.0, 150.0).expect("inside");
-        assert!((centre[0] - 1.5).abs() < 1e-12 && (centre[1] - 1.5).abs() < 1e-12);
+        let center = view.uv(200.0, 150.0).expect("inside");
+        assert!((center[0] - 1.5).abs() < 1e-12 && (center[1] - 1.5).abs() < 1e-12);
         assert_eq!(view.uv(left - 1.0, top), None);
     }
 
@@ -182,8 +187,15 @@ mod tests {
             assert_eq!(field(view(angle, 0.0)), "angle");
         }
         assert_eq!(field(view(0.0, f64::INFINITY)), "azimuth");
-        assert_eq!(field(SquareView { tiles: 0.0, ..view(0.0, 0.0) }), "tile");
-        assert_eq!(field(SquareView { size: [0, 4], ..view(0.0, 0.0) }), "size");
-        assert!(towards_light(0.0, 91.0).is_err());
+        assert_eq!(field(SquareView { tiles: 0.0, ..view(0.0, 0.0) }), "tiles");
+        assert_eq!(field(SquareView { size: [0, 4], ..view(0.0, 0.0) }), "size[0]");
+        for (azimuth, elevation, path, value, bound) in [
+            (0.0, 91.0, "light.elevation", "91", "must be in 0..=90 degrees"),
+            (0.0, f64::NAN, "light.elevation", "NaN", "must be in 0..=90 degrees"),
+            (f64::INFINITY, 91.0, "light.azimuth", "inf", "must be a finite number of degrees"),
+        ] {
+            let expected = crate::InputError::new(path, value, bound);
+            assert_eq!(towards_light(azimuth, elevation), Err(expected));
+        }
     }
 }

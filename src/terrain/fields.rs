@@ -42,7 +42,7 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
 
 /// What helps where fields are larger than a binding.
 pub(crate) const REMEDY: &str = "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer \
-    iterations of erosion), or compute on the CPU (--backend cpu)";
+    iterations of erosion), or compute on the CPU with the functions in the `reference` modules";
 
 impl Fields {
     /// Allocates fields of zeros.

@@ -6,7 +6,7 @@
 //! and level.
 
 use crate::Error;
-use crate::gpu::{Buffer, Gpu, GpuError, INVOCATIONS_A_SUBMISSION};
+use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::DespikePass;
@@ -163,7 +163,7 @@ impl Generator {
         }
         if let Border::Blend(width) = config.border {
             let job = self.border.prepare(gpu, width, &neighbours(patches), &parts)?;
-            job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
+            job.run(gpu)?;
         }
         Ok(parts)
     }
@@ -204,7 +204,7 @@ impl Generator {
         if let Some(thermal) = thermal {
             let scale = self.recipe.config.terrain_scale;
             let job = self.thermal.prepare(gpu, thermal, scale, &current, &other)?;
-            job.run(gpu, INVOCATIONS_A_SUBMISSION)?;
+            job.run(gpu)?;
             let width = current.cropped(thermal.iterations).width;
             let result = if thermal.iterations % 2 == 0 { current } else { other };
             current = Fields { width, ..result };

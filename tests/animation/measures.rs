@@ -35,7 +35,7 @@ fn measured(gate: GateMode) -> AnimationReport {
 fn a_gate_that_is_off_saves_nothing_and_errs_nowhere() {
     let report = measured(GateMode::Off);
     assert_eq!((report.model.as_str(), report.backend, report.adapter), ("rig", "cpu", None));
-    let (bones, moving) = (report.bones as u64, report.moving_bones as u64);
+    let (bones, moving) = (report.bones as u64, report.animated_bones as u64);
     assert!(bones > moving && moving > 0);
     for row in &report.distances {
         assert_eq!((row.interpolated, row.skipped, row.fraction), (moving * 5 * 12, 0, 1.0));
@@ -150,14 +150,14 @@ fn options_out_of_their_bounds_are_refused() {
     assert_eq!(lod(&|options| options.crowd.frames = 0), "frames");
     assert_eq!(lod(&|options| options.crowd.rate = f64::NAN), "rate");
     assert_eq!(lod(&|options| options.crowd.range.max = 100.0), "range.max");
-    assert_eq!(lod(&|options| options.distances.clear()), "distance");
-    assert_eq!(lod(&|options| options.distances[1] = 0.5), "distance");
+    assert_eq!(lod(&|options| options.distances.clear()), "distances.len");
+    assert_eq!(lod(&|options| options.distances[1] = 0.5), "distances[1]");
     assert_eq!(lod(&|options| options.gate = GateMode::Bounded { pixels: -1.0 }), "pixels");
     let missing = Subject { clip: model.clips.len(), ..subject(&model) };
     let of_options = options(GateMode::Off);
     assert_eq!(refused(animation(None, missing, &of_options, &|_| ())), "subject.clip");
     let tall = ParetoOptions { tall_pixels: 0.0, ..ParetoOptions::default() };
-    assert_eq!(refused(pareto(subject(&model), &tall, &|_| ())), "tall");
+    assert_eq!(refused(pareto(subject(&model), &tall, &|_| ())), "tall_pixels");
     let few = LodOptions { crowd: CrowdOptions { frames: 4, ..of_options.crowd }, ..of_options };
     let full = DrawnOptions { skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
     assert_eq!(refused(drawn(&gpu(), subject(&model), &few, &full, &|_| ())), "frames");

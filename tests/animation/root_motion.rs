@@ -1,6 +1,7 @@
 //! Root motion against the poses that it was taken from.
 
 use glam::{DAffine3, DQuat, DVec3};
+use relievo::InputError;
 use relievo::animation::RootMotion;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
@@ -284,19 +285,23 @@ fn what_cannot_be_taken_is_refused() {
         RootMotion::extract(skeleton, clip, bone, taken).expect_err("refused").path
     };
     let nothing = Taken { horizontal: false, vertical: false, yaw: false };
-    assert_eq!(refused(&skeleton, &clip, 1, nothing), "taken");
-    assert_eq!(refused(&skeleton, &clip, 1, Taken { horizontal: false, vertical: true, yaw: true }), "taken");
+    assert_eq!(refused(&skeleton, &clip, 1, nothing), "taken.horizontal");
+    let tilted = Taken { horizontal: false, vertical: true, yaw: true };
+    let error = RootMotion::extract(&skeleton, &clip, 1, tilted).expect_err("refused");
+    let bound = "must be true unless taken.vertical is, and taken.yaw is not";
+    assert_eq!(error, InputError::new("taken.horizontal", false, bound));
     assert_eq!(refused(&skeleton, &clip, 3, YAW), "bone");
     assert_eq!(refused(&straight().0, &clip, 0, YAW), "clip.bones");
     // The bone above the root moves.
     assert_eq!(refused(&skeleton, &clip, 2, YAW), "clip.bones[1]");
     // Scales above the root that are non-uniform, mirrored, or zero.
-    for (scale, yaw, is_refused) in [
-        ([1.0, 2.0, 1.0], true, true),
-        ([1.0, 2.0, 1.0], false, false),
-        ([-1.0, 1.0, 1.0], true, true),
-        ([-1.0, 1.0, 1.0], false, false),
-        ([1.0, 0.0, 1.0], false, true),
+    let of_yaw = "must be even and not mirror, since a yaw is taken below it";
+    for (scale, yaw, bound) in [
+        ([1.0, 2.0, 1.0], true, Some(of_yaw)),
+        ([1.0, 2.0, 1.0], false, None),
+        ([-1.0, 1.0, 1.0], true, Some(of_yaw)),
+        ([-1.0, 1.0, 1.0], false, None),
+        ([1.0, 0.0, 1.0], false, Some("must not make the bones below it flat")),
     ] {
         let mut bones = skeleton.bones().to_vec();
         bones[0].rest.scale = scale;
@@ -307,10 +312,18 @@ fn what_cannot_be_taken_is_refused() {
         };
         let clip = Clip::new("scaled", &skeleton, &[BoneKeys::default(), root, BoneKeys::default()], 0.0);
         let found = RootMotion::extract(&skeleton, &clip.expect("valid"), 1, Taken { yaw, ..YAW });
-        assert_eq!(
-            found.err().map(|error| error.path),
-            is_refused.then(|| "bones above".to_owned()),
-            "{scale:?}"
-        );
+        let expected = bound.map(|bound| InputError::new("clip.bones[0].scale", format!("{scale:?}"), bound));
+        assert_eq!(found.err(), expected);
+    }
+    // Of several bones above, the one that mirrors is named, or else the one with the most uneven scale.
+    for (scales, named) in [([[1.0, 9.0, 1.0], [1.0, 1.0, -1.0]], 1), ([[1.0, 2.0, 1.0], [1.0, 3.0, 1.0]], 1)]
+    {
+        let mut bones = skeleton.bones().to_vec();
+        (bones[0].rest.scale, bones[1].rest.scale) = (scales[0], scales[1]);
+        let skeleton = Skeleton::of_joints(bones).expect("valid");
+        let clip = Clip::new("still", &skeleton, &vec![BoneKeys::default(); 3], 1.0).expect("valid");
+        let expected =
+            InputError::new(format!("clip.bones[{named}].scale"), format!("{:?}", scales[named]), of_yaw);
+        assert_eq!(RootMotion::extract(&skeleton, &clip, 2, YAW).err(), Some(expected));
     }
 }

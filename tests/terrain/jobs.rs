@@ -6,10 +6,11 @@ use relievo::terrain::blend::{BlendPass, MapZone, Shading, WeightMode};
 use relievo::terrain::border::BorderPass;
 use relievo::terrain::config::{Border, Config, Offset};
 use relievo::terrain::despike::{Despike, DespikePass};
-use relievo::terrain::features::FeatureIndex;
+use relievo::terrain::features::{FeatureIndex, Features};
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::terrain::morph::MorphPass;
 use relievo::terrain::normals::NormalsPass;
 use relievo::terrain::pad::PadPass;
 use relievo::terrain::thermal::{Thermal, ThermalPass};
@@ -88,7 +89,7 @@ fn blend() {
     for (bad, part) in [
         (MapZone { max: 0.0, ..zone }, "zones[1].max = 0: must be above min = 0"),
         (MapZone { min: f32::NAN, ..zone }, "zones[1].min = NaN"),
-        (MapZone { color: [0.0, f32::INFINITY, 0.0], ..zone }, "zones[1].color = inf"),
+        (MapZone { color: [0.0, f32::INFINITY, 0.0], ..zone }, "zones[1].color[1] = inf"),
     ] {
         refuses(prepare(1.0, &[zone, bad], good, &windows, 18), &[part]);
     }
@@ -147,7 +148,7 @@ fn border() {
     let one = |width| fields(&gpu, width, 1);
     assert!(prepare(4, &[fields(&gpu, 5, 2)]).is_ok());
     assert!(prepare(4, &[one(5), one(5)]).is_ok());
-    refuses(prepare(4, &[one(5)]), &["neighbours = [2 patches]", "at most 1"]);
+    refuses(prepare(4, &[one(5)]), &["neighbours.len = 2: ", "at most 1"]);
     refuses(prepare(4, &[short(&gpu)]), &["parts[0].heights = [49 elements]", "at least 50"]);
     refuses(prepare(4, &[one(5), one(9)]), &["parts[1].width = 9", "must be 5"]);
     for width in [0, 5, u32::MAX] {
@@ -155,6 +156,21 @@ fn border() {
     }
     refuses(prepare(1, &[one(0)]), &["width = 1"]);
     refuses(prepare(1, &[]), &["width = 1"]);
+    let own = [[None; 4], [None, None, Some(1), None]];
+    let found = pass.prepare(&gpu, 1, &own, &[fields(&gpu, 5, 2)]).map(|_| ());
+    refuses(found, &["neighbours[1][2] = 1: must be below 1: a patch blends towards earlier ones"]);
+}
+
+#[test]
+fn morph() {
+    let gpu = gpu();
+    let pass = MorphPass::new(&gpu).expect("compiled");
+    let prepare = |from, to, heights| {
+        pass.prepare(&gpu, &buffer(&gpu, from), &buffer(&gpu, to), &buffer(&gpu, heights)).map(|_| ())
+    };
+    assert!(prepare(4, 4, 4).is_ok());
+    refuses(prepare(4, 5, 4), &["to.len = 5: must be 4, as from.len"]);
+    refuses(prepare(4, 4, 3), &["heights.len = 3: must be 4, as from.len"]);
 }
 
 #[test]
@@ -169,7 +185,7 @@ fn pad() {
     let (surrounds, two) = ([own(0), own(1)], [fields(&gpu, 5, 2)]);
     assert!(prepare(1, &surrounds, &two, 98).is_ok());
     assert!(prepare(1, &surrounds, &[one(5), one(5)], 98).is_ok());
-    refuses(prepare(1, &surrounds, &[one(5)], 98), &["surrounds[1] = 1: must be below 1"]);
+    refuses(prepare(1, &surrounds, &[one(5)], 98), &["surrounds[1][4] = 1: must be below 1"]);
     refuses(prepare(1, &surrounds, &[short(&gpu)], 98), &["parts[0].heights = [49 elements]", "at least 50"]);
     refuses(prepare(1, &surrounds, &[one(5), one(9)], 98), &["parts[1].width = 9", "must be 5"]);
     refuses(prepare(1, &surrounds, &two, 97), &["windows = [97 elements]", "at least 98"]);
@@ -194,6 +210,10 @@ fn generation() {
     refuses(prepare(1, points - 1), &["output = [97 elements]", "at least 98"]);
     refuses(prepare(2, 2 * points), &["scratch = "]);
     refuses(prepare(u32::MAX, points), &["apron = 4294967295: must be at most 4096"]);
+    let job = height.prepare(&gpu, &config, [2, 1], 0, &buffer(&gpu, points), &scratch).expect("prepared");
+    let three = [[0, 0], [1, 0], [2, 0]];
+    let features = Features::default();
+    refuses(job.set(&gpu, &three, &features), &["patches.len = 3: must be at most 2, the batch's count"]);
 
     let config = Config { border: Border::Wrap, ..config };
     let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");

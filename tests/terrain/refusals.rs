@@ -521,11 +521,11 @@ fn what_happens_after_generation_is_bounded() {
         assert_eq!(good, Ok(()));
     }
     for bad in [-0.5, 16_383.5, f64::NAN, f64::INFINITY] {
-        refuses(despike(bad), &[&format!("despike = {bad}: "), "0..=16383"]);
+        refuses(despike(bad), &[&format!("despike.threshold = {bad}: "), "0..=16383"]);
     }
-    refuses(thermal(1025, 35.0), &["thermal = 1025: ", "at most 1024"]);
+    refuses(thermal(1025, 35.0), &["thermal.iterations = 1025: ", "at most 1024"]);
     for bad in [-0.5, 89.5, f64::NAN] {
-        refuses(thermal(1, bad), &[&format!("talus = {bad}: "), "0..=89"]);
+        refuses(thermal(1, bad), &[&format!("thermal.talus = {bad}: "), "0..=89"]);
     }
     for bad in [-0.25, 1.25, f64::NAN] {
         refuses(morph(bad), &[&format!("time = {bad}: "), "0..=1"]);

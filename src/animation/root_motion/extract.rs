@@ -31,14 +31,15 @@ pub(super) fn extract(
         return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
     }
     if !(taken.horizontal || taken.vertical && !taken.yaw) {
-        let bound = "must be horizontal or vertical, and horizontal where yaw is";
-        return Err(InputError::new("taken", format!("{taken:?}"), bound));
+        let bound = "must be true unless taken.vertical is, and taken.yaw is not";
+        return Err(InputError::new("taken.horizontal", taken.horizontal, bound));
     }
     let above = above(skeleton, clip, bone)?;
     let start = sample_bone(clip, bone, 0.0, RotationPath::Slerp);
     let origin = DVec3::from(start.translation.map(f64::from));
     let (path, translation) = split_path(clip, bone, origin, &above.matrix3, taken);
-    let turning = taken.yaw.then(|| split_turn(clip, bone, start.rotation, &above)).transpose()?.flatten();
+    let turning =
+        taken.yaw.then(|| split_turn(skeleton, clip, bone, start.rotation, &above)).transpose()?.flatten();
     let (turn_times, turns, rotation) = match turning {
         None => (Vec::new(), Vec::new(), None),
         Some((turns, keys)) => (keys.times.clone(), turns, Some(keys)),
@@ -70,9 +71,28 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
     // Also refused if only rounding keeps the determinant from being zero.
     let size = matrix.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if matrix.determinant().abs() <= 1e-9 * size.powi(3) {
-        return Err(InputError::new("bones above", "scale 0", "must not be flat"));
+        return Err(wrong_scale(skeleton, clip, bone, "must not make the bones below it flat"));
     }
     Ok(above)
+}
+
+/// Refuses the scale of the bone above `bone` that mirrors, or else of the one with the most uneven scale.
+fn wrong_scale(skeleton: &Skeleton, clip: &Clip, bone: usize, bound: &str) -> InputError {
+    let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
+    let above = std::iter::successors(parent(bone as u32), |bone| parent(*bone));
+    let scales: Vec<(u32, [f32; 3])> =
+        above.map(|bone| (bone, sample_bone(clip, bone as usize, 0.0, RotationPath::Slerp).scale)).collect();
+    let mirrors = |scale: &[f32; 3]| scale.iter().product::<f32>() < 0.0;
+    // How much smaller the smallest factor is than the largest: 0 for a flat scale, 1 for an even one.
+    let evenness = |scale: &[f32; 3]| {
+        let sizes = scale.map(f32::abs);
+        sizes.into_iter().fold(f32::MAX, f32::min) / sizes.into_iter().fold(f32::MIN_POSITIVE, f32::max)
+    };
+    let worst = scales
+        .iter()
+        .min_by(|(_, a), (_, b)| (!mirrors(a)).cmp(&!mirrors(b)).then(evenness(a).total_cmp(&evenness(b))));
+    let (above, scale) = worst.map_or((bone as u32, [1.0; 3]), |found| *found);
+    InputError::new(format!("clip.bones[{above}].scale"), format!("{scale:?}"), bound)
 }
 
 fn wide(transform: &Transform) -> DAffine3 {
@@ -116,6 +136,7 @@ fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Tak
 
 /// The yaw in radians since the start, and the keys of the remaining rotation; `None` if it never changes.
 fn split_turn(
+    skeleton: &Skeleton,
     clip: &Clip,
     bone: usize,
     start: [f32; 4],
@@ -126,8 +147,8 @@ fn split_turn(
     let size = x.length_squared();
     let off = [y.length_squared() - size, z.length_squared() - size, x.dot(y), y.dot(z), z.dot(x)];
     if matrix.determinant() <= 0.0 || off.into_iter().any(|off| off.abs() > UNEVEN * size) {
-        let scales = format!("{:?}", [x, y, z].map(|axis| axis.length()));
-        return Err(InputError::new("bones above", scales, "must scale evenly and not mirror for a yaw"));
+        let bound = "must be even and not mirror, since a yaw is taken below it";
+        return Err(wrong_scale(skeleton, clip, bone, bound));
     }
     let up = (matrix.inverse() * DVec3::Y).normalize();
     let samples = samples(&clip.stored_keys(clip.track(bone, Part::Rotation)));

@@ -2,57 +2,9 @@
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
+mod pass;
 pub(crate) mod reference;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 
-use crate::gpu::bindings::baseline::copy as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::copy::CopyParams;
-use crate::{Error, InputError};
-
-/// Copies one buffer to another.
-#[derive(Debug, Clone)]
-pub(crate) struct CopyPass {
-    kernel: Kernel,
-}
-
-impl CopyPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
-    /// Prepares a copy of the first `words` words, a multiple of four.
-    ///
-    /// # Errors
-    /// [`InputError`] for a length that is not a multiple of four; [`GpuError`].
-    pub(crate) fn prepare(
-        &self,
-        gpu: &Gpu,
-        words: usize,
-        source: &Buffer<u32>,
-        destination: &Buffer<u32>,
-    ) -> Result<Job, Error> {
-        if !words.is_multiple_of(4) || words > source.len() || words > destination.len() {
-            let bound = "must be a multiple of 4 that fits both buffers";
-            return Err(InputError::new("words", words, bound).into());
-        }
-        let vectors = (words / 4) as u32;
-        let uniform = Uniform::new(gpu, "copy", &CopyParams { vectors })?;
-        let group = bindings::Group {
-            params: &uniform,
-            source: source.slice().cast(),
-            destination: destination.slice().cast(),
-        };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, vectors),
-        };
-        Ok(Job::new(gpu, "baseline/copy", vec![step])?)
-    }
-}
+pub(crate) use pass::CopyPass;

@@ -2,15 +2,12 @@
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
+mod pass;
 pub(crate) mod reference;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 
-use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::gpu::bindings::baseline::gather as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::gather::GatherParams;
-use crate::{Error, InputError};
+pub(crate) use pass::GatherPass;
 
 /// The data that the kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,54 +17,4 @@ pub(crate) enum Reads {
     Everything,
     /// The keys and the cursor only: tracks are evenly spaced, with this many values each.
     Keys(u32),
-}
-
-/// Moves the bytes of sampling: for each bone of each instance it reads the two keys of three tracks around the
-/// instance's cursor, where instances share the tracks of a clip, and writes a local transform (12 words).
-#[derive(Debug, Clone)]
-pub(crate) struct GatherPass {
-    kernel: Kernel,
-    reads: Reads,
-}
-
-impl GatherPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { tables: reads == Reads::Everything };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, reads })
-    }
-
-    /// Prepares a crowd whose instances have cursors before their last keys. The kernel overwrites the crowd's
-    /// local transforms.
-    ///
-    /// # Errors
-    /// [`InputError`] for a set with a clip that has more than one timeline, and for fewer values than
-    /// [`Reads::Keys`] needs; [`GpuError`].
-    pub(crate) fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
-        if clips.timelines_a_clip != 1 {
-            let bound = "must be 1: a place an instance";
-            return Err(InputError::new("clips.timelines_a_clip", clips.timelines_a_clip, bound).into());
-        }
-        let keys = if let Reads::Keys(keys) = self.reads { keys } else { 0 };
-        clips.values.check_holds("clips.values", 3 * crowd.bones * keys as usize)?;
-        let params = GatherParams { pairs: crowd.pairs() as u32, bones: crowd.bones as u32, keys };
-        let uniform = Uniform::new(gpu, "gather", &params)?;
-        let group = bindings::Group {
-            params: &uniform,
-            instances: crowd.instances.slice(),
-            tracks: clips.tracks.slice().cast(),
-            cursors: crowd.cursors.slice().cast(),
-            values: clips.values.slice().cast(),
-            gathered: crowd.locals.slice().cast(),
-        };
-        let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, params.pairs),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "baseline/gather", vec![step])?)
-    }
 }

@@ -54,6 +54,13 @@ enum Command {
     Demo(demo::Demo),
 }
 
+impl Command {
+    /// Whether the command takes `--backend`.
+    fn has_backend(&self) -> bool {
+        matches!(self, Self::Terrain(_) | Self::Relief(_) | Self::Pose(_) | Self::Skin(_) | Self::Crowd(_))
+    }
+}
+
 /// The global arguments that every command runs with.
 pub struct Context {
     options: relievo::gpu::Options,
@@ -78,6 +85,7 @@ fn main() -> ExitCode {
     };
     let context =
         Context { options: relievo::gpu::Options { adapter: arguments.adapter }, opened: Default::default() };
+    let has_backend = arguments.command.has_backend();
     let outcome = match arguments.command {
         Command::Info => info::run(&context),
         Command::Terrain(command) => command.run(&context),
@@ -94,9 +102,17 @@ fn main() -> ExitCode {
     match outcome {
         Ok(code) => code,
         Err(error) => {
-            complain(&error.to_string());
+            complain(&format!("{error}{}", remedy(&error, has_backend)));
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
+    }
+}
+
+/// What the command line offers where the device allows too little, beyond what the library advises.
+fn remedy(error: &relievo::Error, has_backend: bool) -> &'static str {
+    match error {
+        relievo::Error::Gpu(relievo::gpu::GpuError::Limit { .. }) if has_backend => "; or give --backend cpu",
+        _ => "",
     }
 }
 
@@ -124,4 +140,25 @@ fn refused(error: &clap::Error) -> ExitCode {
 fn complain(text: &str) {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let _ = writeln!(std::io::stderr(), "relievo: {line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Arguments, remedy};
+    use clap::Parser;
+    use relievo::gpu::GpuError;
+    use relievo::{Error, InputError};
+
+    #[test]
+    fn commands_with_backends_offer_the_cpu_where_the_device_allows_too_little() {
+        let parsed = |words: &[&str]| Arguments::try_parse_from(words).expect("valid").command.has_backend();
+        assert!(parsed(&["relievo", "relief", "--builtin", "bricks", "--out", "out"]));
+        assert!(!parsed(&["relievo", "info"]));
+        let (pass, limit, remedy_of_pass) =
+            ("terrain/height", "maxStorageBufferBindingSize", "split the batch");
+        let limit = GpuError::Limit { pass, limit, needed: 2, available: 1, remedy: remedy_of_pass };
+        let limit = Error::Gpu(limit);
+        assert_eq!([true, false].map(|has| remedy(&limit, has)), ["; or give --backend cpu", ""]);
+        assert_eq!(remedy(&InputError::new("size", 0, "must be at least 1").into(), true), "");
+    }
 }

@@ -102,7 +102,7 @@ impl Skin {
             let bound = "must be at least one that is not compressed with Draco";
             return Err(Error::InputFile {
                 path: self.model.clone(),
-                source: InputError::new("meshes", "none", bound),
+                source: InputError::new("meshes.len", 0, bound),
             });
         }
         model = self.collapse.apply(model)?;

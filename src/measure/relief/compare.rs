@@ -104,7 +104,7 @@ impl ReliefSquare {
                 let size = format!("{}x{}", self.view.size[0], self.view.size[1]);
                 let angle = Comparison::ANGLES[at];
                 let bound = format!("must be larger: no pixel sees the square at {angle}°");
-                Err(InputError::new("size", size, bound))
+                Err(InputError::new("view.size", size, bound))
             }
         }
     }

@@ -32,10 +32,10 @@ impl Part {
     fn set_places(&mut self, gpu: &Gpu, patches: &[[i32; 2]], origin: [i32; 2]) -> Result<(), Error> {
         if patches.len() > self.capacity as usize {
             let bound = format!("must be at most {}, the fields' count", self.capacity);
-            return Err(InputError::new("patches", patches.len(), bound).into());
+            return Err(InputError::new("patches.len", patches.len(), bound).into());
         }
-        let places = (patches.iter())
-            .map(|patch| place(self.size, self.tiles, *patch, origin))
+        let places = (patches.iter().enumerate())
+            .map(|(at, patch)| place(&format!("patches[{at}]"), self.size, self.tiles, (*patch, origin)))
             .collect::<Result<Vec<_>, _>>()?;
         if !places.is_empty() {
             self.places.write(gpu, &places)?;
@@ -163,14 +163,38 @@ impl TerrainScene {
     }
 }
 
-fn place(size: u32, tiles: f64, patch: [i32; 2], origin: [i32; 2]) -> Result<Place, InputError> {
+/// Where a patch of `size` samples along an edge is drawn; `path` names the patch in errors.
+fn place(
+    path: &str,
+    size: u32,
+    tiles: f64,
+    (patch, origin): ([i32; 2], [i32; 2]),
+) -> Result<Place, InputError> {
     let edge = i64::from(size) - 1;
     let samples = [0, 1].map(|axis| (i64::from(patch[axis]) - i64::from(origin[axis])) * edge);
     // Positions are integers in units of samples, which f32 represents exactly up to 2^24.
-    if samples.iter().any(|sample| sample.abs() + edge > 1 << 24) {
-        let bound = format!("must lie within 2^24 samples of the origin {origin:?} to be drawn");
-        return Err(InputError::new("patchCoordinates", format!("{patch:?}"), bound));
+    if let Some(axis) = samples.iter().position(|sample| sample.abs() + edge > 1 << 24) {
+        let bound = format!("must lie within 2^24 samples of the origin's {} to be drawn", origin[axis]);
+        return Err(InputError::new(format!("{path}[{axis}]"), patch[axis], bound));
     }
     let uv = patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32);
     Ok(Place { origin: samples.map(|sample| sample as i32), uv })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::place;
+    use crate::InputError;
+
+    #[test]
+    fn a_patch_too_far_from_the_origin_is_refused() {
+        let at = |patch, origin| place("patches[3]", 257, 1.0, (patch, origin));
+        assert_eq!(at([65_535, -4], [0, 4]).expect("within reach").origin, [65_535 * 256, -8 * 256]);
+        let refused = |axis, value: i32, origin: i32| {
+            let bound = format!("must lie within 2^24 samples of the origin's {origin} to be drawn");
+            InputError::new(format!("patches[3][{axis}]"), value, bound)
+        };
+        assert_eq!(at([65_536, 0], [0, 0]).err(), Some(refused(0, 65_536, 0)));
+        assert_eq!(at([0, -65_530], [0, 7]).err(), Some(refused(1, -65_530, 7)));
+    }
 }

@@ -95,9 +95,12 @@ impl SkinPass {
             let bound = format!("must be {:?}, as the pass's", self.blend);
             return Err(InputError::new("crowd.blend", format!("{:?}", crowd.blend), bound).into());
         }
-        if instances.is_empty() || instances.end > crowd.instances {
-            let bound = format!("must be some of {}", crowd.instances);
-            return Err(InputError::new("instances", format!("{instances:?}"), bound).into());
+        if instances.is_empty() {
+            return Err(InputError::new("instances.len", 0, "must be at least 1").into());
+        }
+        if instances.end > crowd.instances {
+            let bound = format!("must be at most {}, the crowd's instances", crowd.instances);
+            return Err(InputError::new("instances.end", instances.end, bound).into());
         }
         let vectors = if self.blend == Blend::Linear { 3 } else { 4 };
         crowd.palette.check_holds("crowd.palette", vectors * crowd.instances * mesh.bones.len())?;

@@ -63,10 +63,13 @@ impl ConeMapPass {
     ) -> Result<Job, Error> {
         pyramids.check(maps)?;
         let layout = pyramids.layout;
-        if cones.cells != layout.cells || cones.count != maps.count {
-            let value = format!("{:?} × {}", cones.cells, cones.count);
-            let bound = format!("must be {:?} × {} as the pyramids", layout.cells, maps.count);
-            return Err(InputError::new("cones", value, bound).into());
+        if cones.cells != layout.cells {
+            let bound = format!("must be {:?}, as the pyramids'", layout.cells);
+            return Err(InputError::new("cones.cells", format!("{:?}", cones.cells), bound).into());
+        }
+        if cones.count != maps.count {
+            let bound = format!("must be {}, as the height maps'", maps.count);
+            return Err(InputError::new("cones.count", cones.count, bound).into());
         }
         let params = ConeParams {
             size: UVec2::from(layout.size),
@@ -90,5 +93,44 @@ impl ConeMapPass {
             workgroups: [x, y, maps.count],
         };
         Ok(Job::new(gpu, "surface/cone_map", vec![step])?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ConeMapPass;
+    use crate::gpu::{Gpu, Options};
+    use crate::surface::height_batch::HeightBatch;
+    use crate::surface::height_pyramid::Pyramids;
+    use crate::surface::{Address, HeightMap};
+    use crate::{Error, InputError};
+
+    #[test]
+    fn pyramids_and_cones_of_another_batch_are_refused() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let pass = ConeMapPass::new(&gpu).expect("compiled");
+        let made = |size: [u32; 2], count: usize| {
+            let map = HeightMap::new(size[0], size[1], vec![0.5; (size[0] * size[1]) as usize]);
+            let maps = HeightBatch::new(&gpu, &vec![map.expect("valid"); count]).expect("uploaded");
+            let pyramids = Pyramids::new(&gpu, &maps, Address::Wrap).expect("allocated");
+            let cones = pass.output(&gpu, &pyramids).expect("allocated");
+            (maps, pyramids, cones)
+        };
+        let (maps, pyramids, cones) = made([8, 4], 2);
+        let (one, smaller) = (made([8, 4], 1), made([4, 4], 2));
+        assert!(pass.prepare(&gpu, &maps, &pyramids, &cones).is_ok());
+        let of_size = "must be [8, 4] texels, as the height maps'";
+        let of_count = "must be 2, as the height maps'";
+        for (pyramids, cones, path, value, bound) in [
+            (&smaller.1, &cones, "pyramids.layout.size", "[4, 4]", of_size),
+            (&one.1, &cones, "pyramids.count", "1", of_count),
+            (&pyramids, &smaller.2, "cones.cells", "[4, 4]", "must be [8, 4], as the pyramids'"),
+            (&pyramids, &one.2, "cones.count", "1", of_count),
+        ] {
+            match pass.prepare(&gpu, &maps, pyramids, cones) {
+                Err(Error::Input(error)) => assert_eq!(error, InputError::new(path, value, bound)),
+                other => panic!("{path}: {other:?}"),
+            }
+        }
     }
 }

@@ -37,10 +37,13 @@ impl Pyramids {
 
     /// Refuses pyramids that do not belong to a batch.
     pub(crate) fn check(&self, maps: &HeightBatch) -> Result<(), InputError> {
-        if self.layout.size != maps.size || self.count != maps.count {
-            let value = format!("{:?} × {}", self.layout.size, self.count);
-            let bound = format!("must be {:?} × {} as the height maps", maps.size, maps.count);
-            return Err(InputError::new("pyramids", value, bound));
+        if self.layout.size != maps.size {
+            let bound = format!("must be {:?} texels, as the height maps'", maps.size);
+            return Err(InputError::new("pyramids.layout.size", format!("{:?}", self.layout.size), bound));
+        }
+        if self.count != maps.count {
+            let bound = format!("must be {}, as the height maps'", maps.count);
+            return Err(InputError::new("pyramids.count", self.count, bound));
         }
         Ok(())
     }

@@ -146,9 +146,12 @@ impl March {
     /// [`InputError`].
     pub fn validate(&self) -> Result<(), InputError> {
         let [low, high] = self.steps;
-        if low < 1 || high < low || high > MAX_STEPS {
-            let bound = format!("must satisfy 1 <= MIN <= MAX <= {MAX_STEPS}");
-            return Err(InputError::new("steps", format!("{low},{high}"), bound));
+        if !(1..=MAX_STEPS).contains(&low) {
+            return Err(InputError::new("steps[0]", low, format!("must be in 1..={MAX_STEPS}")));
+        }
+        if !(low..=MAX_STEPS).contains(&high) {
+            let bound = format!("must be in {low}..={MAX_STEPS}: at least steps[0]");
+            return Err(InputError::new("steps[1]", high, bound));
         }
         if self.binary_steps > MAX_BINARY {
             let bound = format!("must be at most {MAX_BINARY}");
@@ -216,8 +219,14 @@ mod tests {
 
     #[test]
     fn steps_out_of_bounds_are_refused() {
-        for steps in [[0, 4], [8, 4], [1, MAX_STEPS + 1]] {
-            assert_eq!(March { steps, ..March::default() }.validate().expect_err("refused").path, "steps");
+        for (steps, path, value, bound) in [
+            ([0, 4], "steps[0]", 0, "must be in 1..=1024"),
+            ([MAX_STEPS + 1, 4], "steps[0]", MAX_STEPS + 1, "must be in 1..=1024"),
+            ([8, 4], "steps[1]", 4, "must be in 8..=1024: at least steps[0]"),
+            ([1, MAX_STEPS + 1], "steps[1]", MAX_STEPS + 1, "must be in 1..=1024: at least steps[0]"),
+        ] {
+            let found = March { steps, ..March::default() }.validate();
+            assert_eq!(found, Err(InputError::new(path, value, bound)));
         }
         let march = March { binary_steps: MAX_BINARY + 1, ..March::default() };
         assert_eq!(march.validate().expect_err("refused").path, "binary_steps");

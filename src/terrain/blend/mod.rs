@@ -82,8 +82,8 @@ pub(crate) fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
     }
     for (index, zone) in zones.iter().enumerate() {
         check_range(&format!("zones[{index}]"), zone.min.into(), zone.max.into())?;
-        for channel in zone.color {
-            finite(&format!("zones[{index}].color"), channel.into(), 0.0, 1.0)?;
+        for (channel, value) in zone.color.into_iter().enumerate() {
+            finite(&format!("zones[{index}].color[{channel}]"), value.into(), 0.0, 1.0)?;
         }
     }
     Ok(())

@@ -44,10 +44,11 @@ pub fn waves(neighbours: &[Neighbours]) -> Result<Vec<Vec<u32>>, InputError> {
     let mut wave_of = vec![0; neighbours.len()];
     let mut waves: Vec<Vec<u32>> = Vec::new();
     for (index, around) in neighbours.iter().enumerate() {
-        for neighbour in around.iter().flatten() {
+        for (side, neighbour) in around.iter().enumerate() {
+            let Some(neighbour) = neighbour else { continue };
             if *neighbour >= index {
                 let bound = format!("must be below {index}: a patch blends towards earlier ones");
-                return Err(InputError::new("neighbour", neighbour, bound));
+                return Err(InputError::new(format!("neighbours[{index}][{side}]"), neighbour, bound));
             }
             wave_of[index] = wave_of[index].max(wave_of[*neighbour] + 1);
         }

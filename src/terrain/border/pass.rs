@@ -46,9 +46,8 @@ impl BorderPass {
         }
         let places = places(parts, size)?;
         if neighbours.len() > places.len() {
-            let value = format!("[{} patches]", neighbours.len());
             let bound = format!("must be at most {}, the patches in the parts", places.len());
-            return Err(InputError::new("neighbours", value, bound).into());
+            return Err(InputError::new("neighbours.len", neighbours.len(), bound).into());
         }
         let visits = visits(neighbours, &places)?;
         let entries: Vec<_> =

@@ -28,7 +28,7 @@ impl Despike {
     /// # Errors
     /// [`InputError`] that names `despike`.
     pub fn validate(&self) -> Result<(), InputError> {
-        finite("despike", self.threshold, 0.0, 16383.0)
+        finite("despike.threshold", self.threshold, 0.0, 16383.0)
     }
 
     /// τ in 1/65536 units.

@@ -265,7 +265,7 @@ impl HeightBatch {
             return Ok(());
         }
         let bound = format!("must be at most {}, the batch's count", patches.len() - rest.len());
-        Err(InputError::new("patches", patches.len(), bound).into())
+        Err(InputError::new("patches.len", patches.len(), bound).into())
     }
 
     /// Records the generation of all windows.
@@ -359,7 +359,7 @@ impl HeightJob {
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
         if patches.len() > self.count as usize {
             let bound = format!("must be at most {}, the batch's count", self.count);
-            return Err(InputError::new("patches", patches.len(), bound).into());
+            return Err(InputError::new("patches.len", patches.len(), bound).into());
         }
         let mut origins = vec![Vec::with_capacity(patches.len()); self.widths.len()];
         for &patch in patches {

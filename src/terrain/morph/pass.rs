@@ -32,9 +32,11 @@ impl MorphPass {
         to: &Buffer<i32>,
         heights: &Buffer<i32>,
     ) -> Result<MorphJob, Error> {
-        if from.len() != to.len() || from.len() != heights.len() {
-            let value = format!("[{}, {}, {}]", from.len(), to.len(), heights.len());
-            return Err(InputError::new("morph lengths", value, "must be equal").into());
+        for (field, len) in [("to.len", to.len()), ("heights.len", heights.len())] {
+            if len != from.len() {
+                let bound = format!("must be {}, as from.len", from.len());
+                return Err(InputError::new(field, len, bound).into());
+            }
         }
         let points = from.len() as u32;
         let params = Uniform::new(gpu, "morph", &MorphParams { points, time: 0 })?;

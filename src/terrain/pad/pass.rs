@@ -89,9 +89,11 @@ fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputErro
                 "must be the patch itself",
             ));
         }
-        if let Some(beyond) = around.iter().flatten().find(|patch| **patch >= count) {
-            let bound = format!("must be below {count}, the patches in the parts");
-            return Err(InputError::new(format!("surrounds[{index}]"), beyond, bound));
+        for (tile, patch) in around.iter().enumerate() {
+            if let Some(beyond) = patch.filter(|patch| *patch >= count) {
+                let bound = format!("must be below {count}, the patches in the parts");
+                return Err(InputError::new(format!("surrounds[{index}][{tile}]"), beyond, bound));
+            }
         }
     }
     Ok(())

@@ -35,12 +35,12 @@ impl Thermal {
     /// Checks iterations and angle.
     ///
     /// # Errors
-    /// [`InputError`] that names `thermal` or `talus`.
+    /// [`InputError`] that names `thermal.iterations` or `thermal.talus`.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.iterations > 1024 {
-            return Err(InputError::new("thermal", self.iterations, "must be at most 1024 iterations"));
+            return Err(InputError::new("thermal.iterations", self.iterations, "must be at most 1024"));
         }
-        finite("talus", self.talus, 0.0, 89.0)
+        finite("thermal.talus", self.talus, 0.0, 89.0)
     }
 
     /// T: the largest stable difference between neighbours that are `terrain_scale` apart, in 1/65536 units.

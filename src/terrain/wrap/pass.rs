@@ -122,7 +122,7 @@ impl WrapJob {
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
         if patches.len() > self.count as usize {
             let bound = format!("must be at most {}, the batch's count", self.count);
-            return Err(InputError::new("patches", patches.len(), bound).into());
+            return Err(InputError::new("patches.len", patches.len(), bound).into());
         }
         for &patch in patches {
             Window { patch, apron: 0 }.validate(&self.config)?;
