@@ -98,7 +98,7 @@ impl Pose {
         Self::at(model, mesh, &local_to_model(&model.skeleton, locals), weights)
     }
 
-    /// With bones at these places in the model's space.
+    /// With bones at these positions in the model's space.
     pub(super) fn at(model: &Model, mesh: &Mesh, models: &[Affine], weights: &[f32]) -> Self {
         Self { palette: palette(&model.skins[mesh.skin], models), vertices: morph(mesh, weights) }
     }
@@ -123,11 +123,14 @@ impl Pose {
         (0..self.vertices.len()).map(position).collect()
     }
 
+    /// All vertices, in the model's space.
+    pub(super) fn vertices(self, mesh: &Mesh) -> Vec<Vertex> {
+        skin(&self.vertices, &mesh.influences, &Palette::Linear(self.palette), InstanceLod::FULL)
+    }
+
     /// The normals of all vertices: unit vectors, or 0.
     pub(super) fn normals(self, mesh: &Mesh) -> Vec<[f32; 3]> {
-        let palette = Palette::Linear(self.palette);
-        let placed = skin(&self.vertices, &mesh.influences, &palette, InstanceLod::FULL);
-        placed.into_iter().map(|vertex| vertex.normal).collect()
+        self.vertices(mesh).into_iter().map(|vertex| vertex.normal).collect()
     }
 }
 
