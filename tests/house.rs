@@ -11,6 +11,7 @@ const FLOORS: &[&[&str]] = &[
     &["harness", "mesh"],
     &["animation", "surface", "terrain"],
     &["baseline", "skinning"],
+    &["scene"],
     &["render"],
     &["samples"],
     &["bench", "measure", "verify"],
