@@ -41,14 +41,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let projection = Projection::new(1080, 1.0, 0.1);
     let lods: Vec<Lod> = (0..count)
         .map(|at| {
-            let centre = [0.0, 0.0, 10.0 + 0.1 * at as f32];
-            let metres = projection.allowed(centre, table.radius(), 1.0);
+            let center = [0.0, 0.0, 10.0 + 0.1 * at as f32];
+            let metres = projection.allowed(center, table.radius(), 1.0);
             Lod { allowed: table.units(metres), ..Lod::FULL }
         })
         .collect();
     for number in 0..60 {
         let elapsed = number as f32 / 60.0;
-        frame.state.lods.write(&gpu, &lods)?;
+        frame.state.write_lods(&gpu, &lods)?;
         frame.set(
             &gpu,
             &Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 },

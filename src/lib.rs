@@ -18,6 +18,8 @@
 //! [`skinning`] computes meshes that follow skeletons, their levels of detail, and which of their vertices need
 //! work in a frame.
 //!
+//! [`lod`] decides which instances of a scene each view sees and with which level of detail, and lists them.
+//!
 //! `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs, timing and errors. `render` has
 //! a camera, an off-screen target, and passes that draw in the caller's render pass. Both need the feature `gpu`.
 //!
@@ -100,6 +102,7 @@ pub mod gpu;
 #[cfg(feature = "verify")]
 pub mod harness;
 pub mod hash;
+pub mod lod;
 #[cfg(feature = "verify")]
 pub mod measure;
 pub mod mesh;

@@ -11,6 +11,7 @@ const FLOORS: &[&[&str]] = &[
     &["harness", "mesh"],
     &["animation", "surface", "terrain"],
     &["baseline", "skinning"],
+    &["lod"],
     &["scene"],
     &["render"],
     &["samples"],

@@ -325,7 +325,7 @@ fn the_creature_moves_as_many_bones_in_its_walk() {
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let report = std::fs::read(folder.path().join("report.json")).expect("a report");
     let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
-    let figures = format!("creature's {} bones {} in its walk", report["bones"], report["moving_bones"]);
+    let figures = format!("creature's {} bones {} in its walk", report["bones"], report["animated_bones"]);
     assert!(README.contains(&figures), "{figures}");
 }
 

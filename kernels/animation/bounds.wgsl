@@ -20,8 +20,8 @@ struct BoundsParams {
 const THREADS = 64u;
 // The factor by which extents are enlarged.
 const GROWTH: f32 = 1.0 + 1.0 / 524288.0;
-// The fraction of the centre's distance that is added to extents.
-const OF_CENTRE: f32 = 1.0 / 2097152.0;
+// The fraction of the center's distance that is added to extents.
+const OF_CENTER: f32 = 1.0 / 2097152.0;
 // The length that is added to a row, 2⁻⁶², for squares that are flushed to 0.
 const LEAST: f32 = 2.16840434e-19;
 // The largest f32, with exactly these digits: some compilers refuse larger literals.
@@ -44,11 +44,11 @@ fn around(instance: u32, first: u32, stride: u32) -> Box {
         let x = model_matrices[at];
         let y = model_matrices[at + 1u];
         let z = model_matrices[at + 2u];
-        let centre = vec3<f32>(x.w, y.w, z.w);
+        let center = vec3<f32>(x.w, y.w, z.w);
         let squares = vec3<f32>(dot(x.xyz, x.xyz), dot(y.xyz, y.xyz), dot(z.xyz, z.xyz));
-        let half = bone_radii[bone] * (sqrt(squares) + LEAST) * GROWTH + abs(centre) * OF_CENTRE;
-        low = min(low, centre - half);
-        high = max(high, centre + half);
+        let half = bone_radii[bone] * (sqrt(squares) + LEAST) * GROWTH + abs(center) * OF_CENTER;
+        low = min(low, center - half);
+        high = max(high, center + half);
     }
     return Box(low, high);
 }

@@ -9,7 +9,7 @@ struct LodParams {
     eye: vec4<f32>,
     // The unit vector ahead, with w = 1; w = 0 for a parallel view.
     ahead: vec4<f32>,
-    // A bounding sphere of the model in all of its clips: centre and radius.
+    // A bounding sphere of the model in all of its clips: center and radius.
     bounding_sphere: vec4<f32>,
     // The distance from which on vertices are rigid.
     fade_end: f32,
@@ -110,10 +110,10 @@ fn main(
             level++;
         }
         instance_lod = InstanceLod(floor(fade_fraction * params.steps) / params.steps, params.max_influences, level);
-        let place = atomicAdd(&arguments[level].listed.instances, 1u);
-        drawn[level * params.stride + place] = instance;
+        let slot = atomicAdd(&arguments[level].listed.instances, 1u);
+        drawn[level * params.stride + slot] = instance;
         if may_mirror(x.xyz, y.xyz, z.xyz, params.side) {
-            atomicMax(&arguments[level].mirrored.instances, place + 1u);
+            atomicMax(&arguments[level].mirrored.instances, slot + 1u);
         }
     }
     instance_lods[instance] = instance_lod;

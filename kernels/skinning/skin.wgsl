@@ -135,12 +135,12 @@ fn main(
         pair = pairs[pair];
     }
     let cluster = pair / params.instances;
-    let place = pair - cluster * params.instances;
+    let number = pair - cluster * params.instances;
     let vertex = 64u * cluster + lane;
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let instance = params.first_instance + place;
+    let instance = params.first_instance + number;
     let instance_lod = instance_lods[instance];
     let level = min(instance_lod.mesh_lod, 15u);
     if instance_lod.max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
@@ -170,7 +170,7 @@ fn main(
     let normal = unit_or(
         side * vec3<f32>(dot(of_x, old_normal), dot(cross(z, x), old_normal), dot(cross(x, y), old_normal)), old_normal);
     let tangent = unit_or(vec3<f32>(dot(x, along), dot(y, along), dot(z, along)), along);
-    let to = 5u * (place * params.vertices + vertex);
+    let to = 5u * (number * params.vertices + vertex);
     skinned[to] = position.xy;
     skinned[to + 1u] = vec2<f32>(position.z, normal.x);
     skinned[to + 2u] = normal.yz;

@@ -53,11 +53,11 @@ fn texel(map: u32, at: vec2<i32>) -> f32 {
 
 // The largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. Over a
 // cell, the difference of the bilinear patch and a plane is largest at a corner, and the distance is at least
-// the one along the line to the cell's centre.
+// the one along the line to the cell's center.
 fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     let away = vec2<f32>(abs(offset));
-    let centre = max(away - 0.5, vec2<f32>(0.0));
-    let direction = centre / max(length(centre), 0.5);
+    let center = max(away - 0.5, vec2<f32>(0.0));
+    let direction = center / max(length(center), 0.5);
     // Distances from the nearest edge of the own cell to the near and the far edge of the leaf.
     let near = max(away - 1.0, vec2<f32>(0.0)) * direction;
     let far = away * direction;

@@ -35,11 +35,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = id.xy + vec2<u32>(1u);
-    let centre = (id.z * params.in_width + at.y) * params.in_width + at.x;
+    let center = (id.z * params.in_width + at.y) * params.in_width + at.x;
     let gradient = vec2<i32>(
-        windows[centre + 1u] - windows[centre - 1u],
-        windows[centre + params.in_width] - windows[centre - params.in_width]);
-    let albedo = zone_color(f32(windows[centre]) / 65536.0);
+        windows[center + 1u] - windows[center - 1u],
+        windows[center + params.in_width] - windows[center - params.in_width]);
+    let albedo = zone_color(f32(windows[center]) / 65536.0);
     let color = srgb(lit(params.light, slope_normal(gradient, params.run), albedo));
     pixels[(id.z * width + id.y) * width + id.x] = pack4x8unorm(vec4<f32>(color, 1.0));
 }

@@ -21,12 +21,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = id.xy + vec2<u32>(1u);
-    let centre = (id.z * params.in_width + at.y) * params.in_width + at.x;
-    let height = windows[centre];
+    let center = (id.z * params.in_width + at.y) * params.in_width + at.x;
+    let height = windows[center];
     // All four lanes have the same value: the exact mean is written for vectors only.
     let mean = mean_of_four(
-        vec4<i32>(windows[centre - 1u]), vec4<i32>(windows[centre + 1u]),
-        vec4<i32>(windows[centre - params.in_width]), vec4<i32>(windows[centre + params.in_width])).x;
+        vec4<i32>(windows[center - 1u]), vec4<i32>(windows[center + 1u]),
+        vec4<i32>(windows[center - params.in_width]), vec4<i32>(windows[center + params.in_width])).x;
     var spike = abs(height - mean) > params.threshold;
     if FEATURES != FEATURES_NONE {
         spike = spike && !has_feature(params.features, id.z, vec2<i32>(at));

@@ -52,7 +52,7 @@ struct CoarseRow {
     right: i32,
 }
 
-// The centres of cells -1 to 3 between two coarse rows.
+// The centers of cells -1 to 3 between two coarse rows.
 struct DiamondRow {
     left: i32,
     inner: vec4<i32>,
@@ -211,15 +211,15 @@ struct MiddleRow {
     right: i32,
 }
 
-// Two middle rows: the one at a coarse row, and the one below it, whose odd columns are the centres of the
+// Two middle rows: the one at a coarse row, and the one below it, whose odd columns are the centers of the
 // coarse cells.
 struct MiddleRows {
     even: MiddleRow,
     odd: MiddleRow,
-    centres: DiamondRow,
+    centers: DiamondRow,
 }
 
-// The centres of the middle cells -1 to 7.
+// The centers of the middle cells -1 to 7.
 struct FineDiamonds {
     first: DiamondRow,
     second: vec4<i32>,
@@ -234,8 +234,8 @@ fn subdivide_twice(place: Place, middle: Place, cell: vec2<i32>) {
     var here = wide_row(middle, at);
     var below = wide_row(middle, cell);
     let above_here = at - vec2<i32>(0, 1);
-    let centres = diamonds(middle, columns, above_here, coarse_row(middle, above_here), here.four);
-    var rows = middle_rows(middle, columns, at, here, below, centres);
+    let centers = diamonds(middle, columns, above_here, coarse_row(middle, above_here), here.four);
+    var rows = middle_rows(middle, columns, at, here, below, centers);
 
     var fine_cell = fine_at(middle, at) + vec2<i32>(0, 1);
     let first = columns_of(place, fine_cell.x);
@@ -248,7 +248,7 @@ fn subdivide_twice(place: Place, middle: Place, cell: vec2<i32>) {
         at = vec2<i32>(cell.x, y);
         here = below;
         below = wide_row(middle, at + vec2<i32>(0, 1));
-        rows = middle_rows(middle, columns, at, here, below, rows.centres);
+        rows = middle_rows(middle, columns, at, here, below, rows.centers);
         var next = rows.even;
         for (var half = 0; half < 2; half++) {
             let lower = fine_diamonds(place, first, second, fine_cell, current, next);
@@ -273,12 +273,12 @@ fn wide_row(place: Place, cell: vec2<i32>) -> WideRow {
     return WideRow(coarse_row(place, cell), loaded(place, beyond));
 }
 
-// The middle rows between two coarse rows, given the centres of the cells above them.
+// The middle rows between two coarse rows, given the centers of the cells above them.
 fn middle_rows(
     place: Place, columns: Columns, cell: vec2<i32>, here: WideRow, below: WideRow, above: DiamondRow,
 ) -> MiddleRows {
     let inner = inner_diamonds(place, columns, cell, here.four, below.four);
-    // The rim takes one draw: the centres of cells -1 and 4, column -1 of the even row, and column 8 of the odd
+    // The rim takes one draw: the centers of cells -1 and 4, column -1 of the even row, and column 8 of the odd
     // row.
     let y = world_y(place, fine_at(place, cell));
     let step = vec4<u32>(place.spacing);
@@ -287,19 +287,19 @@ fn middle_rows(
         vec4<u32>(columns.even.x, columns.odd.w, columns.even.x, columns.even.w) + step * vec4<u32>(~0u, 2u, ~0u, 2u),
         y + step * vec4<u32>(1u, 1u, 0u, 1u));
     let right = here.four.right + below.four.right;
-    let centres = rim + mean_of_sums(
+    let centers = rim + mean_of_sums(
         vec4<i32>(here.four.left + below.four.left, right, 0, 0),
         vec4<i32>(here.four.inner.x + below.four.inner.x, here.beyond + below.beyond, 0, 0));
     let squares = rim + mean_of_sums(
         vec4<i32>(0, 0, here.four.left + here.four.inner.x, right),
-        vec4<i32>(0, 0, above.left + centres.x, inner.w + centres.y));
-    let lower = DiamondRow(centres.x, inner);
+        vec4<i32>(0, 0, above.left + centers.x, inner.w + centers.y));
+    let lower = DiamondRow(centers.x, inner);
     return MiddleRows(
         middle_row(
             squares.z, here.four.inner,
             squares_beside(place, columns, cell, here.four, above.inner, inner), here.four.right),
         middle_row(
-            centres.x, squares_below(place, columns, cell, here.four, below.four, lower), inner, squares.w),
+            centers.x, squares_below(place, columns, cell, here.four, below.four, lower), inner, squares.w),
         lower);
 }
 
@@ -371,7 +371,7 @@ fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
 }
 
 // Which samples below a row of coarse points have features, starting with the one to the left of the first: the
-// centres of cells -1 to 3, and the samples between them.
+// centers of cells -1 to 3, and the samples between them.
 fn odd_features(place: Place, cell: vec2<i32>) -> u32 {
     if FEATURES == FEATURES_NONE {
         return 0u;

@@ -20,10 +20,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = id.xy + vec2<u32>(1u);
-    let centre = (id.z * params.in_width + at.y) * params.in_width + at.x;
+    let center = (id.z * params.in_width + at.y) * params.in_width + at.x;
     let gradient = vec2<i32>(
-        windows[centre + 1u] - windows[centre - 1u],
-        windows[centre + params.in_width] - windows[centre - params.in_width]);
+        windows[center + 1u] - windows[center - 1u],
+        windows[center + params.in_width] - windows[center - params.in_width]);
     let normal = slope_normal(gradient, params.run);
     let index = (id.z * width + id.y) * width + id.x;
     gradients[index] = gradient;

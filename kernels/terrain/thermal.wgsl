@@ -18,11 +18,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = id.xy + vec2<u32>(1u);
-    let centre = (id.z * params.in_width + at.y) * params.in_width + at.x;
-    let height = windows[centre];
+    let center = (id.z * params.in_width + at.y) * params.in_width + at.x;
+    let height = windows[center];
     let differences = vec4<i32>(
-        windows[centre - 1u], windows[centre + 1u],
-        windows[centre - params.in_width], windows[centre + params.in_width]) - vec4<i32>(height);
+        windows[center - 1u], windows[center + 1u],
+        windows[center - params.in_width], windows[center + params.in_width]) - vec4<i32>(height);
     let excess = max(abs(differences) - vec4<i32>(params.threshold), vec4<i32>(0)) >> vec4<u32>(3u);
     let gained = excess * sign(differences);
     cropped[(id.z * width + id.y) * width + id.x] = height + gained.x + gained.y + gained.z + gained.w;

@@ -48,21 +48,21 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let here = coarse_point(patch_index, cell);
     let right = coarse_point(patch_index, min(cell + vec2<i32>(1, 0), vec2<i32>(cells)));
     let below = coarse_point(patch_index, min(cell + vec2<i32>(0, 1), vec2<i32>(cells)));
-    let centres = diamonds(patch_index, own, vec2<i32>(before.x, own.y), vec2<i32>(own.x, before.y));
+    let centers = diamonds(patch_index, own, vec2<i32>(before.x, own.y), vec2<i32>(own.x, before.y));
     let squares = drawn(
         patch_index,
         vec4<i32>(2 * cell.x + 1, 2 * cell.x, 0, 0),
         vec4<i32>(2 * cell.y, 2 * cell.y + 1, 0, 0),
         mean_of_four(
             vec4<i32>(here), vec4<i32>(right, below, 0, 0),
-            vec4<i32>(centres.x), vec4<i32>(centres.z, centres.y, 0, 0)));
+            vec4<i32>(centers.x), vec4<i32>(centers.z, centers.y, 0, 0)));
     store(patch_index, 2 * cell, here);
     store(patch_index, 2 * cell + vec2<i32>(1, 0), squares.x);
     store(patch_index, 2 * cell + vec2<i32>(0, 1), squares.y);
-    store(patch_index, 2 * cell + vec2<i32>(1, 1), centres.x);
+    store(patch_index, 2 * cell + vec2<i32>(1, 1), centers.x);
 }
 
-// The centres of three cells.
+// The centers of three cells.
 fn diamonds(patch_index: u32, a: vec2<i32>, b: vec2<i32>, c: vec2<i32>) -> vec4<i32> {
     let top_left = corner_of_cells(patch_index, a, b, c, vec2<i32>(0, 0));
     let top_right = corner_of_cells(patch_index, a, b, c, vec2<i32>(1, 0));

@@ -4,15 +4,51 @@
 
 use crate::InputError;
 use crate::shared::animation::gate_state;
-pub use crate::shared::animation::gate_state::{Lod, OMEGA_ONE};
+/// A [`Lod`] as kernels read and write it: the struct `Lod` of the WGSL module `animation`, whose `flags` are
+/// `LOD_HIDDEN`, `LOD_FORCED` or 0.
+pub use crate::shared::animation::gate_state::Lod as PackedLod;
+pub use crate::shared::animation::gate_state::OMEGA_ONE;
+
+/// An instance's level of detail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Lod {
+    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], at which nothing is skipped. See
+    /// [`Range::omega`].
+    pub omega: u32,
+    /// The motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
+    pub allowed: u32,
+    /// The weight of this instance's motion against that of other instances, 0 to 65535, proportional to its
+    /// size on screen.
+    pub weight: u32,
+    /// Which bones a frame samples.
+    pub sampling: Sampling,
+}
+
+/// Which bones of an instance a frame samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Sampling {
+    /// Those that the gate chooses.
+    #[default]
+    Gated,
+    /// None: the instance is not in view. It costs nothing, and is sampled in full when it comes back.
+    Hidden,
+    /// All of them, whatever the gate says.
+    Forced,
+}
 
 impl Lod {
-    /// The instance is not in view: it costs nothing, and is sampled in full when it comes back.
-    pub const HIDDEN: u32 = gate_state::LOD_HIDDEN;
-    /// The instance is sampled in full this frame, whatever the gate says.
-    pub const REFRESH: u32 = gate_state::LOD_REFRESH;
     /// Full detail.
-    pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };
+    pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, sampling: Sampling::Gated };
+
+    /// The level of detail as kernels read it.
+    pub fn packed(&self) -> PackedLod {
+        let flags = match self.sampling {
+            Sampling::Gated => 0,
+            Sampling::Hidden => gate_state::LOD_HIDDEN,
+            Sampling::Forced => gate_state::LOD_FORCED,
+        };
+        PackedLod { omega: self.omega, allowed: self.allowed, weight: self.weight, flags }
+    }
 }
 
 impl Default for Lod {
@@ -75,11 +111,11 @@ impl Projection {
     }
 
     /// The largest distance, in metres, by which every point inside a sphere may be off while none is drawn
-    /// more than `pixels` from its place. `centre` is in the camera's space: x and y across, z along the view.
+    /// more than `pixels` from its place. `center` is in the camera's space: x and y across, z along the view.
     /// The result is 0 if a part of the sphere may reach the near plane. `docs/pixel-bounds.md` has the
     /// derivation.
-    pub fn allowed(&self, centre: [f32; 3], radius: f32, pixels: f32) -> f32 {
-        let [x, y, z] = centre.map(f64::from);
+    pub fn allowed(&self, center: [f32; 3], radius: f32, pixels: f32) -> f32 {
+        let [x, y, z] = center.map(f64::from);
         let (radius, pixels, focal) = (f64::from(radius), f64::from(pixels), f64::from(self.focal_pixels));
         let depth = z - radius;
         if depth <= f64::from(self.near) {
@@ -125,8 +161,8 @@ mod tests {
             let screen = |[x, y, z]: [f64; 3]| [x / z, y / z].map(|s| s * f64::from(projection.focal_pixels));
             for (at, to) in (0..144).flat_map(|at| (0..144).map(move |to| (at, to))) {
                 let (out, way) = (around(12, at), around(12, to));
-                let centre = [f64::from(x), 0.5, f64::from(z)];
-                let fresh: [f64; 3] = std::array::from_fn(|i| centre[i] + f64::from(radius) * out[i]);
+                let center = [f64::from(x), 0.5, f64::from(z)];
+                let fresh: [f64; 3] = std::array::from_fn(|i| center[i] + f64::from(radius) * out[i]);
                 let stale: [f64; 3] = std::array::from_fn(|i| fresh[i] + allowed * way[i]);
                 let ([ax, ay], [bx, by]) = (screen(fresh), screen(stale));
                 let off = (ax - bx).hypot(ay - by) / f64::from(pixels);

@@ -13,7 +13,7 @@ use super::options::{DrawnOptions, Layout, LodOptions, MeshDetail, SkinningDetai
 use super::play::{Found, StageTimes, play};
 use super::progress::{Listener, Steps};
 use super::setting::Setting;
-use super::stage::{Stage, mean_omega, moving_bones};
+use super::stage::{Stage, animated_bones, mean_omega};
 use super::vertices::FrameCost;
 use crate::Error;
 use crate::animation::Gate;
@@ -45,7 +45,7 @@ pub struct AnimationReport {
     /// Number of bones of an instance.
     pub bones: usize,
     /// Number of bones of an instance that the clip moves.
-    pub moving_bones: usize,
+    pub animated_bones: usize,
     /// The units, the camera and the frames of the measurement.
     #[serde(flatten)]
     pub setting: Setting,
@@ -69,9 +69,9 @@ pub struct AnimationRow {
     pub mean_omega: f64,
     /// Number of bones that were interpolated.
     pub interpolated: u64,
-    /// Number of moving bones that were not interpolated.
+    /// Number of animated bones that were not interpolated.
     pub skipped: u64,
-    /// Share of the moving bones that were interpolated, 0 to 1.
+    /// Share of the animated bones that were interpolated, 0 to 1.
     pub fraction: f64,
     /// Number of bones whose matrices were computed.
     pub concatenated: u64,
@@ -187,7 +187,7 @@ fn measured(
     listener: Listener<'_>,
 ) -> Result<AnimationReport, Error> {
     let gates = [stage.gate(&options.gate)?, stage.gate(&GateMode::Off)?];
-    let moving_bones = moving_bones(&gates[1]);
+    let animated_bones = animated_bones(&gates[1]);
     let steps = steps(options, options.gate.name().as_str(), listener);
     let row = |distance: &f32| row(gpu, stage, options, &gates, *distance, &steps);
     let distances = options.distances.iter().map(row).collect::<Result<_, Error>>()?;
@@ -204,7 +204,7 @@ fn measured(
         layout: options.crowd.layout,
         seed: options.crowd.seed,
         bones: stage.set.bones(),
-        moving_bones,
+        animated_bones,
         setting: Setting::new(stage),
         skinning: None,
         mesh: None,
@@ -234,7 +234,7 @@ fn row(
     };
     let Found { interpolated, concatenated, errors, jump, gated, full } = found;
     let (pairs, frames) = (stage.pairs(), u64::from(options.crowd.frames));
-    let moving = (stage.instances.len() * moving_bones(off)) as u64 * frames;
+    let moving = (stage.instances.len() * animated_bones(off)) as u64 * frames;
     Ok(AnimationRow {
         distance,
         mean_omega,

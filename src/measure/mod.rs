@@ -12,7 +12,7 @@
 //! # What stays the same
 //!
 //! Every instance plays the same clip in a loop, from its own start time, which is drawn from a seed. The camera
-//! does not move: it looks at the crowd's centre at half its height, so that instances keep their distances, and
+//! does not move: it looks at the crowd's center at half its height, so that instances keep their distances, and
 //! a gate's levels of detail do not change during a run. The picture has 1080 lines and a vertical field of view
 //! of 60 degrees.
 //!

@@ -54,13 +54,13 @@ impl Default for VertexMeter {
 pub(crate) struct Skinned<'a> {
     pub vertices: &'a [Vertex],
     /// For each vertex of the mesh, its index among the vertices of an instance.
-    pub places: &'a [u32],
+    pub slots: &'a [u32],
 }
 
 impl Skinned<'_> {
     /// The position of a vertex, if `vertices` holds those of one instance only.
     fn position(&self, vertex: u32) -> Vec3 {
-        Vec3::from(self.vertices[self.places[vertex as usize] as usize].position)
+        Vec3::from(self.vertices[self.slots[vertex as usize] as usize].position)
     }
 }
 
@@ -94,7 +94,7 @@ impl VertexMeter {
         fresh: Skinned<'_>,
     ) {
         let count = placements.origins.len();
-        let vertices = fresh.places.len().max(1);
+        let vertices = fresh.slots.len().max(1);
         // The instances are split into as many parts as there are threads.
         let each = count.div_ceil(rayon::current_num_threads());
         let lists =
@@ -134,7 +134,7 @@ impl VertexMeter {
         drawn: Skinned<'_>,
         wanted: Skinned<'_>,
     ) {
-        for vertex in 0..wanted.places.len() {
+        for vertex in 0..wanted.slots.len() {
             let point = wanted.position(vertex as u32);
             let nearest = match level {
                 None => drawn.position(vertex as u32),

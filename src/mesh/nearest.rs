@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_nearer_than_any_other() {
+    fn positions_are_nearer_than_any_other() {
         let steps = || (0..=20).map(|step| step as f32 / 20.0);
         for x in steps() {
             for y in steps() {
@@ -90,7 +90,7 @@ mod tests {
 
     /// The sizes are too large or too small for `f32` to represent their fourth powers.
     #[test]
-    fn places_are_always_on_the_triangle() {
+    fn positions_are_always_on_the_triangle() {
         for scale in [1e-30_f32, 1e-18, 1e-11, 1e10, 1e15, 1e18] {
             for at in 0..100 {
                 let at = at as f32;

@@ -238,9 +238,9 @@ impl Simplified {
 /// use relievo::mesh::{Options, Stopped, Surface, simplify};
 ///
 /// // A square of four triangles around its middle.
-/// let places = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]];
+/// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]];
 /// let indices = [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];
-/// let surface = Surface { poses: &[places], indices: &indices, attributes: &[], stride: 0 };
+/// let surface = Surface { poses: &[positions], indices: &indices, attributes: &[], stride: 0 };
 /// let simplified = simplify(&surface, &Options { error: 0.01, ..Options::default() })?;
 /// assert_eq!(simplified.triangles(&indices, 1).len(), 2 * 3);
 /// assert_eq!((simplified.error(), simplified.stopped()), (0.0, Stopped::Error));
@@ -303,12 +303,12 @@ fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
             return Err(InputError::new(field, len, format!("must be below {most}")));
         }
     }
-    for (pose, places) in surface.poses.iter().enumerate() {
-        if places.len() != vertices {
+    for (pose, positions) in surface.poses.iter().enumerate() {
+        if positions.len() != vertices {
             let bound = format!("must be {vertices}, as of the first pose");
-            return Err(InputError::new(format!("poses[{pose}].len"), places.len(), bound));
+            return Err(InputError::new(format!("poses[{pose}].len"), positions.len(), bound));
         }
-        finite(&format!("poses[{pose}]"), places.as_flattened(), 3)?;
+        finite(&format!("poses[{pose}]"), positions.as_flattened(), 3)?;
     }
     crate::asset::indices::check_triangles("indices", surface.indices, vertices)?;
     if vertices.checked_mul(surface.stride) != Some(surface.attributes.len()) {

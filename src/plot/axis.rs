@@ -56,9 +56,9 @@ impl Axis {
         let shown = [bottom, range[1]];
         let digits = |digits: &[f64]| -> Vec<f64> {
             let decades = multiples(1.0, [shown[0] - 1.0, shown[1]]);
-            let places =
+            let positions =
                 decades.iter().flat_map(|decade| digits.iter().map(move |digit| decade + digit.log10()));
-            places.filter(|place| (shown[0]..=shown[1]).contains(place)).collect()
+            positions.filter(|position| (shown[0]..=shown[1]).contains(position)).collect()
         };
         let mut ticks = if span < 1.2 {
             digits(&[1.0, 2.0, 3.0, 5.0])
@@ -77,7 +77,7 @@ impl Axis {
     }
 
     /// The position of a value; `None` if the value is not finite.
-    pub fn place(&self, value: f64) -> Option<f64> {
+    pub fn position(&self, value: f64) -> Option<f64> {
         match self.log {
             _ if !value.is_finite() => None,
             true if self.is_zero(value) => self.zero,
@@ -92,11 +92,11 @@ impl Axis {
     }
 
     /// The label at a position.
-    pub fn label(&self, place: f64) -> String {
-        if self.zero == Some(place) {
+    pub fn label(&self, position: f64) -> String {
+        if self.zero == Some(position) {
             return "0".to_owned();
         }
-        let value = if self.log { 10.0_f64.powf(place) } else { place };
+        let value = if self.log { 10.0_f64.powf(position) } else { position };
         number(value)
     }
 }
@@ -105,8 +105,8 @@ impl Ranged for Axis {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
 
-    fn map(&self, place: &f64, (start, end): (i32, i32)) -> i32 {
-        let fraction = (place - self.range[0]) / (self.range[1] - self.range[0]);
+    fn map(&self, position: &f64, (start, end): (i32, i32)) -> i32 {
+        let fraction = (position - self.range[0]) / (self.range[1] - self.range[0]);
         start + (fraction * f64::from(end - start)).round() as i32
     }
 
@@ -120,8 +120,8 @@ impl Ranged for Axis {
 }
 
 impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, place: &f64) -> String {
-        self.label(*place)
+    fn format_ext(&self, position: &f64) -> String {
+        self.label(*position)
     }
 }
 
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn logarithmic_axes_have_decades_and_a_place_for_zero() {
+    fn logarithmic_axes_have_decades_and_a_position_for_zero() {
         assert_eq!(labels(&[0.004, 30.0], true), ["0.01", "0.1", "1", "10"]);
         assert_eq!(labels(&[0.0, 0.004, 30.0], true), ["0.01", "0.1", "1", "10", "0"]);
         assert_eq!(labels(&[9.0, 60.0], true), ["10", "20", "30", "50"]);
@@ -188,20 +188,23 @@ mod tests {
     }
 
     #[test]
-    fn places_lie_within_the_range_and_ascend() {
+    fn positions_lie_within_the_range_and_ascend() {
         let values = [0.0, 1e-4, 0.3, 1.0, 77.0];
         for log in [false, true] {
             let axis = Axis::new(values.into_iter().chain([f64::NAN, f64::INFINITY]), log);
-            let places = values.map(|value| axis.place(value).expect("a place"));
-            assert!(places.is_sorted_by(|a, b| a < b), "{places:?}");
+            let positions = values.map(|value| axis.position(value).expect("a position"));
+            assert!(positions.is_sorted_by(|a, b| a < b), "{positions:?}");
             assert!(
-                places.iter().chain(&axis.ticks).all(|place| (axis.range[0]..=axis.range[1]).contains(place))
+                positions
+                    .iter()
+                    .chain(&axis.ticks)
+                    .all(|position| (axis.range[0]..=axis.range[1]).contains(position))
             );
-            assert_eq!(axis.place(f64::NAN), None);
+            assert_eq!(axis.position(f64::NAN), None);
             assert_eq!(axis.is_zero(0.0), log);
         }
         assert_eq!(
-            Axis::new([0.0, 1.0].into_iter(), true).place(0.0),
+            Axis::new([0.0, 1.0].into_iter(), true).position(0.0),
             Some(Axis::new([0.0, 1.0].into_iter(), true).range[0])
         );
     }

@@ -8,8 +8,8 @@ use plotters::prelude::*;
 /// The result of drawing.
 pub type Drawn<'a> = Result<(), DrawingAreaErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
 
-/// Where a text lies relative to its position: to the right, centred, or to the left. Vertically it is
-/// centred.
+/// Where a text lies relative to its position: to the right, centered, or to the left. Vertically it is
+/// centered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     Left,
@@ -53,7 +53,7 @@ impl Letters {
             Align::Center => -0.5 * width,
             Align::Right => -width,
         };
-        // Capitals of Hack are 0.73 em high: half of it centres them.
+        // Capitals of Hack are 0.73 em high: half of it centers them.
         let baseline = 0.365 * size as f32;
         for letter in text.chars() {
             let id = font.glyph_id(letter);

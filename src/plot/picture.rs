@@ -77,11 +77,11 @@ impl<'a> Picture<'a> {
         &self,
         area: &Area<'b>,
         text: &str,
-        place: (i32, i32),
+        position: (i32, i32),
         (fraction, align): (f64, Align),
         color: RGBColor,
     ) -> Drawn<'b> {
-        self.letters.write(area, text, place, (fraction * f64::from(self.text), align, false), color)
+        self.letters.write(area, text, position, (fraction * f64::from(self.text), align, false), color)
     }
 
     /// The lines of the legend: for each entry the index of its name and its horizontal position.
@@ -106,8 +106,8 @@ impl<'a> Picture<'a> {
         let middle = x + self.text;
         area.draw(&PathElement::new([(x, y), (middle + self.text, y)], self.stroke(index)))?;
         self.mark(index, true, (middle, y), area)?;
-        let place = (middle + self.text * 3 / 2, y);
-        self.write(area, self.names[index], place, (1.0, Align::Left), INK)
+        let position = (middle + self.text * 3 / 2, y);
+        self.write(area, self.names[index], position, (1.0, Align::Left), INK)
     }
 
     fn panel<'b>(&self, chart: &Chart, area: &Area<'b>, whole: &Area<'b>) -> Drawn<'b> {
@@ -124,8 +124,9 @@ impl<'a> Picture<'a> {
         let plane = panel.plotting_area();
         self.frame(chart, plane, whole)?;
         for series in &chart.series {
-            let places = series.points.iter().filter_map(|point| self.place(*point)).collect::<Vec<_>>();
-            plane.draw(&PathElement::new(places, self.stroke(self.index(&series.name))))?;
+            let positions =
+                series.points.iter().filter_map(|point| self.position(*point)).collect::<Vec<_>>();
+            plane.draw(&PathElement::new(positions, self.stroke(self.index(&series.name))))?;
         }
         self.points(chart, plane, whole)
     }
@@ -138,17 +139,17 @@ impl<'a> Picture<'a> {
         let corners = [(columns.start, rows.start), (columns.start, rows.end), (columns.end, rows.end)];
         whole.draw(&PathElement::new(corners, line))?;
         let (gap, tick) = (self.text / 2, self.text / 4);
-        for place in &x.ticks {
-            let (at, _) = plane.map_coordinate(&(*place, y.range[0]));
+        for position in &x.ticks {
+            let (at, _) = plane.map_coordinate(&(*position, y.range[0]));
             whole.draw(&PathElement::new([(at, rows.end), (at, rows.end + tick)], line))?;
             let below = (at, rows.end + 2 * gap);
-            self.write(whole, &x.label(*place), below, (0.85, Align::Center), INK)?;
+            self.write(whole, &x.label(*position), below, (0.85, Align::Center), INK)?;
         }
-        for place in &y.ticks {
-            let (_, at) = plane.map_coordinate(&(x.range[0], *place));
+        for position in &y.ticks {
+            let (_, at) = plane.map_coordinate(&(x.range[0], *position));
             whole.draw(&PathElement::new([(columns.start - tick, at), (columns.start, at)], line))?;
             let beside = (columns.start - gap, at);
-            self.write(whole, &y.label(*place), beside, (0.85, Align::Right), INK)?;
+            self.write(whole, &y.label(*position), beside, (0.85, Align::Right), INK)?;
         }
         let middle = ((columns.start + columns.end) / 2, (rows.start + rows.end) / 2);
         let (above, below) = (rows.start - self.text, rows.end + self.text * 5 / 2);
@@ -164,15 +165,15 @@ impl<'a> Picture<'a> {
         let [x, y] = &self.axes;
         for series in &chart.series {
             for point in &series.points {
-                let Some(place) = self.place(*point) else { continue };
+                let Some(position) = self.position(*point) else { continue };
                 let filled = !x.is_zero(point.0) && !y.is_zero(point.1);
-                self.mark(self.index(&series.name), filled, plane.map_coordinate(&place), whole)?;
+                self.mark(self.index(&series.name), filled, plane.map_coordinate(&position), whole)?;
             }
         }
         for series in &chart.series {
             for (point, label) in series.points.iter().zip(&series.labels) {
-                let Some(place) = self.place(*point) else { continue };
-                let (x, y) = plane.map_coordinate(&place);
+                let Some(position) = self.position(*point) else { continue };
+                let (x, y) = plane.map_coordinate(&position);
                 let beside = (x + self.text * 2 / 5, y - self.text * 3 / 5);
                 self.write(whole, label, beside, (0.75, Align::Left), color(self.index(&series.name)))?;
             }
@@ -184,8 +185,8 @@ impl<'a> Picture<'a> {
         self.names.iter().position(|other| *other == name).unwrap_or(0)
     }
 
-    fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
-        Some((self.axes[0].place(x)?, self.axes[1].place(y)?))
+    fn position(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
+        Some((self.axes[0].position(x)?, self.axes[1].position(y)?))
     }
 
     fn stroke(&self, index: usize) -> ShapeStyle {
@@ -194,12 +195,12 @@ impl<'a> Picture<'a> {
 
     /// Draws the mark of a series around a pixel; each series has its own shape and colour. Hollow marks are
     /// white inside.
-    fn mark<'b>(&self, index: usize, filled: bool, place: (i32, i32), area: &Area<'b>) -> Drawn<'b> {
+    fn mark<'b>(&self, index: usize, filled: bool, position: (i32, i32), area: &Area<'b>) -> Drawn<'b> {
         let shape = SHAPES[index % SHAPES.len()];
         // Triangles are smaller than other shapes in the same circle.
         let radius = f64::from(self.text) * if shape.0 == 3 { 0.58 } else { 0.46 };
-        fill(area, shape, place, radius, color(index))?;
-        if filled { Ok(()) } else { fill(area, shape, place, 0.55 * radius, WHITE) }
+        fill(area, shape, position, radius, color(index))?;
+        if filled { Ok(()) } else { fill(area, shape, position, 0.55 * radius, WHITE) }
     }
 }
 

@@ -22,15 +22,15 @@ pub struct Camera {
 impl Camera {
     /// A camera that sees a box from the south, at a low angle.
     pub(crate) fn framing(low: Vec3, high: Vec3) -> Self {
-        let (centre, extent) = ((low + high) / 2.0, (high - low).max(Vec3::splat(1e-3)));
+        let (center, extent) = ((low + high) / 2.0, (high - low).max(Vec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;
         // The circle around the box's footprint fills the height of the picture, since the view from above
         // foreshortens it.
         let radius = extent.length() / 2.0;
         let distance = 0.72 * radius / (field_of_view / 2.0).sin();
-        let eye = centre + Vec3::new(-0.30, 0.52, 0.80).normalize() * distance;
+        let eye = center + Vec3::new(-0.30, 0.52, 0.80).normalize() * distance;
         // The near edge takes more of the picture than the far edge, so the target is shifted.
-        let target = centre + Vec3::new(-0.03, -0.10, 0.05) * radius;
+        let target = center + Vec3::new(-0.03, -0.10, 0.05) * radius;
         Self { eye, target, field_of_view, near: distance / 1000.0, far: 2.0 * distance + 2.0 * radius }
     }
 

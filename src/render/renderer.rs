@@ -7,7 +7,8 @@ use std::collections::HashMap;
 
 use super::format::TargetFormat;
 use crate::gpu::Gpu;
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, LISTS, MeshDrawable};
+use crate::lod::{OBJECT_LISTS, SceneDraw};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
 use crate::{Error, InputError};
 pub use pass::ScenePass;
@@ -32,9 +33,6 @@ pub struct Renderer {
     layouts: SceneLayouts,
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
 }
-
-/// Bytes of an indexed indirect draw.
-const DRAW_BYTES: u64 = 20;
 
 impl Renderer {
     /// A renderer for targets of this format. It compiles nothing yet.
@@ -104,7 +102,7 @@ impl Renderer {
             }
         }
         pass.set_bind_group(0, view.group);
-        for object in objects.filter(|object| object.instances > 0) {
+        for object in objects.filter(|object| object.lod.instances > 0) {
             match object.drawable {
                 Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
                 Drawable::Terrain(terrain) => {
@@ -174,7 +172,7 @@ fn kinds_of(drawable: &Drawable) -> impl Iterator<Item = Kind> {
     parts.iter().map(Kind::of).chain(terrain)
 }
 
-/// Draws the lists of all levels of a part: those of mirrored instances, or those of the others.
+/// Draws a part of all instances that are mirrored, or of all others: list 2 · level + mirrored has a draw for each part.
 fn draw_lists<'a>(
     pass: &mut impl ScenePass<'a>,
     view: &DrawnView<'a>,
@@ -182,12 +180,12 @@ fn draw_lists<'a>(
     part: u32,
     is_mirrored: bool,
 ) {
-    const WORD: u64 = size_of::<u32>() as u64;
-    for list in (0..object.levels).map(|level| 2 * level + u32::from(is_mirrored)) {
-        let first = u64::from(object.first_list) + u64::from(list) * u64::from(object.instances);
-        let end = first + u64::from(object.instances);
-        pass.set_vertex_buffer(0, view.lists.slice(WORD * first..WORD * end));
-        let draw = u64::from(object.first_draw) + u64::from(LISTS * part + list);
-        pass.draw_indexed_indirect(view.arguments, DRAW_BYTES * draw);
+    let lod = object.lod;
+    for list in (0..lod.levels).map(|level| 2 * level + u32::from(is_mirrored)) {
+        let first = u64::from(lod.first_list) + u64::from(list) * u64::from(lod.instances);
+        let bytes = [first, first + u64::from(lod.instances)].map(|word| word * size_of::<u32>() as u64);
+        pass.set_vertex_buffer(0, view.lists.raw().slice(bytes[0]..bytes[1]));
+        let draw = u64::from(lod.first_draw) + u64::from(OBJECT_LISTS * part + list);
+        pass.draw_indexed_indirect(view.arguments.raw(), size_of::<SceneDraw>() as u64 * draw);
     }
 }

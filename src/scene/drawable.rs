@@ -2,15 +2,13 @@
 
 use crate::gpu::bindings::render::{scene_mesh, scene_terrain};
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Uniform};
+use crate::lod::{LodObject, SceneDraw};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{PartMaterials, ReliefMaterial};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::vertex::Vertex;
 use crate::terrain::materials::Materials;
-
-/// The lists of an object in a view: two for each of 8 levels.
-pub(crate) const LISTS: u32 = 16;
 
 /// How an object is drawn.
 #[derive(Debug, Clone)]
@@ -159,19 +157,13 @@ pub(crate) fn patch_indices(size: u32) -> Vec<u32> {
     cells().flat_map(|y| cells().flat_map(move |x| corners(x, y))).collect()
 }
 
-/// An object as a view draws it: list 2 · level + mirrored has `instances` words, and a draw for each part.
+/// An object as a view draws it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawnObject<'a> {
     /// How it is drawn.
     pub drawable: &'a Drawable,
-    /// The word at which its first list begins.
-    pub first_list: u32,
-    /// The number of words of a list.
-    pub instances: u32,
-    /// The index of its first draw: part · 16 + list follows it.
-    pub first_draw: u32,
-    /// Its number of levels, 1 to 8.
-    pub levels: u32,
+    /// Where its lists and draws lie, and its number of levels.
+    pub lod: &'a LodObject,
     /// Whether an instance may be mirrored; if none is, the lists of mirrored ones are not drawn.
     pub mirrors: bool,
     /// Bind group 1 of terrain: [`SceneLayouts::ground`]. Meshes have none.
@@ -183,10 +175,10 @@ pub(crate) struct DrawnObject<'a> {
 pub(crate) struct DrawnView<'a> {
     /// Bind group 0: [`SceneLayouts::view`].
     pub group: &'a Group,
-    /// Instances of each list, by their index in the object.
-    pub lists: &'a wgpu::Buffer,
-    /// Draws of five words.
-    pub arguments: &'a wgpu::Buffer,
+    /// The instances of each list, by their index in the object.
+    pub lists: &'a Buffer<u32>,
+    /// The draws.
+    pub arguments: &'a Buffer<SceneDraw>,
     /// Whether the picture is a mirror image, as `SceneView::side` says.
     pub mirrors: bool,
     /// Whether depth falls with distance.

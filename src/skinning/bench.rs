@@ -35,11 +35,11 @@ pub(crate) fn tube(influences: usize, targets: usize) -> Result<Model, Error> {
     let vertices: Vec<[f32; 2]> = (0..RING * RING)
         .map(|vertex| [(vertex % RING) as f32 / RING as f32, (vertex / RING) as f32 / RING as f32])
         .collect();
-    let place = |[around, along]: &[f32; 2]| {
+    let position = |[around, along]: &[f32; 2]| {
         let (sine, cosine) = (around * std::f32::consts::TAU).sin_cos();
         [0.1 * cosine, *along, 0.1 * sine]
     };
-    let positions: Vec<_> = vertices.iter().map(place).collect();
+    let positions: Vec<_> = vertices.iter().map(position).collect();
     let corner = |ring: usize, side: usize| (ring * RING + side % RING) as u32;
     let quad = |at: usize| {
         let (ring, side) = (at / RING, at % RING);

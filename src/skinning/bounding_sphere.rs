@@ -20,7 +20,7 @@ pub(crate) const MARGIN: f32 = 1.05;
 /// A sphere in the model's space, in the model's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundingSphere {
-    /// The sphere's centre.
+    /// The sphere's center.
     pub center: Vec3,
     /// The sphere's radius.
     pub radius: f32,
@@ -50,7 +50,7 @@ impl BoundingSphere {
     }
 }
 
-/// The centre of a box; the origin if the box is empty.
+/// The center of a box; the origin if the box is empty.
 pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
     if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }

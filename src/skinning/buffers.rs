@@ -134,7 +134,7 @@ pub struct SkinnedCrowd {
     /// Weights of morph targets, instance by instance; 0 at first.
     pub weights: Buffer<f32>,
     /// The vertices that [`super::morph::MorphPass`] writes if the mesh has targets, at `instance · vertices +
-    /// place`. Clusters beyond an instance's level keep their previous contents.
+    /// slot`. Clusters beyond an instance's level keep their previous contents.
     pub morphed: Buffer<Vertex>,
     /// Number of instances.
     pub instances: usize,

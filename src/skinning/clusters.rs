@@ -18,7 +18,7 @@ pub const MAX_SKIN_BONES: usize = 1 << 16;
 /// The part of a mesh in clusters that a level of detail uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClusterLevel {
-    /// Its vertices lie in this many places, from the first on.
+    /// Its vertices lie in this many slots, from the first on.
     pub vertices: u32,
     /// This many clusters, from the first on, hold its vertices. The last of them may also hold vertices of a
     /// finer level.
@@ -33,13 +33,13 @@ pub struct ClusterLevel {
 /// first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
-    /// For each place, the mesh's vertex there.
+    /// For each slot, the mesh's vertex there.
     pub order: Vec<u32>,
     /// The vertices in this order, before morphing.
     pub vertices: Vec<Vertex>,
     /// Texture coordinates in this order.
     pub uv: Vec<[f32; 2]>,
-    /// The triangles of all levels, one level after the other, in the mesh's order; indices are places.
+    /// The triangles of all levels, one level after the other, in the mesh's order; indices are slots.
     pub indices: Vec<u32>,
     /// The mesh itself with all of its vertices, followed by its levels ([`Mesh::levels`]) or by those that it
     /// uses at the levels of a character ([`Clusters::with_levels`]).
@@ -75,17 +75,17 @@ impl Clusters {
         let slot_of = bones.slots_of_bones();
         let bands = bands(mesh);
         let order = order(mesh, &bands);
-        let place = places(&order);
+        let slot = slots(&order);
         let vertices = vertices_of(mesh);
         let mask_words = bones.words();
         let clusters = order.chunks(CLUSTER);
         Ok(Self {
             vertices: order.iter().map(|vertex| vertices[*vertex as usize]).collect(),
             uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
-            indices: all_triangles(mesh).flatten().map(|index| place[*index as usize]).collect(),
+            indices: all_triangles(mesh).flatten().map(|index| slot[*index as usize]).collect(),
             levels: levels(mesh, &bands),
             influences: influences(mesh, &order),
-            morphs: morphs(mesh, &place),
+            morphs: morphs(mesh, &slot),
             masks: clusters.flat_map(|cluster| mask(mesh, skin, &slot_of, cluster, mask_words)).collect(),
             mask_words,
             order,
@@ -100,9 +100,9 @@ impl Clusters {
         self
     }
 
-    /// The place of each of the mesh's vertices.
-    pub fn places(&self) -> Vec<u32> {
-        places(&self.order)
+    /// The slot of each of the mesh's vertices.
+    pub fn slots(&self) -> Vec<u32> {
+        slots(&self.order)
     }
 
     /// Number of clusters.
@@ -120,7 +120,7 @@ impl Clusters {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Converts one value per place to the mesh's own order.
+    /// Converts one value per slot to the mesh's own order.
     pub fn in_mesh_order<T: Copy>(&self, placed: &[T]) -> Vec<T> {
         let mut all: Vec<_> = self.order.iter().zip(placed).collect();
         all.sort_by_key(|(vertex, _)| **vertex);
@@ -128,10 +128,10 @@ impl Clusters {
     }
 }
 
-fn places(order: &[u32]) -> Vec<u32> {
-    let mut places = vec![0; order.len()];
-    (0..).zip(order).for_each(|(place, vertex)| places[*vertex as usize] = place);
-    places
+fn slots(order: &[u32]) -> Vec<u32> {
+    let mut slots = vec![0; order.len()];
+    (0..).zip(order).for_each(|(slot, vertex)| slots[*vertex as usize] = slot);
+    slots
 }
 
 fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
@@ -171,10 +171,10 @@ fn order(mesh: &Mesh, bands: &[u32]) -> Vec<u32> {
     order
 }
 
-fn morphs(mesh: &Mesh, place: &[u32]) -> Vec<bool> {
+fn morphs(mesh: &Mesh, slot: &[u32]) -> Vec<bool> {
     let mut morphs = vec![false; mesh.vertices().div_ceil(CLUSTER)];
     let moved = mesh.targets.iter().flat_map(|target| &target.vertices);
-    moved.for_each(|vertex| morphs[place[*vertex as usize] as usize / CLUSTER] = true);
+    moved.for_each(|vertex| morphs[slot[*vertex as usize] as usize / CLUSTER] = true);
     morphs
 }
 
@@ -227,8 +227,8 @@ mod tests {
         }
         let slots_of_bones = Order::new(&model.skeleton).slots;
         let mut bones = 0;
-        for (place, vertex) in clusters.order.iter().enumerate() {
-            let (cluster, lane) = (place / 64, place % 64);
+        for (index, vertex) in clusters.order.iter().enumerate() {
+            let (cluster, lane) = (index / 64, index % 64);
             let mask = &clusters.masks[5 * cluster..][..5];
             let [first, slots] = [0, 1].map(|at| clusters.influences[2 * cluster + at] as usize);
             let word = |column: usize| clusters.influences[first + 64 * column + lane];
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_are_the_first_places() {
+    fn levels_are_the_first_slots() {
         let mut model = crate::samples::creature().expect("valid");
         let mesh = &mut model.meshes[0];
         let plain = Clusters::new(mesh, &model.skins, &model.skeleton).expect("fits");
@@ -273,9 +273,9 @@ mod tests {
         for level in 0..3 {
             let ClusterLevel { vertices, clusters: held, first_index, indices } = clusters.level(level);
             let placed = &clusters.indices[first_index as usize..][..indices as usize];
-            let named: Vec<u32> = placed.iter().map(|place| clusters.order[*place as usize]).collect();
+            let named: Vec<u32> = placed.iter().map(|slot| clusters.order[*slot as usize]).collect();
             assert_eq!(named, mesh.triangles(level));
-            // A level uses the first places. Level 0 also has vertices without a triangle.
+            // A level uses the first slots. Level 0 also has vertices without a triangle.
             let used: std::collections::BTreeSet<_> = placed.iter().copied().collect();
             assert!(used.iter().copied().eq(0..vertices) || level == 0 && used.last() < Some(&vertices));
             assert_eq!(held, vertices.div_ceil(64));

@@ -9,7 +9,7 @@
 //!   the diagonal of its bounding box) between keys, because keys are added where linear interpolation would
 //!   be further off. Where the collapsed bone does not move in a clip, the tracks keep their keys, their
 //!   interpolation and their tangents.
-//! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same place,
+//! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same position,
 //!   their influences are added up, so that skins get fewer joints; if a skin was not bound at rest, its
 //!   joints remain separate.
 //!
@@ -76,11 +76,11 @@ impl CollapseOptions {
 /// with the clips' weights of morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollapseError {
-    /// The largest distance of a vertex from its place in the original.
+    /// The largest distance of a vertex from its position in the original.
     pub largest: f32,
     /// The root mean square of these distances, over all vertices in all poses.
     pub rms: f32,
-    /// The largest distance of a kept bone's origin from its place in the original.
+    /// The largest distance of a kept bone's origin from its position in the original.
     pub kept_bones: f32,
 }
 

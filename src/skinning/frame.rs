@@ -28,7 +28,7 @@ pub struct SkinFrame {
     pub select: SelectBuffers,
     /// The clusters that the last [`SkinFrame::record_updated_bones`] selected.
     pub active: ActiveClusters,
-    /// Skinned vertices, at `instance · vertices + place`. Those of clusters beyond an instance's level of
+    /// Skinned vertices, at `instance · vertices + slot`. Those of clusters beyond an instance's level of
     /// detail are out of date.
     pub skinned: Buffer<Vertex>,
     palette: Job,

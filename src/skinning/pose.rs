@@ -98,7 +98,7 @@ impl Pose {
         Self::at(model, mesh, &local_to_model(&model.skeleton, locals), weights)
     }
 
-    /// With bones at these places in the model's space.
+    /// With bones at these positions in the model's space.
     pub(super) fn at(model: &Model, mesh: &Mesh, models: &[Affine], weights: &[f32]) -> Self {
         Self { palette: palette(&model.skins[mesh.skin], models), vertices: morph(mesh, weights) }
     }

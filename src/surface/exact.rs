@@ -35,7 +35,7 @@ pub fn exact(map: &HeightMap, ray: &Ray, address: Address) -> Option<Exact> {
     let mut cell = start.map(|at| at.floor() as i64);
     let mut enter = 0.0;
     let parameter = loop {
-        // The parameters at which the ray crosses the next line of texel centres, in x and in y.
+        // The parameters at which the ray crosses the next line of texel centers, in x and in y.
         let exits = [0, 1].map(|i| match travel[i] {
             0.0 => f64::INFINITY,
             forward if forward > 0.0 => ((cell[i] + 1) as f64 - start[i]) / forward,

@@ -36,8 +36,8 @@ impl Address {
     }
 }
 
-/// The heights of a tile, row by row from the top left, finite, 0 (lowest) to 1. The centre of texel (i, j) is
-/// at uv ((i + ½) / width, (j + ½) / height); between centres heights are interpolated bilinearly.
+/// The heights of a tile, row by row from the top left, finite, 0 (lowest) to 1. The center of texel (i, j) is
+/// at uv ((i + ½) / width, (j + ½) / height); between centers heights are interpolated bilinearly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightMap {
     width: u32,

@@ -28,7 +28,7 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
-    /// A square with an edge of one world unit, centred at the origin and facing +Z. u runs along +X and v
+    /// A square with an edge of one world unit, centered at the origin and facing +Z. u runs along +X and v
     /// along −Y, both from 0 to `tiles`.
     pub fn square(tiles: f32) -> Self {
         let vertex = |x: f32, y: f32| SurfaceVertex {

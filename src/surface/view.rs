@@ -99,7 +99,7 @@ impl SquareView {
         self.uv(x, y).map(|uv| Ray::new(uv.map(|axis| axis as f32), view, scale, plane))
     }
 
-    /// The rays through the centres of all pixels, row by row.
+    /// The rays through the centers of all pixels, row by row.
     pub fn rays(&self, scale: f32, plane: f32) -> Vec<Option<Ray>> {
         let [width, height] = self.size;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -149,8 +149,8 @@ mod tests {
         let [left, top] = [200.0 - edge / 2.0 + 0.01, 150.0 - edge / 2.0 + 0.01];
         let corner = view.uv(left, top).expect("inside");
         assert!(corner[0] < 0.001 && corner[1] < 0.001, "{corner:?}");
-        let centre = view.uv(200.0, 150.0).expect("inside");
-        assert!((centre[0] - 1.5).abs() < 1e-12 && (centre[1] - 1.5).abs() < 1e-12);
+        let center = view.uv(200.0, 150.0).expect("inside");
+        assert!((center[0] - 1.5).abs() < 1e-12 && (center[1] - 1.5).abs() < 1e-12);
         assert_eq!(view.uv(left - 1.0, top), None);
     }
 

@@ -255,8 +255,8 @@ mod tests {
             for triangle in triangles {
                 let [a, b, c] = triangle.map(|index| glam::Vec3::from(mesh.positions[index as usize]));
                 assert!((b - a).cross(c - a).y > 0.0, "size {size}: {triangle:?} faces down");
-                let centre = (a + b + c) / 3.0;
-                *cells.entry((centre.x as usize, centre.z as usize)).or_insert(0) += 1;
+                let center = (a + b + c) / 3.0;
+                *cells.entry((center.x as usize, center.z as usize)).or_insert(0) += 1;
             }
             assert_eq!(cells.len(), (size - 1) * (size - 1));
             assert!(cells.values().all(|count| *count == 2));

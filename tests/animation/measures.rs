@@ -35,7 +35,7 @@ fn measured(gate: GateMode) -> AnimationReport {
 fn a_gate_that_is_off_saves_nothing_and_errs_nowhere() {
     let report = measured(GateMode::Off);
     assert_eq!((report.model.as_str(), report.backend, report.adapter), ("rig", "cpu", None));
-    let (bones, moving) = (report.bones as u64, report.moving_bones as u64);
+    let (bones, moving) = (report.bones as u64, report.animated_bones as u64);
     assert!(bones > moving && moving > 0);
     for row in &report.distances {
         assert_eq!((row.interpolated, row.skipped, row.fraction), (moving * 5 * 12, 0, 1.0));

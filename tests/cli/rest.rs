@@ -138,7 +138,7 @@ fn rigid_parts_form_crowds() {
     let report = std::fs::read(Path::new(&out).join("report.json")).expect("written");
     let report: Value = serde_json::from_slice(&report).expect("JSON");
     let row = &report["distances"][0];
-    assert_eq!((&report["bones"], &report["moving_bones"]), (&json!(2), &json!(1)));
+    assert_eq!((&report["bones"], &report["animated_bones"]), (&json!(2), &json!(1)));
     assert!(row["error"]["max_pixels"].as_f64().is_some_and(|pixels| pixels <= 1.0), "{row}");
     assert!(row["vertex_error"]["max_pixels"].as_f64().is_some_and(|pixels| pixels <= 1.5), "{row}");
     assert!(row["skinned_fraction"].as_f64().is_some_and(|fraction| fraction > 0.0), "{row}");

@@ -37,9 +37,9 @@ fn sky_pixels(lift: i32) -> usize {
     let mut sky = 0;
     for step in 0..12 {
         let angle = step as f32 * 0.55;
-        let centre = Vec3::new(48.0, 0.0, 48.0);
-        let eye = centre + Vec3::new(angle.sin() * 20.0, 34.0, angle.cos() * 20.0);
-        let camera = Camera { eye, target: centre, field_of_view: 0.7, near: 0.1, far: 500.0 };
+        let center = Vec3::new(48.0, 0.0, 48.0);
+        let eye = center + Vec3::new(angle.sin() * 20.0, 34.0, angle.cos() * 20.0);
+        let camera = Camera { eye, target: center, field_of_view: 0.7, near: 0.1, far: 500.0 };
         scene.set_camera(&gpu, &camera, target.aspect()).expect("a camera");
         target.draw(&gpu, SKY, |pass| scene.draw(pass)).expect("drawn");
         let image = target.read(&gpu).expect("read");

@@ -60,7 +60,7 @@ fn a_view_of_nothing_is_refused() {
     assert_eq!(steps.get(), 4);
     let mut flat = square([1, 1]);
     (flat.view.angle, flat.view.azimuth) = (89.99, 45.0);
-    // The only pixel's centre sees the middle of the square, at any angle.
+    // The only pixel's center sees the middle of the square, at any angle.
     assert!(flat.draw(Method::Plain, None, ([0.0; 3], 1), &count).is_ok());
     flat.view.size = [2, 2];
     let refused = flat.draw(Method::Plain, None, ([0.0; 3], 1), &count).expect_err("nothing is seen");

@@ -32,7 +32,7 @@ fn maps() -> impl Strategy<Value = HeightMap> {
 }
 
 fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
-    // Any place, and places exactly above texel centres and edges, where cells meet.
+    // Any place, and places exactly above texel centers and edges, where cells meet.
     let place = |edge: u32| {
         prop_oneof![
             2 => (-1.0..2.0_f32).boxed(),
@@ -141,7 +141,7 @@ fn rays_from_behind_miss() {
     }
 }
 
-/// Rays that do not move along an axis, exactly above a line of texel centres: they never leave their cell by it.
+/// Rays that do not move along an axis, exactly above a line of texel centers: they never leave their cell by it.
 #[test]
 fn rays_along_an_axis_do_not_stall() {
     for (width, column) in [(11_u32, 6_u32), (97, 3), (23, 3), (81, 5), (13, 3)] {

@@ -57,13 +57,13 @@ fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) ins
     let window = instance / rows;
     let at = vec2<u32>(vertex_index >> 1u, instance % rows + (vertex_index & 1u));
     let margin = (field.in_width - field.size) / 2u;
-    let centre = (window * field.in_width + at.y + margin) * field.in_width + at.x + margin;
+    let center = (window * field.in_width + at.y + margin) * field.in_width + at.x + margin;
     let gradient = vec2<i32>(
-        heights[centre + 1u] - heights[centre - 1u],
-        heights[centre + field.in_width] - heights[centre - field.in_width]);
+        heights[center + 1u] - heights[center - 1u],
+        heights[center + field.in_width] - heights[center - field.in_width]);
     let place = places[window];
     let sample_index = place.origin + vec2<i32>(at);
-    let height = f32(heights[centre]) / 65536.0;
+    let height = f32(heights[center]) / 65536.0;
     let position = vec3<f32>(
         f32(sample_index.x) * field.spacing, height, f32(sample_index.y) * field.spacing);
     var corner = vec3<f32>(0.0);

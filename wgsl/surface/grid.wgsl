@@ -1,4 +1,4 @@
-// The grid of bilinear cells under a ray. A cell lies between four texel centres. With wrap addressing a tile
+// The grid of bilinear cells under a ray. A cell lies between four texel centers. With wrap addressing a tile
 // has as many cells as texels. With clamp addressing it has one more per axis, and the outermost cells extend
 // to infinity with constant heights. In both modes the cells cover the whole plane, so a ray never leaves the
 // grid.
@@ -71,7 +71,7 @@ fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
     var inside: vec2<i32>;
     var tile: vec2<i32>;
     if grid.address == SURFACE_WRAP {
-        // Rays cross some hundred tiles at most, so the quotient for a cell's centre is exact enough for floor.
+        // Rays cross some hundred tiles at most, so the quotient for a cell's center is exact enough for floor.
         let whole = vec2<i32>(floor((vec2<f32>(absolute) + 0.5) * grid.tiles)) * grid.size;
         inside = absolute - whole;
         tile = whole - grid.base;

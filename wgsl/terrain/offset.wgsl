@@ -22,7 +22,7 @@ fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
     return vec4<i32>(multiply_high(uniform_word, 2u * range)) - vec4<i32>(i32(range));
 }
 
-// The sum of four 16-bit uniforms (nearly Gaussian), scaled to 32 bits and centred on 2^31.
+// The sum of four 16-bit uniforms (nearly Gaussian), scaled to 32 bits and centered on 2^31.
 fn sum_of_halves(words: Words) -> vec4<u32> {
     let low = vec4<u32>(0xffffu);
     let half = vec4<u32>(16u);

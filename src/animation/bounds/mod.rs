@@ -30,7 +30,7 @@ pub use pass::BoundsPass;
 pub(crate) use pass::Threads;
 
 /// The largest difference allowed between a side and the reference, on any device, relative to the largest
-/// side: 14ε and 6ε of the extent, 4ε of the centre and 2ε of the side from either: 52ε < 4e-6.
+/// side: 14ε and 6ε of the extent, 4ε of the center and 2ε of the side from either: 52ε < 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;
 
 /// A box along the axes of the model's space.

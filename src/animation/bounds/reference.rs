@@ -2,7 +2,7 @@
 
 use crate::animation::bounds::Bounds;
 use crate::asset::transform::Affine;
-use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTRE};
+use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTER};
 
 /// The bounds of each instance, from its model matrices and the radius of each bone.
 ///
@@ -19,11 +19,11 @@ fn around(model_matrices: &[Affine], bone_radii: &[f32]) -> Bounds {
     let mut bounds = Bounds { low: [f32::MAX; 4], high: [f32::MIN; 4] };
     (bounds.low[3], bounds.high[3]) = (0.0, 0.0);
     for (model, bone_radius) in model_matrices.iter().zip(bone_radii) {
-        for (axis, [x, y, z, centre]) in model.iter().enumerate() {
+        for (axis, [x, y, z, center]) in model.iter().enumerate() {
             let length = (x * x + y * y + z * z).sqrt();
-            let half = bone_radius * (length + LEAST) * GROWTH + centre.abs() * OF_CENTRE;
-            bounds.low[axis] = bounds.low[axis].min(centre - half);
-            bounds.high[axis] = bounds.high[axis].max(centre + half);
+            let half = bone_radius * (length + LEAST) * GROWTH + center.abs() * OF_CENTER;
+            bounds.low[axis] = bounds.low[axis].min(center - half);
+            bounds.high[axis] = bounds.high[axis].max(center + half);
         }
     }
     bounds

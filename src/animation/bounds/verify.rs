@@ -83,9 +83,9 @@ fn contain(boxes: &[Bounds], model_matrices: &[Affine], bone_radii: &[f32]) -> V
         for axis in 0..3 {
             let (low, high) = (f64::from(bounds.low[axis]), f64::from(bounds.high[axis]));
             let ends = model_matrices.iter().zip(bone_radii).map(|(model, bone_radius)| {
-                let [x, y, z, centre] = model[axis].map(f64::from);
+                let [x, y, z, center] = model[axis].map(f64::from);
                 let half = f64::from(*bone_radius) * (x * x + y * y + z * z).sqrt();
-                [centre - half, centre + half]
+                [center - half, center + half]
             });
             inside.push(ends.clone().all(|[least, _]| low <= least));
             inside.push(ends.clone().all(|[_, largest]| high >= largest));

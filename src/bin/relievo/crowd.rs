@@ -39,16 +39,16 @@ use plan::Plan;
 ///
 /// Units: --size is the number of units in the largest extent of the model at rest. --range and --distance are in
 /// these units, as the 200 to 1700 of A are. The picture is 1080 pixels high with a vertical field of view of 60
-/// degrees. The camera looks at the crowd's centre at half its height, and is --distance units from the nearest
+/// degrees. The camera looks at the crowd's center at half its height, and is --distance units from the nearest
 /// instance, so that the whole crowd is in front of it: from the second distance of --range on, Ω is 0 for all
 /// instances.
 ///
 /// DIR/report.json holds: "adapter", "driver" (null on the CPU), "backend", "timed_by" (timestamp: the device's
 /// clock; wall: the host's clock), "model", "clip", "gate" {"mode", "period", "budget", "pixels", "weights"},
-/// "instances", "layout", "seed", "bones", "moving_bones" (bones of an instance that the clip moves), "size",
+/// "instances", "layout", "seed", "bones", "animated_bones" (bones of an instance that the clip moves), "size",
 /// "metres_a_unit", "spacing", "range", "frames", "rate", "focal_pixels", and "distances", a list of
 ///   "distance"; "mean_omega"
-///   "interpolated", "skipped": numbers of moving bones, over all instances and all frames but the first, which is
+///   "interpolated", "skipped": numbers of animated bones, over all instances and all frames but the first, which is
 ///     full
 ///   "fraction": interpolated / (interpolated + skipped)
 ///   "concatenated": bones whose matrices were computed; "concatenated_fraction": their share of all bones
@@ -94,11 +94,11 @@ use plan::Plan;
 ///
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png
-/// and DIR/pareto.json {"model", "clip", "instances", "bones", "moving_bones", "frames", "rate", "period",
-/// "weights", "tall_pixels", "points", "verdicts"}. A point is {"gate", "parameter", "cost",
-/// "concatenated_fraction", the fields of "error", "jump"}: "cost" is interpolated bones / moving bones;
-/// "parameter" is what the gate sweeps: Ω for uniform, random and skip-period, the fraction of the moving bones for
-/// budget, and pixels for bounded. The verdicts compare gates along these curves: "bounded_max_pixels" and
+/// and DIR/pareto.json {"model", "clip", "instances", "bones", "animated_bones", "frames", "rate", "period",
+/// "weights", "tall_pixels", "points", "comparisons"}. A point is {"gate", "parameter", "cost",
+/// "concatenated_fraction", the fields of "error", "jump"}: "cost" is interpolated bones / animated bones;
+/// "parameter" is what the gate sweeps: Ω for uniform, random and skip-period, the fraction of the animated bones for
+/// budget, and pixels for bounded. The comparisons are of gates along these curves: "bounded_max_pixels" and
 /// "budget_rms_pixels" [{"cost", "gate", "uniform", "random", "ratio"}] are errors at equal cost, with the ratio to
 /// the better rival; "bounded_cost" [{"max_pixels", "uniform", "bounded", "ratio"}] are costs at equal largest
 /// error.

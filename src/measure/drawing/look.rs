@@ -37,7 +37,7 @@ pub(super) struct Times {
 pub(super) struct Drawable {
     pub skin: SkinFrame,
     /// For each vertex of the mesh, its index among the vertices of an instance.
-    pub places: Vec<u32>,
+    pub slots: Vec<u32>,
     pub lod: LodJob,
     pub weights: MorphWeightsJob,
     pub scene: SkinnedScene,

@@ -207,12 +207,12 @@ impl<'a> Drawing<'a> {
         for mesh in 0..stage.subject.model.meshes.len() {
             let first = &looks[0].meshes[mesh];
             let fresh = first.skin.skinned.read_blocking(gpu)?;
-            let places = first.places.clone();
-            let fresh = Skinned { vertices: &fresh, places: &places };
+            let slots = first.slots.clone();
+            let fresh = Skinned { vertices: &fresh, slots: &slots };
             for look in looks.iter_mut() {
                 let drawn = &look.meshes[mesh];
                 let own = drawn.skin.skinned.read_blocking(gpu)?;
-                let stale = Skinned { vertices: &own, places: &drawn.places };
+                let stale = Skinned { vertices: &own, slots: &drawn.slots };
                 let instance_lods = drawn.skin.crowd.instance_lods.read_blocking(gpu)?;
                 let levelled = stage.levelled.as_ref().filter(|_| look.variant.mesh != MeshDetail::Full);
                 let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));

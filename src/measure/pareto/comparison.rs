@@ -25,7 +25,7 @@ pub struct Comparisons {
 /// Errors in pixels at equal cost.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtCost {
-    /// The share of the moving bones that are interpolated, 0 to 1.
+    /// The share of the animated bones that are interpolated, 0 to 1.
     pub cost: f64,
     /// The error of the gate in pixels.
     pub gate: f64,
@@ -37,7 +37,7 @@ pub struct AtCost {
     pub ratio: Option<f64>,
 }
 
-/// Costs at equal largest error. A cost is the share of the moving bones that are interpolated, 0 to 1.
+/// Costs at equal largest error. A cost is the share of the animated bones that are interpolated, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtError {
     /// The error in pixels.

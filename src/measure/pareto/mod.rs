@@ -17,7 +17,7 @@ use crate::measure::options::{ParetoOptions, Subject};
 use crate::measure::placement::Placements;
 use crate::measure::play::play;
 use crate::measure::progress::{Listener, Steps};
-use crate::measure::stage::{Stage, moving_bones};
+use crate::measure::stage::{Stage, animated_bones};
 
 /// The gates in the order of the report.
 const GATES: [GateName; 5] =
@@ -28,10 +28,10 @@ const GATES: [GateName; 5] =
 pub struct ParetoPoint {
     /// The gate.
     pub gate: GateName,
-    /// The setting: pixels for bounded; for budget, the share of the moving bones that it may sample; Ω for
+    /// The setting: pixels for bounded; for budget, the share of the animated bones that it may sample; Ω for
     /// the others.
     pub parameter: f64,
-    /// The share of the moving bones that were interpolated, over all frames but the first, 0 to 1.
+    /// The share of the animated bones that were interpolated, over all frames but the first, 0 to 1.
     pub cost: f64,
     /// The share of all bones whose matrices were computed, 0 to 1.
     pub concatenated_fraction: f64,
@@ -54,7 +54,7 @@ pub struct ParetoReport {
     /// Number of bones of an instance.
     pub bones: usize,
     /// Number of bones of an instance that the clip moves.
-    pub moving_bones: usize,
+    pub animated_bones: usize,
     /// Number of frames that were measured.
     pub frames: u32,
     /// Frames per second.
@@ -68,7 +68,6 @@ pub struct ParetoReport {
     /// The measurements, gate by gate.
     pub points: Vec<ParetoPoint>,
     /// How the gates compare.
-    #[serde(rename = "verdicts")]
     pub comparisons: Comparisons,
 }
 
@@ -86,7 +85,7 @@ pub fn pareto(
     options.validate()?;
     let stage = Stage::new(subject, &options.crowd, None, listener)?;
     let off = stage.gate(&GateMode::Off)?;
-    let moving_bones = moving_bones(&off);
+    let animated_bones = animated_bones(&off);
     let points = points(&stage, options, &off, listener)?;
     let ParetoOptions { crowd, period, weights, tall_pixels } = options;
     Ok(ParetoReport {
@@ -94,7 +93,7 @@ pub fn pareto(
         clip: stage.clip.name().to_owned(),
         instances: crowd.instances,
         bones: stage.set.bones(),
-        moving_bones,
+        animated_bones,
         frames: crowd.frames,
         rate: crowd.rate,
         period: *period,
@@ -125,7 +124,7 @@ fn parameters(gate: GateName) -> Vec<f64> {
     }
 }
 
-/// The gate at a setting, for a crowd with `moving` moving bones.
+/// The gate at a setting, for a crowd with `moving` animated bones.
 fn mode(gate: GateName, parameter: f64, moving: usize, options: &ParetoOptions) -> GateMode {
     match gate {
         GateName::Off => GateMode::Off,
@@ -144,7 +143,7 @@ fn points(
     listener: Listener<'_>,
 ) -> Result<Vec<ParetoPoint>, Error> {
     let placements = stage.line_up(options.tall_pixels);
-    let moving = stage.instances.len() * moving_bones(off);
+    let moving = stage.instances.len() * animated_bones(off);
     let mut settings = Vec::new();
     for gate in GATES {
         let mode = |parameter| mode(gate, parameter, moving, options);
@@ -186,7 +185,7 @@ fn point(
     let mut crowds = Cpu::new(stage, gate, off, lods)?;
     let found = play(&mut crowds, stage, placements, false, || {})?;
     let frames = f64::from(stage.options.frames);
-    let moving = stage.instances.len() * moving_bones(off);
+    let moving = stage.instances.len() * animated_bones(off);
     Ok(ParetoPoint {
         gate: mode.name(),
         parameter,

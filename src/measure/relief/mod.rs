@@ -45,7 +45,7 @@ pub struct ReliefSquare {
 pub struct Drawn {
     /// The picture.
     pub picture: RgbaImage,
-    /// For each pixel, row by row, the ray through its centre; `None` where the pixel does not see the
+    /// For each pixel, row by row, the ray through its center; `None` where the pixel does not see the
     /// square.
     pub rays: Vec<Option<Ray>>,
     /// For each pixel, the hit of its ray; the default where there is no ray.
@@ -61,7 +61,7 @@ pub struct Drawn {
 pub struct Seconds {
     /// Making acceleration maps, and compiling pipelines.
     pub maps: f64,
-    /// Tracing the rays through all pixels' centres.
+    /// Tracing the rays through all pixels' centers.
     pub rays: f64,
     /// Drawing the picture.
     pub picture: f64,

@@ -20,11 +20,11 @@ pub(crate) struct Attributes<'a> {
 }
 
 impl<'a> Attributes<'a> {
-    /// Sums over the first `triangles` triangles; `place` gives the position of each point.
+    /// Sums over the first `triangles` triangles; `position` gives the position of each point.
     pub(crate) fn new(
         topology: &Topology,
         triangles: u32,
-        place: impl Fn(u32) -> DVec3,
+        position: impl Fn(u32) -> DVec3,
         values: &'a [f32],
         stride: usize,
     ) -> Self {
@@ -34,9 +34,9 @@ impl<'a> Attributes<'a> {
         let mut attributes = Self { values, stride, quadrics, sums };
         for triangle in 0..triangles {
             let corners = topology.corners(triangle);
-            let places = corners.map(|corner| place(corner.point));
-            if let Ok(normal) = normal(places) {
-                attributes.add_triangle(corners.map(|corner| corner.vertex), places, normal);
+            let positions = corners.map(|corner| position(corner.point));
+            if let Ok(normal) = normal(positions) {
+                attributes.add_triangle(corners.map(|corner| corner.vertex), positions, normal);
             }
         }
         attributes
@@ -47,8 +47,8 @@ impl<'a> Attributes<'a> {
     }
 
     /// Adds a triangle; `normal` has twice the triangle's area as its length.
-    fn add_triangle(&mut self, vertices: [u32; 3], places: [DVec3; 3], normal: DVec3) {
-        let [first, second] = [places[1] - places[0], places[2] - places[0]];
+    fn add_triangle(&mut self, vertices: [u32; 3], positions: [DVec3; 3], normal: DVec3) {
+        let [first, second] = [positions[1] - positions[0], positions[2] - positions[0]];
         let (square, weight) = (normal.length_squared(), normal.length() * 0.5);
         let mut quadric = Quadric::linear(DVec3::ZERO, weight);
         for attribute in 0..self.stride {
@@ -107,20 +107,21 @@ mod tests {
     /// The result equals the sum written out, for a vertex that is replaced twice.
     #[test]
     fn it_sums_squared_differences_from_linear_functions() {
-        let places = [[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [0.0, 1.0, 1.0], [-1.0, 0.25, 0.5], [0.5, -2.0, 1.5]];
+        let positions =
+            [[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [0.0, 1.0, 1.0], [-1.0, 0.25, 0.5], [0.5, -2.0, 1.5]];
         let values: [f32; 10] = [0.0, 1.0, 3.0, -1.0, 0.5, 0.25, -2.0, 1.5, 0.75, 2.0];
         let indices = [0, 1, 2, 0, 2, 3, 0, 3, 4];
-        let points = Points::new(&[places.to_vec()]);
+        let points = Points::new(&[positions.to_vec()]);
         let topology = Topology::new(&points, &indices);
-        let place = |point| points.place(point, 0);
-        let mut attributes = Attributes::new(&topology, 3, place, &values, 2);
+        let position = |point| points.position(point, 0);
+        let mut attributes = Attributes::new(&topology, 3, position, &values, 2);
         let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
         // The difference between each attribute's plane through a triangle's corners and the attribute at a
         // vertex, on the plane or off it.
         let off = |triangle: usize, to: u32| -> f64 {
             let corners = [0, 1, 2].map(|at| indices[triangle * 3 + at]);
-            let [a, b, c] = corners.map(place);
-            let (first, second, d) = (b - a, c - a, place(to) - a);
+            let [a, b, c] = corners.map(position);
+            let (first, second, d) = (b - a, c - a, position(to) - a);
             let gram = first.length_squared() * second.length_squared() - first.dot(second).powi(2);
             let u = (d.dot(first) * second.length_squared() - d.dot(second) * first.dot(second)) / gram;
             let v = (d.dot(second) * first.length_squared() - d.dot(first) * first.dot(second)) / gram;
@@ -131,15 +132,15 @@ mod tests {
             0.5 * first.cross(second).length() * (square(0) + square(1))
         };
         let close = |a: f64, b: f64| (a - b).abs() < 1e-12 * (1.0 + b);
-        let direct = attributes.cost(0, 3, place(3) - place(0));
+        let direct = attributes.cost(0, 3, position(3) - position(0));
         assert!(close(direct, off(0, 3)), "{direct}");
-        attributes.merge(0, 3, place(3) - place(0));
+        attributes.merge(0, 3, position(3) - position(0));
         // Only vertex 3 belonged to the last two triangles.
-        let cost = attributes.cost(3, 4, place(4) - place(3));
+        let cost = attributes.cost(3, 4, position(4) - position(3));
         let expected = off(0, 4) + 2.0 * off(1, 4);
         assert!(close(cost, expected), "{cost} {expected}");
-        attributes.merge(3, 1, place(1) - place(3));
-        let cost = attributes.cost(1, 2, place(2) - place(1));
+        attributes.merge(3, 1, position(1) - position(3));
+        let cost = attributes.cost(1, 2, position(2) - position(1));
         assert!(close(cost, 2.0 * off(2, 2)), "{cost}");
     }
 }

@@ -26,7 +26,7 @@ pub(crate) fn cost(
             let nearest = at_edge[..count].iter().map(|edge| (1.0 - normal.dot(*edge)) * 0.5);
             curvature = curvature.max(nearest.fold(1.0, f64::min));
         }
-        let d = points.place(neighbor, pose) - points.place(point, pose);
+        let d = points.position(neighbor, pose) - points.position(point, pose);
         worst = worst.max(d.length_squared() * curvature * curvature);
         if worst >= most {
             return None;
@@ -47,16 +47,16 @@ pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bo
 
 /// The unit normal of a triangle in a pose; 0 for a triangle without area.
 fn unit_normal(topology: &Topology, points: &Points, triangle: u32, pose: usize) -> DVec3 {
-    let places = topology.corners(triangle).map(|corner| points.place(corner.point, pose));
-    normal(places).map_or(DVec3::ZERO, |normal| normal / normal.length())
+    let positions = topology.corners(triangle).map(|corner| points.position(corner.point, pose));
+    normal(positions).map_or(DVec3::ZERO, |normal| normal / normal.length())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn of(places: &[[f32; 3]], indices: &[u32]) -> (Points, Topology) {
-        let points = Points::new(&[places.to_vec()]);
+    fn of(positions: &[[f32; 3]], indices: &[u32]) -> (Points, Topology) {
+        let points = Points::new(&[positions.to_vec()]);
         let topology = Topology::new(&points, indices);
         (points, topology)
     }
@@ -65,10 +65,10 @@ mod tests {
     /// no cost, and away from it at half the length, because the other side's triangles are turned by 90°.
     #[test]
     fn edges_are_kept() {
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         for along in 0..3 {
             let at = |row: i32| [along as f32, row.max(0) as f32 * 3.0, row.min(0) as f32 * -2.0];
-            places.extend((-2..=2).map(at));
+            positions.extend((-2..=2).map(at));
         }
         let mut indices = Vec::new();
         for along in 0..2 {
@@ -77,7 +77,7 @@ mod tests {
                 indices.extend([at, at + 6, at + 5, at, at + 1, at + 6]);
             }
         }
-        let (points, topology) = of(&places, &indices);
+        let (points, topology) = of(&positions, &indices);
         let cost = |from, to| cost(&topology, &points, [from, to], f64::INFINITY).map(f64::sqrt);
         assert_eq!(cost(7, 2), Some(0.0));
         assert_eq!(cost(7, 12), Some(0.0));
@@ -90,8 +90,8 @@ mod tests {
 
     #[test]
     fn a_tetrahedrons_corners_face_away_from_each_other() {
-        let places = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
-        let (points, topology) = of(&places, &[0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2]);
+        let positions = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+        let (points, topology) = of(&positions, &[0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2]);
         assert!(differ(&topology, &points, [0, 3]));
     }
 }

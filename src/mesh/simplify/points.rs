@@ -12,7 +12,7 @@ pub(crate) struct Points {
     wedges: Vec<u32>,
     poses: usize,
     /// Positions, point by point, each in all poses.
-    places: Vec<[f32; 3]>,
+    positions: Vec<[f32; 3]>,
 }
 
 impl Points {
@@ -31,8 +31,8 @@ impl Points {
             next[*point as usize] += 1;
         }
         let firsts = starts[..count].iter().map(|start| wedges[*start as usize] as usize);
-        let places = firsts.flat_map(|vertex| poses.iter().map(move |pose| pose[vertex])).collect();
-        Self { of, starts, wedges, poses: poses.len(), places }
+        let positions = firsts.flat_map(|vertex| poses.iter().map(move |pose| pose[vertex])).collect();
+        Self { of, starts, wedges, poses: poses.len(), positions }
     }
 
     /// Number of points.
@@ -54,8 +54,8 @@ impl Points {
         &self.wedges[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
     }
 
-    pub(crate) fn place(&self, point: u32, pose: usize) -> DVec3 {
-        glam::Vec3::from(self.places[point as usize * self.poses + pose]).as_dvec3()
+    pub(crate) fn position(&self, point: u32, pose: usize) -> DVec3 {
+        glam::Vec3::from(self.positions[point as usize * self.poses + pose]).as_dvec3()
     }
 
     /// The point of each vertex.
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn wedges_are_at_one_place_in_every_pose() {
+    fn wedges_are_at_one_position_in_every_pose() {
         let rest = vec![[0.0; 3], [1.0; 3], [-0.0; 3], [0.0; 3], [1.0; 3], [0.0; 3], [0.0; 3]];
         let mut posed = rest.clone();
         posed[3] = [2.0; 3];
@@ -104,7 +104,7 @@ mod tests {
         let points = Points::new(&[rest, posed]);
         assert_eq!(points.len(), 4);
         assert_eq!([0, 1, 2, 3].map(|point| points.wedges(point)), [&[0, 2][..], &[1, 4], &[3, 5], &[6]]);
-        assert_eq!([0, 1].map(|pose| points.place(2, pose)), [DVec3::ZERO, DVec3::splat(2.0)]);
+        assert_eq!([0, 1].map(|pose| points.position(2, pose)), [DVec3::ZERO, DVec3::splat(2.0)]);
         assert_eq!(points.into_of(), [0, 1, 0, 2, 1, 2, 3]);
     }
 }

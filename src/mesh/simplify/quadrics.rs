@@ -23,8 +23,8 @@ impl<'a> Quadrics<'a> {
             add_triangle(&mut shape, points, topology, triangle);
         }
         let attributes = (surface.stride > 0).then(|| {
-            let place = |point| points.place(point, 0);
-            Attributes::new(topology, triangles, place, surface.attributes, surface.stride)
+            let position = |point| points.position(point, 0);
+            Attributes::new(topology, triangles, position, surface.attributes, surface.stride)
         });
         Self { shape, attributes }
     }
@@ -39,7 +39,7 @@ impl<'a> Quadrics<'a> {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
             let quadric = &self.shape[point as usize * points.poses() + pose];
-            let d = points.place(neighbor, pose) - points.place(point, pose);
+            let d = points.position(neighbor, pose) - points.position(point, pose);
             if quadric.weight > 0.0 {
                 worst = worst.max(quadric.at(d) / quadric.weight);
             }
@@ -78,7 +78,7 @@ impl<'a> Quadrics<'a> {
         neighbor: &Neighbor,
         wedge: &Wedge,
     ) -> (u32, f64) {
-        let d = points.place(neighbor.point, 0) - points.place(point, 0);
+        let d = points.position(neighbor.point, 0) - points.position(point, 0);
         let cost = |target| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, target, d));
         let all = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0))
@@ -87,13 +87,13 @@ impl<'a> Quadrics<'a> {
     /// Merges a point into its neighbour, and its wedges into the vertices that `moved` names.
     pub(crate) fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for pose in 0..points.poses() {
-            let d = points.place(neighbor, pose) - points.place(point, pose);
+            let d = points.position(neighbor, pose) - points.position(point, pose);
             let [from, to] = [point, neighbor].map(|point| point as usize * points.poses() + pose);
             let quadric = self.shape[from].moved(d);
             self.shape[to].add(&quadric);
         }
         if let Some(attributes) = &mut self.attributes {
-            let d = points.place(neighbor, 0) - points.place(point, 0);
+            let d = points.position(neighbor, 0) - points.position(point, 0);
             moved.iter().for_each(|[from, to]| attributes.merge(*from, *to, d));
         }
     }
@@ -112,15 +112,15 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, tri
     }
     let held = [0, 1, 2].map(|at| is_held(topology, triangle, corners[at], corners[(at + 1) % 3]));
     for pose in 0..points.poses() {
-        let places = of.map(|point| points.place(point, pose));
-        let Ok(normal) = normal(places) else { continue };
+        let positions = of.map(|point| points.position(point, pose));
+        let Ok(normal) = normal(positions) else { continue };
         let length = normal.length();
         let at = of.map(|point| point as usize * points.poses() + pose);
         let plane = Quadric::linear(normal / length, length * 0.5);
         at.iter().for_each(|at| shape[*at].add(&plane));
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
             if held[from] {
-                let edge = places[to] - places[from];
+                let edge = positions[to] - positions[from];
                 let across = Quadric::linear(edge.cross(normal).normalize(), edge.length_squared());
                 shape[at[from]].add_unweighted(&across);
                 shape[at[to]].add_unweighted(&across);

@@ -279,7 +279,7 @@ mod tests {
     /// A cylinder with a seam and with bumps of the given height, in two poses: straight and bent.
     fn pipe(bumps: f32, seed: usize) -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
         let (sides, rings) = (9, 8);
-        let (mut places, mut uv, mut indices) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
+        let (mut positions, mut uv, mut indices) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
         for ring in 0..=rings {
             for side in 0..=sides {
                 let turn = std::f32::consts::TAU * (side % sides) as f32 / sides as f32;
@@ -287,8 +287,8 @@ mod tests {
                 let bump = ((side % sides) * (ring + 2) * (5 + seed) + ring * seed * seed) % 7;
                 let radius = 1.0 + bumps * bump as f32;
                 let [x, z] = [radius * turn.cos(), -radius * turn.sin()];
-                places[0].push([x, along, z]);
-                places[1].push([x + 0.2 * along * along, along, z]);
+                positions[0].push([x, along, z]);
+                positions[1].push([x + 0.2 * along * along, along, z]);
                 uv.extend([side as f32 / sides as f32, along]);
             }
         }
@@ -298,7 +298,7 @@ mod tests {
                 indices.extend([a, a + 1, b + 1, a, b + 1, b]);
             }
         }
-        (places, uv, indices)
+        (positions, uv, indices)
     }
 
     /// Simplifies until nothing is legal. Returns the number of steps, and how often the collapse taken was not
@@ -337,9 +337,9 @@ mod tests {
         ] {
             let mut sums = [0, 0];
             for seed in 0..6 {
-                let (places, uv, indices) = pipe([0.03, 0.2][seed % 2], seed);
-                let surface = Surface { poses: &places, indices: &indices, attributes: &[], stride: 0 };
-                let first = Surface { poses: &places[..1], attributes: &uv, stride: 2, ..surface };
+                let (positions, uv, indices) = pipe([0.03, 0.2][seed % 2], seed);
+                let surface = Surface { poses: &positions, indices: &indices, attributes: &[], stride: 0 };
+                let first = Surface { poses: &positions[..1], attributes: &uv, stride: 2, ..surface };
                 for [steps, seconds] in [surface, first].map(|surface| check(cost, &surface, distance)) {
                     sums = [sums[0] + steps, sums[1] + seconds];
                 }

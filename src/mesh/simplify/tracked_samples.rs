@@ -31,7 +31,7 @@ pub(crate) struct TrackedSamples {
 /// The midpoints of the mesh's edges and triangles.
 struct Middles {
     /// Positions, one midpoint after the other, each in all poses.
-    places: Vec<Vec3>,
+    positions: Vec<Vec3>,
     /// For each midpoint, a triangle of the mesh on which it lies, by its points.
     triangles: Vec<[u32; 3]>,
 }
@@ -39,7 +39,7 @@ struct Middles {
 impl TrackedSamples {
     pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
         let mut samples = vec![Vec::new(); triangles];
-        let mut middles = Middles { places: Vec::new(), triangles: Vec::new() };
+        let mut middles = Middles { positions: Vec::new(), triangles: Vec::new() };
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
                 let corners = [point, ring.next.point, ring.last.point];
@@ -49,7 +49,7 @@ impl TrackedSamples {
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
                 for ends in edge.into_iter().chain(is_first.then_some(&corners[..])) {
                     samples[ring.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
-                    middles.places.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
+                    middles.positions.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
                     middles.triangles.push(corners);
                 }
             }
@@ -108,7 +108,7 @@ impl TrackedSamples {
     fn is_near(&self, points: &Points, ends: &[u32]) -> bool {
         let is_near = |triangle: &[u32; 3], pose: usize| {
             let wanted = middle(points, ends, pose);
-            let corners = triangle.map(|corner| points.place(corner, pose).as_vec3());
+            let corners = triangle.map(|corner| points.position(corner, pose).as_vec3());
             nearest_on_triangle(wanted, corners).distance_squared(wanted) <= self.most
         };
         self.below.iter().any(|triangle| (0..points.poses()).all(|pose| is_near(triangle, pose)))
@@ -117,17 +117,17 @@ impl TrackedSamples {
     /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the
     /// limit.
     fn nearest(&self, points: &Points, sample: u32) -> Option<u32> {
-        let place = |point: u32, pose: usize| -> Vec3 { points.place(point, pose).as_vec3() };
+        let position = |point: u32, pose: usize| -> Vec3 { points.position(point, pose).as_vec3() };
         let mut best = None;
         let mut least = self.most.next_up();
         for (triangle, corners) in &self.triangles {
             let mut most = 0.0_f32;
             for pose in 0..points.poses() {
                 let wanted = match (sample as usize).checked_sub(points.len()) {
-                    None => place(sample, pose),
-                    Some(at) => self.middles.places[at * points.poses() + pose],
+                    None => position(sample, pose),
+                    Some(at) => self.middles.positions[at * points.poses() + pose],
                 };
-                let found = nearest_on_triangle(wanted, corners.map(|corner| place(corner, pose)));
+                let found = nearest_on_triangle(wanted, corners.map(|corner| position(corner, pose)));
                 most = most.max(found.distance_squared(wanted));
                 if most >= least {
                     break;
@@ -156,7 +156,7 @@ impl TrackedSamples {
 }
 
 fn middle(points: &Points, ends: &[u32], pose: usize) -> Vec3 {
-    let sum: Vec3 = ends.iter().map(|end| points.place(*end, pose).as_vec3()).sum();
+    let sum: Vec3 = ends.iter().map(|end| points.position(*end, pose).as_vec3()).sum();
     sum / ends.len() as f32
 }
 
@@ -187,7 +187,7 @@ mod tests {
     }
 
     /// Corners, and midpoints of edges and triangles.
-    fn places(pose: &[[f32; 3]], indices: &[u32]) -> Vec<Vec3> {
+    fn positions(pose: &[[f32; 3]], indices: &[u32]) -> Vec<Vec3> {
         let of = |triangle: &[u32]| {
             let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(pose[triangle[corner] as usize]));
             [a, b, c, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0]
@@ -198,14 +198,14 @@ mod tests {
     /// The largest distance between samples of one surface and the other, in both directions and in all poses.
     fn off(poses: &[Vec<[f32; 3]>], mesh: &[u32], level: &[u32]) -> f32 {
         let one_way = |pose: &Vec<[f32; 3]>, from: &[u32], to: &[u32]| {
-            let distance = |place: Vec3| {
+            let distance = |position: Vec3| {
                 let on = |triangle: &[u32]| {
                     let corners = [0, 1, 2].map(|corner| Vec3::from(pose[triangle[corner] as usize]));
-                    nearest_on_triangle(place, corners).distance(place)
+                    nearest_on_triangle(position, corners).distance(position)
                 };
                 to.chunks_exact(3).map(on).fold(f32::INFINITY, f32::min)
             };
-            places(pose, from).into_iter().map(distance).fold(0.0, f32::max)
+            positions(pose, from).into_iter().map(distance).fold(0.0, f32::max)
         };
         let ways = poses.iter().flat_map(|pose| [one_way(pose, mesh, level), one_way(pose, level, mesh)]);
         ways.fold(0.0, f32::max)

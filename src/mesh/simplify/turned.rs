@@ -26,7 +26,7 @@ pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
 /// Triangles that have no area before may turn.
 pub(crate) fn turns_any(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> bool {
     let stays = |pose: usize, [from, to]: [DVec3; 2], others: [u32; 2]| {
-        let [next, last] = others.map(|other| points.place(other, pose));
+        let [next, last] = others.map(|other| points.position(other, pose));
         match (normal([from, next, last]), normal([to, next, last])) {
             (Err(Flat), _) => true,
             (_, Err(Flat)) => false,
@@ -36,7 +36,7 @@ pub(crate) fn turns_any(topology: &Topology, points: &Points, point: u32, neighb
     let one_ring =
         || topology.one_ring(point).filter(|ring| ![ring.next.point, ring.last.point].contains(&neighbor));
     (0..points.poses()).any(|pose| {
-        let ends = [point, neighbor].map(|point| points.place(point, pose));
+        let ends = [point, neighbor].map(|point| points.position(point, pose));
         one_ring().any(|ring| !stays(pose, ends, [ring.next.point, ring.last.point]))
     })
 }

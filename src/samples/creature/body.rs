@@ -15,12 +15,12 @@ use crate::asset::mesh::solved_tangents;
 /// The largest number of influences of a vertex.
 const MAX: usize = 4;
 
-/// The mesh, for a skin of all bones. `places` are the positions of the bones at rest.
+/// The mesh, for a skin of all bones. `positions` are the positions of the bones at rest.
 ///
 /// # Errors
 /// None in practice: the mesh is checked like any other.
-pub fn body(parts: &[Part], places: &[DVec3]) -> Result<Mesh, InputError> {
-    let mut body = Body { parts, places, surface: Surface::default() };
+pub fn body(parts: &[Part], positions: &[DVec3]) -> Result<Mesh, InputError> {
+    let mut body = Body { parts, positions, surface: Surface::default() };
     body.trunk();
     body.head();
     for side in [Side::Left, Side::Right] {
@@ -33,7 +33,7 @@ pub fn body(parts: &[Part], places: &[DVec3]) -> Result<Mesh, InputError> {
 
 struct Body<'a> {
     parts: &'a [Part],
-    places: &'a [DVec3],
+    positions: &'a [DVec3],
     surface: Surface,
 }
 
@@ -42,13 +42,13 @@ impl Body<'_> {
         self.parts.iter().position(|part| part.kind == kind).unwrap_or_default() as u32
     }
 
-    fn place(&self, kind: Kind) -> DVec3 {
-        self.places[self.bone(kind) as usize]
+    fn position(&self, kind: Kind) -> DVec3 {
+        self.positions[self.bone(kind) as usize]
     }
 
     /// A cross-section beside a bone's joint, in the model's axes.
     fn section(&self, kind: Kind, offset: [f64; 3], radii: [f64; 2]) -> Section {
-        Section { center: self.place(kind) + DVec3::from(offset), radii, bone: self.bone(kind) }
+        Section { center: self.position(kind) + DVec3::from(offset), radii, bone: self.bone(kind) }
     }
 
     fn tube(&mut self, sections: &[Section], reference: DVec3, [sides, rings, cap]: [usize; 3], blend: f64) {
@@ -68,7 +68,7 @@ impl Body<'_> {
         let reference =
             if inside.cross(DVec3::Z).length() > 0.5 * inside.length() { DVec3::Z } else { DVec3::Y };
         let mut sections =
-            vec![Section { center: self.place(kinds[0]) - inside, radii: radii[0], bone: above }];
+            vec![Section { center: self.position(kinds[0]) - inside, radii: radii[0], bone: above }];
         let last = radii[radii.len() - 1];
         sections.extend(kinds.iter().zip(radii).map(|(kind, radii)| self.section(*kind, [0.0; 3], *radii)));
         let tip = kinds[kinds.len() - 1];
@@ -108,7 +108,7 @@ impl Body<'_> {
 
     /// Gives a bone near the surface a part of the weight of the vertices around it.
     fn soften(&mut self, first: usize, kind: Kind) {
-        let (bone, center) = (self.bone(kind), self.place(kind));
+        let (bone, center) = (self.bone(kind), self.position(kind));
         let surface = &mut self.surface;
         for (position, influences) in surface.positions[first..].iter().zip(&mut surface.influences[first..])
         {
@@ -169,7 +169,7 @@ impl Body<'_> {
             self.section(Kind::Hand(side), [0.0; 3], [0.021, 0.029]),
         ];
         self.tube(&sections, DVec3::Z, [12, 3, 3], 0.09);
-        let along = (self.place(Kind::Hand(side)) - self.place(Kind::Forearm(side))).normalize();
+        let along = (self.position(Kind::Hand(side)) - self.position(Kind::Forearm(side))).normalize();
         let palm = [
             self.section(Kind::Forearm(side), (along * 0.25).to_array(), [0.018, 0.026]),
             self.section(Kind::Hand(side), (along * 0.015).to_array(), [0.019, 0.04]),
@@ -215,7 +215,7 @@ impl Body<'_> {
             let radius = 0.062 - 0.0029 * f64::from(at as u32);
             self.section(Kind::Tail(at), [0.0; 3], [radius; 2])
         }));
-        let tip = self.place(Kind::Tail(17)) - self.place(Kind::Tail(16));
+        let tip = self.position(Kind::Tail(17)) - self.position(Kind::Tail(16));
         sections.push(self.section(Kind::Tail(17), tip.to_array(), [0.007; 2]));
         self.tube(&sections, DVec3::Y, [12, 1, 3], 0.07);
     }

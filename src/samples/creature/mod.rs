@@ -27,8 +27,8 @@ pub fn creature() -> Result<Model, InputError> {
     let bone = |part: &Part| Bone { name: part.kind.name(), parent: part.parent, rest: part.rest };
     let skeleton = Skeleton::of_joints(parts.iter().map(bone).collect())?;
     let models = rest_models(&skeleton);
-    let places: Vec<_> = models.iter().map(|model| model.w_axis.truncate()).collect();
-    let mesh = body::body(&parts, &places)?;
+    let positions: Vec<_> = models.iter().map(|model| model.w_axis.truncate()).collect();
+    let mesh = body::body(&parts, &positions)?;
     let skin = Skin {
         name: "creature".to_owned(),
         bones: (0..skeleton.len() as u32).collect(),
@@ -82,7 +82,7 @@ mod tests {
         local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
     }
 
-    fn place(model: &Model, pose: &[Affine], name: &str) -> [f32; 3] {
+    fn position(model: &Model, pose: &[Affine], name: &str) -> [f32; 3] {
         let bone = model.skeleton.bones().iter().position(|bone| bone.name == name);
         pose[bone.unwrap_or_else(|| panic!("no bone {name}"))].map(|row| row[3])
     }
@@ -112,7 +112,7 @@ mod tests {
         let heights = rest.iter().map(|bone| bone[1][3]);
         let [low, high] = [heights.clone().fold(f32::MAX, f32::min), heights.fold(f32::MIN, f32::max)];
         assert!((-0.02..0.1).contains(&low) && (1.6..2.1).contains(&high), "{low} to {high}");
-        let [left, right] = ["hand_left", "hand_right"].map(|name| place(&model, &rest, name));
+        let [left, right] = ["hand_left", "hand_right"].map(|name| position(&model, &rest, name));
         assert!((left[0] + right[0]).abs() < 1e-5 && left[0] > 0.2 && left[1] < 1.2, "{left:?} {right:?}");
     }
 
@@ -132,7 +132,7 @@ mod tests {
         let model = model();
         let feet = |time| {
             let pose = pose(&model, "walk", time);
-            ["foot_left", "foot_right"].map(|name| place(&model, &pose, name))
+            ["foot_left", "foot_right"].map(|name| position(&model, &pose, name))
         };
         let mut strides = [f32::MIN; 2];
         for step in 0..60 {
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn it_waves_with_its_right_hand() {
         let model = model();
-        let hand = |name, time| place(&model, &pose(&model, "wave", time), name);
+        let hand = |name, time| position(&model, &pose(&model, "wave", time), name);
         assert!(hand("hand_right", 1.0)[1] > 1.5 && hand("hand_left", 1.0)[1] < 1.2);
         let sway = (0..40).map(|step| hand("hand_right", step as f32 / 20.0)[0]);
         let (low, high) = sway.fold((f32::MAX, f32::MIN), |(low, high), x| (low.min(x), high.max(x)));
@@ -168,12 +168,12 @@ mod tests {
             assert!(counts[0] > 0 && counts[2] > 0, "{}: {counts:?}", clip.name());
             assert!(clip.tracks().iter().all(|track| track.keys <= 33));
         }
-        let codes: std::collections::BTreeSet<_> = model
+        let codes: std::collections::BTreeSet<u32> = model
             .clips
             .iter()
             .flat_map(Clip::tracks)
             .filter(|track| track.keys > 0)
-            .map(|track| track.code)
+            .map(|track| track.interpolation as u32)
             .collect();
         assert_eq!(codes.into_iter().collect::<Vec<_>>(), [0, 1, 2]);
     }

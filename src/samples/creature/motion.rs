@@ -127,16 +127,16 @@ fn line(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Key
 
 /// Spline keys at growing distances, to exercise uneven times. Tangents are those of the motion.
 fn spline(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
-    let place = |key: usize| {
+    let time = |key: usize| {
         let even = key as f64 / stretches as f64;
         even * (0.75 + 0.25 * even)
     };
     let mut keys = Keys { times: Vec::new(), values: Vec::new(), interpolation: Interpolation::CubicSpline };
     for key in 0..=stretches {
-        let t = if key == stretches { 0.0 } else { place(key) };
+        let t = if key == stretches { 0.0 } else { time(key) };
         let (before, after) = (value(t - 1e-4), value(t + 1e-4));
         let tangent = std::array::from_fn(|i| ((after[i] - before[i]) / (2e-4 * duration)) as f32);
-        keys.times.push((duration * place(key)) as f32);
+        keys.times.push((duration * time(key)) as f32);
         keys.values.extend([tangent, value(t).map(|v| v as f32), tangent]);
     }
     keys

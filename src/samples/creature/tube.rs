@@ -7,7 +7,7 @@ use crate::asset::influences::Influence;
 /// A cross-section through which a tube passes.
 #[derive(Debug, Clone, Copy)]
 pub struct Section {
-    /// Its centre.
+    /// Its center.
     pub center: DVec3,
     /// The radii across the tube's reference direction and along it.
     pub radii: [f64; 2],

@@ -36,7 +36,7 @@ impl Bricks {
     }
 }
 
-/// The brick at a point: its cell, and the point relative to its centre, in tiles.
+/// The brick at a point: its cell, and the point relative to its center, in tiles.
 fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
     let (course, y) = cell(v * COURSES as f64, COURSES);
     let shift = 0.5 * (course % 2) as f64;
@@ -45,8 +45,8 @@ fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
 }
 
 /// How far a point lies inside a rectangle with rounded corners; negative outside.
-fn depth_inside(place: [f64; 2], half: [f64; 2]) -> f64 {
-    let [x, y] = [0, 1].map(|axis| place[axis].abs() - half[axis] + CORNER);
+fn depth_inside(offset: [f64; 2], half: [f64; 2]) -> f64 {
+    let [x, y] = [0, 1].map(|axis| offset[axis].abs() - half[axis] + CORNER);
     let (beyond_x, beyond_y) = (x.max(0.0), y.max(0.0));
     CORNER - (beyond_x * beyond_x + beyond_y * beyond_y).sqrt() - x.max(y).min(0.0)
 }
@@ -54,16 +54,16 @@ fn depth_inside(place: [f64; 2], half: [f64; 2]) -> f64 {
 impl Pattern for Bricks {
     fn at(&self, u: f64, v: f64) -> Sample {
         let [du, dv] = [0, 1].map(|axis| 0.003 * self.wobble[axis].signed(u, v));
-        let (id, place) = brick(u + du, v + dv);
+        let (id, offset) = brick(u + du, v + dv);
         let ([tone, rise], [tilt_x, tilt_y], [shrink_x, shrink_y]) =
             (random(11, id), random(12, id), random(13, id));
         let half = [0.5 / BRICKS as f64, 0.5 / COURSES as f64];
         let half = [half[0] - 0.5 * JOINT - 0.002 * shrink_x, half[1] - 0.5 * JOINT - 0.0015 * shrink_y];
         let (wear, grain) = (self.wear.signed(u, v), self.grain.signed(u, v));
         // Edges crumble where the wear is strongest.
-        let inside = depth_inside(place, half) - 0.006 * (wear - 0.25).max(0.0);
+        let inside = depth_inside(offset, half) - 0.006 * (wear - 0.25).max(0.0);
         let fraction = (inside / BEVEL).clamp(0.0, 1.0);
-        let tilt = 0.5 * ((tilt_x - 0.5) * place[0] + (tilt_y - 0.5) * place[1]);
+        let tilt = 0.5 * ((tilt_x - 0.5) * offset[0] + (tilt_y - 0.5) * offset[1]);
         let top = 0.86 + 0.08 * (rise - 0.5) + tilt + 0.045 * wear + 0.025 * grain;
         let joint = 0.24 + 0.05 * wear + 0.05 * grain;
         let height = blend(joint, top, fraction * (2.0 - fraction));

@@ -7,7 +7,7 @@ use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 /// Stones along an edge; even, so that every second row is shifted across the seam too.
 const STONES: usize = 10;
 
-/// How far a stone's centre is shifted to the left or right of its cell's, and how far it is jittered from
+/// How far a stone's center is shifted to the left or right of its cell's, and how far it is jittered from
 /// there, in cells.
 const SHIFT: f64 = 0.25;
 const JITTER: f64 = 0.24;
@@ -34,7 +34,7 @@ pub struct Cobbles {
 /// The stone at a point.
 struct Stone {
     id: [usize; 2],
-    /// The point relative to the stone's centre, in cells.
+    /// The point relative to the stone's center, in cells.
     offset: [f64; 2],
     /// Distance from the stone's border, in cells.
     border: f64,
@@ -57,18 +57,18 @@ impl Cobbles {
         }
     }
 
-    /// From a point in cell `[x, y]` to the centre of the stone `step` cells away.
-    fn towards(&self, [x, y]: [usize; 2], place: [f64; 2], step: [i32; 2]) -> ([usize; 2], [f64; 2]) {
+    /// From a point in cell `[x, y]` to the center of the stone `step` cells away.
+    fn towards(&self, [x, y]: [usize; 2], point: [f64; 2], step: [i32; 2]) -> ([usize; 2], [f64; 2]) {
         let wrapped =
             |index: usize, step: i32| (index + STONES).saturating_add_signed(step as isize) % STONES;
         let id = [wrapped(x, step[0]), wrapped(y, step[1])];
         let middle = self.middles[id[1] * STONES + id[0]];
-        (id, [0, 1].map(|axis| f64::from(step[axis]) + middle[axis] - place[axis]))
+        (id, [0, 1].map(|axis| f64::from(step[axis]) + middle[axis] - point[axis]))
     }
 
     fn stone(&self, u: f64, v: f64) -> Stone {
         let ((x, s), (y, t)) = (cell(u * STONES as f64, STONES), cell(v * STONES as f64, STONES));
-        // Centres stay away from the edges of their cells, so that two cells on every side contain every
+        // Centers stay away from the edges of their cells, so that two cells on every side contain every
         // neighbour.
         let steps = || (-2..=2).flat_map(|y| (-2..=2).map(move |x| [x, y]));
         let all = || steps().map(|step| self.towards([x, y], [s, t], step));

@@ -5,7 +5,7 @@ use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 /// Straight segments per curve.
 const PIECES: usize = 8;
 
-/// A line of text around a centre.
+/// A line of text around a center.
 #[derive(Debug, Clone)]
 pub struct Line {
     glyphs: Vec<Glyph>,
@@ -20,7 +20,7 @@ struct Glyph {
 }
 
 impl Line {
-    /// Sets `text` `width` wide, advances included, and stretched by `stretch` vertically; capitals are centred
+    /// Sets `text` `width` wide, advances included, and stretched by `stretch` vertically; capitals are centered
     /// on `middle`.
     pub fn new(text: &str, middle: [f64; 2], width: f64, stretch: f64) -> Self {
         let font =
@@ -34,13 +34,13 @@ impl Line {
         let mut pen = middle[0] - 0.5 * width;
         let mut glyphs = Vec::new();
         for letter in text.chars() {
-            let place = |point: Point| {
+            let position = |point: Point| {
                 let [x, y] = [point.x, point.y].map(f64::from);
                 [pen + scale * x, middle[1] + stretch * scale * (0.5 * capital - y)]
             };
             if let Some(outline) = font.outline(font.glyph_id(letter)) {
                 glyphs.extend(Glyph::new(
-                    outline.curves.iter().flat_map(|curve| edges(curve, place)).collect(),
+                    outline.curves.iter().flat_map(|curve| edges(curve, position)).collect(),
                 ));
             }
             pen += scale * advance(letter);
@@ -50,26 +50,27 @@ impl Line {
 
     /// The distance to the nearest outline: positive inside the letters, negative outside. At points further
     /// than `margin` outside, a value just below −`margin`.
-    pub fn depth_inside(&self, place: [f64; 2], margin: f64) -> f64 {
+    pub fn depth_inside(&self, position: [f64; 2], margin: f64) -> f64 {
         let near = |glyph: &&Glyph| {
-            (0..2)
-                .all(|axis| place[axis] > glyph.low[axis] - margin && place[axis] < glyph.high[axis] + margin)
+            (0..2).all(|axis| {
+                position[axis] > glyph.low[axis] - margin && position[axis] < glyph.high[axis] + margin
+            })
         };
-        self.glyphs.iter().filter(near).map(|glyph| glyph.depth_inside(place)).fold(-margin, f64::max)
+        self.glyphs.iter().filter(near).map(|glyph| glyph.depth_inside(position)).fold(-margin, f64::max)
     }
 }
 
 /// Splits a curve into straight segments.
-fn edges(curve: &OutlineCurve, place: impl Fn(Point) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+fn edges(curve: &OutlineCurve, position: impl Fn(Point) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     // Lines and parabolas are cubic curves too.
     let controls = match *curve {
-        OutlineCurve::Line(a, b) => return vec![[place(a), place(b)]],
+        OutlineCurve::Line(a, b) => return vec![[position(a), position(b)]],
         OutlineCurve::Quad(a, b, c) => {
-            let [a, b, c] = [place(a), place(b), place(c)];
+            let [a, b, c] = [position(a), position(b), position(c)];
             let third = |end: [f64; 2]| [0, 1].map(|axis| (end[axis] + 2.0 * b[axis]) / 3.0);
             [a, third(a), third(c), c]
         }
-        OutlineCurve::Cubic(a, b, c, d) => [place(a), place(b), place(c), place(d)],
+        OutlineCurve::Cubic(a, b, c, d) => [position(a), position(b), position(c), position(d)],
     };
     let at = |piece: usize| {
         let t = piece as f64 / PIECES as f64;

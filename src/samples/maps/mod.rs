@@ -93,16 +93,16 @@ impl BuiltInMap {
         Ok(RgbaImage::from_fn(size, size, at))
     }
 
-    /// Evaluates `texel` at the centre of every texel, row by row.
+    /// Evaluates `texel` at the center of every texel, row by row.
     fn samples<T: Send>(self, size: u32, texel: impl Fn(Sample) -> T + Sync) -> Result<Vec<T>, InputError> {
         if !(1..=MAP_EDGE).contains(&size) {
             return Err(InputError::new("size", size, format!("must be in 1..={MAP_EDGE} texels")));
         }
         let pattern = self.pattern(size);
-        let centre = |index: u32| (f64::from(index) + 0.5) / f64::from(size);
+        let center = |index: u32| (f64::from(index) + 0.5) / f64::from(size);
         let row = |y: u32| {
             let (pattern, texel) = (&pattern, &texel);
-            (0..size).into_par_iter().map(move |x| texel(pattern.at(centre(x), centre(y))))
+            (0..size).into_par_iter().map(move |x| texel(pattern.at(center(x), center(y))))
         };
         Ok((0..size).into_par_iter().flat_map(row).collect())
     }

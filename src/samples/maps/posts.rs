@@ -63,8 +63,8 @@ impl Pattern for Posts {
         let post = self.posts[y * POSTS + x];
         let grain = self.grain.signed(u, v);
         let within = |along: f64, axis: usize| {
-            let place = along / POSTS as f64 - post.start[axis];
-            place >= 0.0 && place < post.width
+            let offset = along / POSTS as f64 - post.start[axis];
+            offset >= 0.0 && offset < post.width
         };
         if within(s, 0) && within(t, 1) {
             return Sample { height: post.height, color: shade(post.color, 1.0 + 0.08 * grain) };

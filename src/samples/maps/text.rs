@@ -56,11 +56,11 @@ impl Text {
 
 impl Pattern for Text {
     fn at(&self, u: f64, v: f64) -> Sample {
-        let place = [u - u.floor(), v - v.floor()];
+        let point = [u - u.floor(), v - v.floor()];
         let (tooling, grain, stain) =
             (self.tooling.signed(u, v), self.grain.signed(u, v), self.stain.at(u, v));
-        let raised = (self.raised.depth_inside(place, 3.0 * BEVEL) + BOLDER[0]) / BEVEL;
-        let groove = self.groove(place) / BEVEL;
+        let raised = (self.raised.depth_inside(point, 3.0 * BEVEL) + BOLDER[0]) / BEVEL;
+        let groove = self.groove(point) / BEVEL;
         let face = FACE + 0.022 * tooling + 0.012 * grain;
         let height = blend(face, TOP + 0.010 * tooling, smooth_step(0.0, 1.0, raised));
         let height = blend(height, GROUND + 0.02 * tooling, smooth_step(0.0, 1.0, groove));

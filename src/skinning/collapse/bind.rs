@@ -8,7 +8,7 @@ use crate::InputError;
 use crate::asset::skeleton::inverse_bind;
 use crate::asset::{Influence, Influences, Mesh, Model, Skin};
 
-/// Two joints of one bone become one if they take each vertex of a skin to places nearer to each other than
+/// Two joints of one bone become one if they take each vertex of a skin to positions nearer to each other than
 /// this, as a fraction of the model's size at rest.
 const SAME: f64 = 1e-4;
 
@@ -92,9 +92,10 @@ fn rebound_skin(model: &Model, index: usize, remap: &Remap, rest: &Rest) -> (Ski
 /// The corners of a box around all vertices that follow a skin.
 fn corners(model: &Model, skin: usize) -> Vec<DVec3> {
     let meshes = model.meshes.iter().filter(|mesh| mesh.skin == skin);
-    let places = meshes.flat_map(|mesh| &mesh.positions).map(|place| DVec3::from(place.map(f64::from)));
-    let (low, high) =
-        places.fold((DVec3::MAX, DVec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    let positions =
+        meshes.flat_map(|mesh| &mesh.positions).map(|position| DVec3::from(position.map(f64::from)));
+    let (low, high) = positions
+        .fold((DVec3::MAX, DVec3::MIN), |(low, high), position| (low.min(position), high.max(position)));
     if low.x > high.x {
         return Vec::new();
     }

@@ -58,9 +58,9 @@ impl Remap {
 
     /// For each bone, the index among the kept bones of the bone that it is or follows.
     pub(super) fn indices(&self) -> Vec<u32> {
-        let mut places = vec![0; self.follows.len()];
-        self.kept().zip(0..).for_each(|(bone, place)| places[bone] = place);
-        self.follows.iter().map(|bone| places[*bone]).collect()
+        let mut indices = vec![0; self.follows.len()];
+        self.kept().zip(0..).for_each(|(bone, index)| indices[bone] = index);
+        self.follows.iter().map(|bone| indices[*bone]).collect()
     }
 
     /// The nearest kept bone above a bone.
@@ -177,7 +177,7 @@ impl<'a> Choice<'a> {
             (0..self.stays.len()).filter(|other| self.remap.follows(*other) == bone).collect();
         let offsets: Vec<DAffine3> = group.iter().map(|other| self.offset(above, *other)).collect();
         let mut moved: Vec<(usize, &Follower)> = (group.iter().enumerate())
-            .flat_map(|(place, other)| self.rest.followers[*other].iter().map(move |one| (place, one)))
+            .flat_map(|(index, other)| self.rest.followers[*other].iter().map(move |one| (index, one)))
             .collect();
         moved.sort_by_key(|(_, follower)| follower.vertex);
         let stray = |models: &Vec<DAffine3>| {
@@ -185,8 +185,8 @@ impl<'a> Choice<'a> {
                 .map(|(other, offset)| difference(models[above] * *offset, models[*other]))
                 .collect();
             let of_vertex = |moved: &[(usize, &Follower)]| -> f64 {
-                let strays = moved.iter().map(|(place, follower)| {
-                    let (turn, shift) = changes[*place];
+                let strays = moved.iter().map(|(index, follower)| {
+                    let (turn, shift) = changes[*index];
                     follower.weight * (turn * follower.local + shift)
                 });
                 strays.sum::<DVec3>().length_squared()
@@ -195,8 +195,8 @@ impl<'a> Choice<'a> {
         };
         let stray = self.poses.par_iter().map(stray).reduce(|| 0.0, f64::max).sqrt();
         let origin = self.rest.models[bone].translation;
-        let bone_radius = moved.iter().map(|(place, follower)| {
-            let at_rest = self.rest.models[group[*place]].transform_point3(follower.local);
+        let bone_radius = moved.iter().map(|(index, follower)| {
+            let at_rest = self.rest.models[group[*index]].transform_point3(follower.local);
             follower.weight * at_rest.distance(origin)
         });
         let bone_radius = bone_radius.fold(0.0, f64::max);

@@ -56,14 +56,15 @@ impl Rest {
         let has_vertices = followers.iter().any(|followers| !followers.is_empty());
         for bone in 0..bones.len() {
             let origin = models[bone].translation;
-            let places = followers[bone].iter().map(|follower| models[bone].transform_point3(follower.local));
-            for (at, place) in [origin].into_iter().chain(places).enumerate() {
+            let positions =
+                followers[bone].iter().map(|follower| models[bone].transform_point3(follower.local));
+            for (at, position) in [origin].into_iter().chain(positions).enumerate() {
                 if at > 0 || !has_vertices {
-                    (low, high) = (low.min(place), high.max(place));
+                    (low, high) = (low.min(position), high.max(position));
                 }
                 let parent = |bone: usize| bones[bone].parent.map(|parent| parent as usize);
                 for above in std::iter::successors(Some(bone), |bone| parent(*bone)) {
-                    radii[above] = radii[above].max(place.distance(models[above].translation));
+                    radii[above] = radii[above].max(position.distance(models[above].translation));
                 }
             }
         }

@@ -223,25 +223,25 @@ fn value(transform: &Transform, part: Part) -> [f32; 4] {
 fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
     let of = |part| {
         let track = clip.track(bone, part);
-        let (times, interpolation) = (clip.times_of(track), track.interpolation());
-        let place = match side {
-            Side::Before => place_before(times, interpolation, time),
+        let (times, interpolation) = (clip.times_of(track), track.interpolation);
+        let cursor = match side {
+            Side::Before => cursor_before(times, interpolation, time),
             Side::After => keyframe_cursor(times, time),
         };
-        (&clip.values()[track.first_value as usize..], interpolation, place)
+        (&clip.values()[track.first_value as usize..], interpolation, cursor)
     };
     let vector = |part| {
-        let (values, interpolation, place) = of(part);
-        let [x, y, z, _] = vector_at(values, interpolation, place);
+        let (values, interpolation, cursor) = of(part);
+        let [x, y, z, _] = vector_at(values, interpolation, cursor);
         [x, y, z]
     };
-    let (values, interpolation, place) = of(Part::Rotation);
-    let rotation = rotation_at(values, interpolation, place, RotationPath::Slerp);
+    let (values, interpolation, cursor) = of(Part::Rotation);
+    let rotation = rotation_at(values, interpolation, cursor, RotationPath::Slerp);
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
 
 /// The keyframe cursor at a time, approached from before: at a key, a jump to it has not happened yet.
-fn place_before(times: &[f32], interpolation: Interpolation, time: f32) -> KeyframeCursor {
+fn cursor_before(times: &[f32], interpolation: Interpolation, time: f32) -> KeyframeCursor {
     let first = times.partition_point(|other| *other < time);
     if times.get(first) != Some(&time) {
         return keyframe_cursor(times, time);

@@ -6,7 +6,7 @@ use crate::Error;
 use crate::asset::transform::Affine;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::reference::lod;
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use crate::terrain::bench::copy_of;
@@ -23,8 +23,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let view = LodView {
         clip_from_world,
         eye: Vec3::Y,
-        fade_start: 10.0,
-        fade_end: 100.0,
+        fade_range: FadeRange { start: 10.0, end: 100.0 },
         steps: 64,
         max_influences: 8,
         center: Vec3::Y,
@@ -32,11 +31,11 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         levels: LevelRanges::NONE,
     };
     for count in [1000, 100_000] {
-        let place = |index: usize| {
+        let placement = |index: usize| {
             let (x, z) = ((index % 400) as f32 - 200.0, (index / 400) as f32 * 2.0 - 250.0);
             placed(Vec3::new(x, 0.0, z), index as f32, 1.0)
         };
-        let placements: Vec<Affine> = (0..count).map(place).collect();
+        let placements: Vec<Affine> = (0..count).map(placement).collect();
         let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
         let instance_lods = Buffer::from_slice(gpu, "instance_lods", &vec![InstanceLod::FULL; count])?;
         let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 10)?);
@@ -48,7 +47,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Reference, || {
                 drop(std::hint::black_box(
-                    placements.iter().map(|place| lod(&view, place)).collect::<Vec<_>>(),
+                    placements.iter().map(|placement| lod(&view, placement)).collect::<Vec<_>>(),
                 ));
             }),
         ];

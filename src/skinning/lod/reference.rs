@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
 use crate::asset::transform::Affine;
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::LodView;
 use crate::skinning::picture::is_mirrored;
 
@@ -12,7 +12,7 @@ use crate::skinning::picture::is_mirrored;
 pub struct Seen {
     /// How far the model's sphere extends into the view volume; negative if it is outside.
     pub depth: f32,
-    /// The projected distance of the sphere's centre.
+    /// The projected distance of the sphere's center.
     pub projected_distance: f32,
     /// The position between the beginning and the end of the fade, 0 to 1, before it is rounded to steps.
     pub fade_fraction: f32,
@@ -34,7 +34,8 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
     let projected_distance = view.projected_distance(center);
-    let fade_fraction = (projected_distance - view.fade_start) / (view.fade_end - view.fade_start);
+    let FadeRange { start, end } = view.fade_range;
+    let fade_fraction = (projected_distance - start) / (end - start);
     Seen {
         depth: depths.into_iter().fold(f32::INFINITY, f32::min),
         projected_distance,

@@ -9,7 +9,7 @@ use crate::gpu::Buffer;
 use crate::harness::compare::{Comparison, LeftOut};
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::reference::{Seen, lod, may_mirror, seen};
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, placed};
 
@@ -50,7 +50,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = LodPass::new(gpu)?;
     for (case, count) in (0..).zip([1, 63, 64, 65, 1000]) {
         let mut draw = Draw::new(case ^ 0x10d);
-        let mut place = |instance| {
+        let mut placement = |instance| {
             let at = [0; 3].map(|_| 100.0 * draw.signed());
             let [x, y, z] = placed(
                 Vec3::from(at) * Vec3::new(1.0, 0.1, 1.0),
@@ -60,7 +60,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             // Mirrored at the ground, as in water.
             [x, if instance % 3 == 1 { [-y[0], -y[1], -y[2], y[3]] } else { y }, z]
         };
-        let placements: Vec<Affine> = (0..count).map(&mut place).collect();
+        let placements: Vec<Affine> = (0..count).map(&mut placement).collect();
         for (name, towards, levels) in DIRECTIONS {
             let mut view = LodView { levels: LevelRanges::new(levels)?, ..view(towards) };
             if name == MIRROR {
@@ -99,8 +99,7 @@ fn view(towards: Vec3) -> LodView {
     LodView {
         clip_from_world,
         eye,
-        fade_start: 10.0,
-        fade_end: 70.0,
+        fade_range: FadeRange { start: 10.0, end: 70.0 },
         steps: 16,
         max_influences: 5,
         center: Vec3::new(0.0, 0.9, 0.1),
@@ -127,7 +126,7 @@ fn split(drawn: &[u32], arguments: &[u32], count: usize, lists: &mut Vec<Vec<u32
 /// Checks that the second draw of each list reaches all mirrored instances.
 fn mirrored(view: &LodView, placements: &[Affine], arguments: &[u32], lists: &[Vec<u32>]) -> Comparison {
     let is_mirrored = |drawn: &u32| may_mirror(view, &placements[*drawn as usize]);
-    let last = |list: &Vec<u32>| list.iter().rposition(is_mirrored).map_or(0, |place| place as u32 + 1);
+    let last = |list: &Vec<u32>| list.iter().rposition(is_mirrored).map_or(0, |index| index as u32 + 1);
     let found: Vec<u32> = arguments.chunks(10).map(|arguments| arguments[6]).collect();
     compare::exact(&found, &lists.iter().map(last).collect::<Vec<_>>())
 }

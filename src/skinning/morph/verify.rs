@@ -69,10 +69,10 @@ fn one(
     let mut expected = Vec::new();
     for (instance, weights) in weights.chunks(shape.targets).enumerate() {
         let morphed = morph(&model.meshes[0], weights);
-        expected.extend(clusters.order.iter().enumerate().map(|(place, vertex)| {
-            let pair = place / CLUSTER * instances + instance;
+        expected.extend(clusters.order.iter().enumerate().map(|(slot, vertex)| {
+            let pair = slot / CLUSTER * instances + instance;
             let level = clusters.level([0, 15, 1, 0, 0][instance]);
-            let is_kept = instance == 3 || place / CLUSTER >= level.clusters as usize;
+            let is_kept = instance == 3 || slot / CLUSTER >= level.clusters as usize;
             let is_morphed = !is_kept && chosen.contains(&(pair as u32));
             if is_morphed { morphed[*vertex as usize] } else { poisoned() }
         }));

@@ -22,15 +22,15 @@ pub fn is_mirrored(clip: &Mat4) -> bool {
 /// A matrix from the model's space to clip space that puts all of these vertices in the middle of a square
 /// picture, seen from +Z, slightly from the left and from above.
 pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
-    let places = vertices.map(|vertex| Vec3::from(vertex.position));
-    let wide = around(places.clone());
-    let seen = places.map(|place| wide.project_point3(place).truncate());
+    let positions = vertices.map(|vertex| Vec3::from(vertex.position));
+    let wide = around(positions.clone());
+    let seen = positions.map(|position| wide.project_point3(position).truncate());
     let (low, high) =
-        seen.fold((Vec2::MAX, Vec2::MIN), |(low, high), place| (low.min(place), high.max(place)));
+        seen.fold((Vec2::MAX, Vec2::MIN), |(low, high), position| (low.min(position), high.max(position)));
     if !low.cmple(high).all() {
         return wide;
     }
-    // The contents are centred and fill nine tenths.
+    // The contents are centered and fill nine tenths.
     let zoom = 1.8 / (high - low).max_element().max(1e-3);
     let middle = low.midpoint(high) * zoom;
     let crop = Mat4::from_translation(-middle.extend(0.0)) * Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
@@ -38,9 +38,9 @@ pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
 }
 
 /// A camera that sees a sphere around the points.
-fn around(places: impl Iterator<Item = Vec3>) -> Mat4 {
-    let (low, high) =
-        places.fold((Vec3::MAX, Vec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
+fn around(positions: impl Iterator<Item = Vec3>) -> Mat4 {
+    let (low, high) = positions
+        .fold((Vec3::MAX, Vec3::MIN), |(low, high), position| (low.min(position), high.max(position)));
     let (low, high) = if low.cmple(high).all() { (low, high) } else { (Vec3::ZERO, Vec3::ONE) };
     let center = low.midpoint(high);
     let radius = ((high - low).length() / 2.0).max(1e-6 * center.length()).max(1e-12);

@@ -117,15 +117,15 @@ impl Canvas<'_> {
         }
     }
 
-    fn fragment(&mut self, place: [u32; 2], triangle: &Triangle<'_>) {
-        let [x, y] = place.map(|at| at as f32 + 0.5);
+    fn fragment(&mut self, pixel: [u32; 2], triangle: &Triangle<'_>) {
+        let [x, y] = pixel.map(|at| at as f32 + 0.5);
         let barycentric = triangle.barycentric(x, y);
         if barycentric.min_element() < 0.0 {
             return;
         }
-        let pixel = (place[1] * self.scene.size[0] + place[0]) as usize;
+        let index = (pixel[1] * self.scene.size[0] + pixel[0]) as usize;
         let depth = barycentric.dot(Vec3::from(triangle.screen.map(|corner| corner.z)));
-        if !(0.0..self.depths[pixel]).contains(&depth) {
+        if !(0.0..self.depths[index]).contains(&depth) {
             return;
         }
         let uv = triangle.uv(x, y);
@@ -136,19 +136,19 @@ impl Canvas<'_> {
         let least = match surface.alpha {
             Alpha::Opaque => f32::NEG_INFINITY,
             Alpha::Mask(cutoff) => cutoff,
-            Alpha::Dithered => dither_threshold(place),
+            Alpha::Dithered => dither_threshold(pixel),
         };
         if alpha < least {
             return;
         }
-        self.depths[pixel] = depth;
+        self.depths[index] = depth;
         let weights = triangle.weights(x, y).to_array();
         let normals = triangle.corners.iter().zip(weights).map(|(corner, weight)| weight * corner.normal);
         let side = if triangle.is_front { 1.0 } else { -1.0 };
         let Light { direction, color, ambient } = self.scene.light;
         let facing = side * normals.sum::<Vec3>().normalize_or_zero().dot(direction.normalize());
         let lit = Vec3::new(r, g, b) * color * lambert(ambient, facing.max(0.0));
-        self.pixels[pixel] = lit.to_array();
+        self.pixels[index] = lit.to_array();
     }
 }
 

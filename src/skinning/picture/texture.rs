@@ -98,18 +98,18 @@ impl Texels {
 
     fn read(&self, level: usize, uv: [f32; 2], filter: Filter) -> [f32; 4] {
         let level = &self.levels[level];
-        let place = [0, 1].map(|axis| uv[axis] * level.size[axis] as f32);
+        let position = [0, 1].map(|axis| uv[axis] * level.size[axis] as f32);
         let texel = |x: i64, y: i64| {
             let [x, y] = [(x, 0), (y, 1)]
                 .map(|(at, axis)| wrapped(at, level.size[axis] as i64, self.sampling.wrap[axis]));
             level.texels[y * level.size[0] + x]
         };
         if filter == Filter::Nearest {
-            let [x, y] = place.map(|at| at.floor() as i64);
+            let [x, y] = position.map(|at| at.floor() as i64);
             return texel(x, y);
         }
-        let low = place.map(|at| (at - 0.5).floor());
-        let fraction = [0, 1].map(|axis| place[axis] - 0.5 - low[axis]);
+        let low = position.map(|at| (at - 0.5).floor());
+        let fraction = [0, 1].map(|axis| position[axis] - 0.5 - low[axis]);
         let [x, y] = low.map(|at| at as i64);
         let row = |y: i64| mixed(texel(x, y), texel(x.saturating_add(1), y), fraction[0]);
         mixed(row(y), row(y.saturating_add(1)), fraction[1])
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn places_far_away_are_read() {
+    fn positions_far_away_are_read() {
         for wrap in [Wrapping::Repeat, Wrapping::Mirror, Wrapping::Clamp] {
             let texels = texels(Sampling { wrap: [wrap; 2], ..Sampling::default() });
             for far in [1e18, -1e18] {

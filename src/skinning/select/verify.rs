@@ -149,7 +149,7 @@ fn model(case: u32, shape: Shape) -> Result<Model, InputError> {
             order
                 .iter()
                 .position(|other| other == vertex)
-                .is_some_and(|place| (place / CLUSTER).is_multiple_of(2))
+                .is_some_and(|slot| (slot / CLUSTER).is_multiple_of(2))
         };
         let (vertices, deltas): (Vec<u32>, Vec<MorphDelta>) =
             target.vertices.iter().zip(&target.deltas).filter(|(vertex, _)| is_kept(vertex)).unzip();

@@ -117,8 +117,8 @@ impl Scene {
         gpu.run("verify", |encoder| job.record(encoder))?;
         let mut expected = self.expected.clone();
         for (instance, expected) in expected.chunks_mut(self.clusters.order.len()).enumerate() {
-            for (place, vertex) in self.clusters.order.iter().enumerate() {
-                let pair = (place / 64 * INSTANCES + instance) as u32;
+            for (slot, vertex) in self.clusters.order.iter().enumerate() {
+                let pair = (slot / 64 * INSTANCES + instance) as u32;
                 if !chosen.contains(&pair) {
                     expected[*vertex as usize] = Expected::untouched();
                 }

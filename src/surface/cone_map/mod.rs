@@ -2,7 +2,7 @@
 //! corner in which a ray crosses the surface at most once. The method `cone` steps over these cones.
 //!
 //! They are the relaxed cones of Policarpo and Oliveira (2007), made safe under bilinear filtering in the
-//! spirit of Bán and Valasek (2024): the bounds hold for every point of both cells, not only for texel centres.
+//! spirit of Bán and Valasek (2024): the bounds hold for every point of both cells, not only for texel centers.
 //!
 //! A radius is at most the shorter edge of the map, in cells. On maps with few rows `quadtree` is far cheaper.
 

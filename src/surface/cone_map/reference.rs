@@ -104,11 +104,11 @@ fn nearest_child(parent: [i32; 2], cell: [i32; 2], level: u32) -> [i32; 2] {
 
 fn leaf_radius(corners: [f32; 4], offset: [i32; 2], own: f32) -> f32 {
     let away = offset.map(|at| at.abs() as f32);
-    let centre = away.map(|away| (away - 0.5).max(0.0));
-    let length = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt().max(0.5);
-    // Distances of the lower and the upper edge of the leaf, along the line to its centre.
+    let center = away.map(|away| (away - 0.5).max(0.0));
+    let length = (center[0] * center[0] + center[1] * center[1]).sqrt().max(0.5);
+    // Distances of the lower and the upper edge of the leaf, along the line to its center.
     let edges = |i: usize| {
-        let direction = centre[i] / length;
+        let direction = center[i] / length;
         let (near, far) = ((away[i] - 1.0).max(0.0) * direction, away[i] * direction);
         if offset[i] < 0 { [far, near] } else { [near, far] }
     };

@@ -129,12 +129,12 @@ impl Fine<'_> {
         fine
     }
 
-    /// The centres of the cells between two coarse rows. The first cell starts at the coarse point (x, y).
-    fn diamonds(&self, above: &[i32], below: &[i32], x: i64, y: i64, centres: &mut [i32]) {
-        for (i, centre) in centres.iter_mut().enumerate() {
-            *centre = mean_of_four(above[i], above[i + 1], below[i], below[i + 1]);
+    /// The centers of the cells between two coarse rows. The first cell starts at the coarse point (x, y).
+    fn diamonds(&self, above: &[i32], below: &[i32], x: i64, y: i64, centers: &mut [i32]) {
+        for (i, center) in centers.iter_mut().enumerate() {
+            *center = mean_of_four(above[i], above[i + 1], below[i], below[i + 1]);
         }
-        self.draw_row(centres, 2 * x + 1, 2 * y + 1);
+        self.draw_row(centers, 2 * x + 1, 2 * y + 1);
     }
 
     /// Adds random offsets to the points (x, y), (x + 2, y), … and injects features.

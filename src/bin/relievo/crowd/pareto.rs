@@ -53,7 +53,7 @@ fn chart(report: &ParetoReport, what: &str, error: impl Fn(&Errors) -> f64) -> C
     let ParetoReport { instances, clip, tall_pixels, points, .. } = report;
     Chart {
         title: format!("{what} error, {instances} × {clip:?} at {tall_pixels} pixels"),
-        x_label: "interpolations, of moving bones".to_owned(),
+        x_label: "interpolations, of animated bones".to_owned(),
         y_label: "pixels".to_owned(),
         log_x: true,
         log_y: true,
@@ -99,7 +99,7 @@ fn comparison_table(comparisons: &Comparisons) -> String {
         }
         writeln!(text, "\n{}\n", sentence(name, rows)).expect("a string");
     }
-    text += "At equal largest error, interpolations of moving bones:\n\n\
+    text += "At equal largest error, interpolations of animated bones:\n\n\
              | largest error px | uniform | bounded | ratio |\n|---:|---:|---:|---:|\n";
     for AtError { max_pixels, uniform, bounded, ratio } in &comparisons.bounded_cost {
         writeln!(text, "| {max_pixels:.3} | {uniform:.3} | {bounded:.3} | {ratio:.2} |").expect("a string");
@@ -119,11 +119,11 @@ fn sentence(name: &str, rows: &[AtCost]) -> String {
         .map(|row| format!("{:.1}", row.cost))
         .collect();
     let Some([least, most]) = ends(&ratios) else { return format!("`{name}` has no rival.") };
-    let verdict = match worse.is_empty() {
+    let found = match worse.is_empty() {
         true => "better at every one of these costs".to_owned(),
         false => format!("not better at the costs {}", worse.join(", ")),
     };
-    format!("`{name}` is {verdict}: {least:.2} to {most:.2} times the error.")
+    format!("`{name}` is {found}: {least:.2} to {most:.2} times the error.")
 }
 
 fn ends(values: &[f64]) -> Option<[f64; 2]> {

@@ -67,7 +67,7 @@ fn table(report: &AnimationReport) -> String {
          px | max m | jump px |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
         report.instances,
         report.bones,
-        report.moving_bones,
+        report.animated_bones,
         report.clip,
         report.gate.name().as_str(),
         report.adapter.as_deref().unwrap_or("CPU"),
@@ -125,7 +125,7 @@ fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
         series("local_to_model", &|row| row.nanoseconds_per_bone.local_to_model),
     ];
     let fraction = vec![
-        series("interpolated, of moving bones", &|row| Some(row.fraction)),
+        series("interpolated, of animated bones", &|row| Some(row.fraction)),
         series("concatenated, of all bones", &|row| Some(row.concatenated_fraction)),
         series("mean Ω", &|row| Some(row.mean_omega)),
     ];

@@ -43,8 +43,8 @@ pub fn skin_seen(
 ) {
     if instance_lod.max_influences > 0 {
         let all = skin(vertices, influences, palette, instance_lod);
-        let places = CLUSTER * clusters.level(instance_lod.mesh_lod).clusters as usize;
-        for vertex in clusters.order.iter().take(places).map(|vertex| *vertex as usize) {
+        let slots = CLUSTER * clusters.level(instance_lod.mesh_lod).clusters as usize;
+        for vertex in clusters.order.iter().take(slots).map(|vertex| *vertex as usize) {
             skinned[vertex] = all[vertex];
         }
     }

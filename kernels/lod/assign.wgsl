@@ -1,0 +1,83 @@
+// What gates and skinning use of the displacement that the views of a frame allow: a thread shares out that of one
+// instance of a character among its bones, its influences and its mesh.
+import package::wgsl::animation::gate_state::{LOD_HIDDEN, Lod, OMEGA_ONE};
+import package::wgsl::lod::object::OBJECT_LEVELS;
+import package::wgsl::skinning::instance_lod::InstanceLod;
+
+// Steps of a fade of influences: an instance that hardly moves keeps its fade.
+const FADE_STEPS: f32 = 64.0;
+// The largest `Lod::allowed` that an f32 holds exactly and that is less than the motion of a whole clip, 2^30.
+const MAX_UNITS: f32 = 1073741760.0;
+// The weight of every instance against the others.
+const FULL_WEIGHT = 65535u;
+
+struct AssignParams {
+    // The index of the object's first instance in `allowed`.
+    first: u32,
+    // Number of instances.
+    instances: u32,
+    // Number of levels, 1 to 8.
+    levels: u32,
+    // The fraction of the allowed displacement that levels of detail of the mesh may use, 0 to 1.
+    mesh_fraction: f32,
+    // The fraction that bones may use which are not sampled, 0 to 1.
+    bone_fraction: f32,
+    // The fraction that fades of influences may use, 0 to 1.
+    influence_fraction: f32,
+    // The unit of the gate's table in the model's units, above 0.
+    unit: f32,
+    // The displacement of a vertex whose influences have faded altogether, in the model's units, at least 0.
+    stray: f32,
+    // The largest number of influences of instances that are seen, 1 to 8.
+    max_influences: u32,
+    // The error of each level in the model's units, ascending from 0.
+    errors: array<vec4<f32>, 2>,
+}
+
+@group(0) @binding(0) var<uniform> params: AssignParams;
+// The displacement that the frame's views allow, in the model's units; negative if none sees the instance.
+@group(0) @binding(1) var<storage, read> allowed: array<f32>;
+// What gates use of the object's instances.
+@group(0) @binding(2) var<storage, read_write> lods: array<Lod>;
+// What skinning uses of them.
+@group(0) @binding(3) var<storage, read_write> instance_lods: array<InstanceLod>;
+
+// The coarsest level whose error is within its fraction.
+fn level_within(within: f32) -> u32 {
+    var level = 0u;
+    for (var coarser = 1u; coarser < min(params.levels, OBJECT_LEVELS); coarser++) {
+        if params.errors[coarser >> 2u][coarser & 3u] <= params.mesh_fraction * within {
+            level = coarser;
+        }
+    }
+    return level;
+}
+
+// How far influences may fade: the whole way if that displaces nothing.
+fn fade_within(within: f32) -> f32 {
+    if params.stray <= 0.0 {
+        return 1.0;
+    }
+    return floor(FADE_STEPS * min(params.influence_fraction * within / params.stray, 1.0)) / FADE_STEPS;
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let instance = (group.y * groups.x + group.x) * 64u + lane;
+    if instance >= params.instances {
+        return;
+    }
+    let within = allowed[params.first + instance];
+    if within < 0.0 {
+        lods[instance] = Lod(OMEGA_ONE, 0u, FULL_WEIGHT, LOD_HIDDEN);
+        instance_lods[instance] = InstanceLod(0.0, 0u, 0u);
+        return;
+    }
+    let units = u32(min(floor(params.bone_fraction * within / params.unit), MAX_UNITS));
+    lods[instance] = Lod(OMEGA_ONE, units, FULL_WEIGHT, 0u);
+    instance_lods[instance] = InstanceLod(fade_within(within), params.max_influences, level_within(within));
+}

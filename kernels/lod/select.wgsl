@@ -1,0 +1,127 @@
+// Decides for each instance of a scene whether a view sees it, and with which level of detail. A workgroup takes a block of
+// instances, a thread one of them.
+import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, Axes, SceneInstance, instance_axes, instance_position};
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS};
+import package::wgsl::lod::view::{LodCamera, POSITION_SLACK, SelectView, VIEW_CAMERAS, camera_allows};
+
+// Of an instance that no view has seen in the frame.
+const UNSEEN_ALLOWED: f32 = -1.0;
+// The largest displacement that is allowed, in the model's units: it keeps quotients of it finite.
+const MAX_ALLOWED: f32 = 1e9;
+// The least scale by which a displacement is divided.
+const LEAST_SCALE: f32 = 1e-9;
+
+@group(0) @binding(0) var<uniform> view: SelectView;
+@group(0) @binding(1) var<storage, read> objects: array<LodObject>;
+// The index of the object that each block of instances belongs to, `NO_OBJECT` for none.
+@group(0) @binding(2) var<storage, read> block_objects: array<u32>;
+@group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
+// For each instance the smallest displacement that a view of the frame which sees it allows, in the model's units;
+// `UNSEEN_ALLOWED` if none sees it.
+@group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
+// For each instance 0 if the view does not see it, else 1 + its list: 1 + 2 · level + mirrored.
+@group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
+// Three rows for each instance that is seen: the transform from the model's space to the corner of the view's cell.
+@group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
+// For each block the number of its instances in each of `OBJECT_LISTS` lists.
+@group(0) @binding(7) var<storage, read_write> counts: array<u32>;
+
+var<workgroup> tally: array<atomic<u32>, 16>;
+
+// Whether the view may see the instance at all, wherever it is.
+fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
+    let is_alive = object.shown != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
+    let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
+    return is_alive && casts && ((instance.flags >> INSTANCE_MASK_SHIFT) & view.mask) != 0u;
+}
+
+// Whether a sphere reaches into the view volume.
+fn is_inside(center: vec3<f32>, radius: f32) -> bool {
+    var is_seen = true;
+    for (var plane = 0u; plane < 6u; plane++) {
+        let side = view.planes[plane];
+        let slack = POSITION_SLACK * (length(center) + abs(side.w) + radius);
+        is_seen = is_seen && dot(side.xyz, center) + side.w >= -(radius + slack);
+    }
+    return is_seen;
+}
+
+// The displacement that all of the view's cameras allow, in the model's units.
+fn view_allows(center: vec3<f32>, radius: f32, scale: f32) -> f32 {
+    var least = camera_allows(view.cameras[0], center, radius);
+    for (var camera = 1u; camera < min(view.camera_count, VIEW_CAMERAS); camera++) {
+        least = min(least, camera_allows(view.cameras[camera], center, radius));
+    }
+    return min(least / max(scale, LEAST_SCALE), MAX_ALLOWED);
+}
+
+// The list of an instance: 2 · level + mirrored.
+fn list_of(object: LodObject, scale: vec3<f32>, allowed_here: f32) -> u32 {
+    var level = 0u;
+    for (var coarser = 1u; coarser < min(object.levels, OBJECT_LEVELS); coarser++) {
+        if object.errors[coarser >> 2u][coarser & 3u] <= object.mesh_fraction * allowed_here {
+            level = coarser;
+        }
+    }
+    let is_mirrored = ((scale.x < 0.0) != (scale.y < 0.0)) != (scale.z < 0.0);
+    return 2u * level + u32(is_mirrored);
+}
+
+// The decision for an instance. Writes its rows and its allowed displacement.
+fn decide(index: u32, object: LodObject) -> u32 {
+    let instance = instances[index];
+    if is_shown(instance, object) {
+        let axes = instance_axes(instance);
+        let at = instance_position(instance, view.cell);
+        let sphere = instance.bounding_sphere;
+        let center = axes.x * sphere.x + axes.y * sphere.y + axes.z * sphere.z + at;
+        let scale = max(max(abs(instance.scale.x), abs(instance.scale.y)), abs(instance.scale.z));
+        let radius = sphere.w * scale;
+        if is_inside(center, radius) {
+            rows[3u * index] = vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x);
+            rows[3u * index + 1u] = vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y);
+            rows[3u * index + 2u] = vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z);
+            let allowed_here = view_allows(center, radius, scale);
+            var merged = allowed_here;
+            if view.is_first == 0u && allowed[index] >= 0.0 {
+                merged = min(merged, allowed[index]);
+            }
+            allowed[index] = merged;
+            return 1u + list_of(object, instance.scale, allowed_here);
+        }
+    }
+    if view.is_first != 0u {
+        allowed[index] = UNSEEN_ALLOWED;
+    }
+    return 0u;
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let block = group.y * groups.x + group.x;
+    if block >= view.blocks {
+        return;
+    }
+    let owner = block_objects[block];
+    if owner == NO_OBJECT {
+        return;
+    }
+    if lane < OBJECT_LISTS {
+        atomicStore(&tally[lane], 0u);
+    }
+    workgroupBarrier();
+    let index = BLOCK * block + lane;
+    let decision = decide(index, objects[owner]);
+    decisions[index] = decision;
+    if decision > 0u {
+        atomicAdd(&tally[decision - 1u], 1u);
+    }
+    workgroupBarrier();
+    if lane < OBJECT_LISTS {
+        counts[OBJECT_LISTS * block + lane] = atomicLoad(&tally[lane]);
+    }
+}

@@ -1,0 +1,47 @@
+//! What gates and skinning leave out of the instances of a character, given how far the views of a frame let them be off.
+//!
+//! [`select`](super::select) gives the displacement that is allowed, in the model's units. Fractions of it go to levels of
+//! detail of the mesh, to bones that are not sampled, and to influences that fade; together they must not exceed 1, because
+//! displacements add up. An instance that no view sees is neither sampled nor skinned.
+
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+
+#[cfg(feature = "gpu")]
+pub use pass::{AssignBuffers, AssignPass};
+
+use super::object::{check_fraction, check_levels};
+use crate::InputError;
+use crate::asset::influences::MAX_INFLUENCES;
+pub use crate::shared::lod::assign::AssignParams;
+
+impl AssignParams {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field; for fractions that add up to more than 1, `params.influence_fraction`.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let errors: Vec<f32> = self.errors.iter().flat_map(|errors| errors.to_array()).collect();
+        check_levels("params", self.levels, &errors)?;
+        check_fraction("params.mesh_fraction".to_owned(), self.mesh_fraction)?;
+        check_fraction("params.bone_fraction".to_owned(), self.bone_fraction)?;
+        check_fraction("params.influence_fraction".to_owned(), self.influence_fraction)?;
+        let sum = self.mesh_fraction + self.bone_fraction + self.influence_fraction;
+        if sum > 1.0 + 1e-6 {
+            let bound = format!("must not add up to more than 1 with the others, and does to {sum}");
+            return Err(InputError::new("params.influence_fraction", self.influence_fraction, bound));
+        }
+        if !(1e-20..f32::INFINITY).contains(&self.unit) {
+            return Err(InputError::new("params.unit", self.unit, "must be at least 1e-20 and finite"));
+        }
+        if !(0.0..f32::INFINITY).contains(&self.stray) {
+            return Err(InputError::new("params.stray", self.stray, "must be at least 0 and finite"));
+        }
+        if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
+            let bound = format!("must be in 1..={MAX_INFLUENCES}");
+            return Err(InputError::new("params.max_influences", self.max_influences, bound));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,59 @@
+//! The GPU pass of `kernels/lod/assign.wgsl`.
+
+use super::AssignParams;
+use crate::Error;
+use crate::animation::lod::PackedLod;
+use crate::gpu::bindings::lod::assign as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::skinning::instance_lod::InstanceLod;
+
+/// What an assignment reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub struct AssignBuffers<'a> {
+    /// The object and its fractions.
+    pub params: &'a Uniform<AssignParams>,
+    /// For each instance of the scene the displacement that is allowed, in the model's units, negative if none sees it.
+    pub allowed: &'a Buffer<f32>,
+    /// Written, one for each instance of the object: what gates use.
+    pub lods: &'a Buffer<PackedLod>,
+    /// Written, one for each instance of the object: what skinning uses.
+    pub instance_lods: &'a Buffer<InstanceLod>,
+}
+
+/// Assigns allowed displacements to gates and skinning.
+#[derive(Debug, Clone)]
+pub struct AssignPass {
+    kernel: Kernel,
+}
+
+impl AssignPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu)? })
+    }
+
+    /// Prepares the assignment to at most `instances` instances; the uniform's `instances` says how many there are.
+    ///
+    /// # Errors
+    /// [`InputError`](crate::InputError) for buffers that hold less; [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, buffers: AssignBuffers<'_>, instances: u32) -> Result<Job, Error> {
+        buffers.allowed.check_holds("allowed", instances as usize)?;
+        buffers.lods.check_holds("lods", instances as usize)?;
+        buffers.instance_lods.check_holds("instance_lods", instances as usize)?;
+        let group = bindings::Group {
+            params: buffers.params,
+            allowed: buffers.allowed.slice(),
+            lods: buffers.lods.slice(),
+            instance_lods: buffers.instance_lods.slice(),
+        };
+        let step = Step {
+            groups: vec![group.bind(gpu, &self.kernel)?],
+            workgroups: self.kernel.spread(gpu, instances),
+            kernel: self.kernel.clone(),
+        };
+        Ok(Job::new(gpu, "lod/assign", vec![step])?)
+    }
+}

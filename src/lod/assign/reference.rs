@@ -1,0 +1,36 @@
+//! Assignment of allowed displacements: the CPU reference of `kernels/lod/assign.wgsl`.
+
+use super::AssignParams;
+use crate::animation::{Lod, Sampling};
+use crate::lod::object::level_within;
+use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
+use crate::skinning::instance_lod::InstanceLod;
+
+/// What gates and skinning use of an instance, from the displacement that it is allowed in the model's units, which is
+/// negative if no view sees it.
+pub fn assign(params: &AssignParams, allowed: f32) -> (Lod, InstanceLod) {
+    if allowed < 0.0 {
+        return (Lod { sampling: Sampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
+    }
+    let lod = Lod { allowed: units(params, allowed).floor().min(MAX_UNITS) as u32, ..Lod::FULL };
+    let errors = params.errors.map(|errors| errors.to_array());
+    let instance_lod = InstanceLod {
+        influence_fade: fade_steps(params, allowed).floor() / FADE_STEPS,
+        max_influences: params.max_influences,
+        mesh_lod: level_within(params.levels, &errors, params.mesh_fraction * allowed),
+    };
+    (lod, instance_lod)
+}
+
+/// The displacement of bones, in units of the gate's table.
+pub fn units(params: &AssignParams, allowed: f32) -> f32 {
+    params.bone_fraction * allowed / params.unit
+}
+
+/// How far influences may fade, in steps.
+pub fn fade_steps(params: &AssignParams, allowed: f32) -> f32 {
+    if params.stray <= 0.0 {
+        return FADE_STEPS;
+    }
+    FADE_STEPS * (params.influence_fraction * allowed / params.stray).min(1.0)
+}

@@ -1,0 +1,190 @@
+//! Cameras of views: planes, and the displacement that a camera allows, from the caller's own matrices.
+//! `docs/pixel-bounds.md` derives the latter.
+
+use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
+
+use super::LodCamera;
+use crate::InputError;
+use crate::shared::lod::view::{ALLOWED_MARGIN, POSITION_SLACK};
+
+/// A plane of the view volume is the difference of two rows. If its normal is this much shorter than theirs, the rounding
+/// of matrices to `f32` decides its direction.
+const LOST: f64 = 1e-4;
+
+/// A plane that excludes nothing.
+const NOWHERE: Vec4 = Vec4::W;
+
+/// The planes of the view volume of a matrix from a space to clip space, with depth 0 to 1: unit normals that point
+/// inwards, and distances, in the order left, right, bottom, top, depth 0, depth 1. A plane at infinity, or one so far that
+/// rounding decides its direction, is (0, 0, 0, 1), which excludes nothing.
+pub fn planes(clip_from_cell: Mat4) -> [Vec4; 6] {
+    let [x, y, z, w] = rows(&clip_from_cell.as_dmat4());
+    let unit = |plane: DVec4, of: DVec4| {
+        let length = plane.truncate().length();
+        let unit = (plane / length).as_vec4();
+        let is_kept = length > LOST * of.truncate().length() && unit.is_finite();
+        if is_kept { unit } else { NOWHERE }
+    };
+    [unit(w + x, x), unit(w - x, x), unit(w + y, y), unit(w - y, y), unit(z, DVec4::ZERO), unit(w - z, w)]
+}
+
+fn rows(matrix: &DMat4) -> [DVec4; 4] {
+    [0, 1, 2, 3].map(|row| matrix.row(row))
+}
+
+/// A camera's position and direction, and the row of its matrix in whose direction nothing moves on screen.
+struct Perspective {
+    eye: DVec3,
+    ahead: DVec3,
+}
+
+impl LodCamera {
+    /// The camera of a view whose points a view matrix takes from a cell's space into the camera's, and a projection from
+    /// there to clip space with depth 0 to 1. Any perspective will do (also infinite, off-axis, jittered, oblique), and
+    /// any parallel projection; view matrices may mirror and scale.
+    ///
+    /// `viewport` is width and height in pixels, `reversed` says that depth is 1 at the near plane, and `pixels` is the
+    /// most by which anything may be off.
+    ///
+    /// # Errors
+    /// [`InputError`] for `camera.view_from_cell` that is not finite, affine and invertible, for `camera.clip_from_view`
+    /// that is not finite, collapses the picture, or has no near plane ahead of the eye where `reversed` says, for a
+    /// `camera.viewport` without pixels, and for `quality.pixels` that is negative or not finite.
+    pub fn new(
+        view_from_cell: Mat4,
+        clip_from_view: Mat4,
+        viewport: [u32; 2],
+        reversed: bool,
+        pixels: f32,
+    ) -> Result<Self, InputError> {
+        check_view(&view_from_cell)?;
+        if viewport.contains(&0) {
+            let [width, height] = viewport;
+            return Err(InputError::new(
+                "camera.viewport",
+                format!("{width} × {height}"),
+                "must have pixels",
+            ));
+        }
+        if !(0.0..f32::INFINITY).contains(&pixels) {
+            return Err(InputError::new("quality.pixels", pixels, "must be finite, and not negative"));
+        }
+        Self::of(&(clip_from_view.as_dmat4() * view_from_cell.as_dmat4()), viewport, reversed, pixels)
+            .ok_or_else(|| refused(&clip_from_view))
+    }
+
+    /// `None` if the matrix is no camera's.
+    fn of(clip_from_cell: &DMat4, viewport: [u32; 2], reversed: bool, pixels: f32) -> Option<Self> {
+        let [x, y, z, w] = rows(clip_from_cell);
+        let perspective = perspective([x, y, w])?;
+        let ahead = perspective.as_ref().map(|perspective| perspective.ahead);
+        // Pixels for each unit of length across; w grows by `along` with each unit ahead.
+        let along = if ahead.is_some() { w.truncate().length() } else { w.w };
+        let across = [(x, viewport[0]), (y, viewport[1])].map(|(row, size)| {
+            let row = row.truncate() * (0.5 * f64::from(size) / along);
+            row - ahead.map_or(DVec3::ZERO, |ahead| row.dot(ahead) * ahead)
+        });
+        let focal = up(largest_singular_value(across));
+        let [front, back] = if reversed { [w - z, z] } else { [z, w - z] };
+        let near = match &perspective {
+            Some(perspective) => near(perspective, front, back)?,
+            None => 0.0,
+        };
+        let eye = perspective.as_ref().map_or(Vec3::ZERO, |perspective| perspective.eye.as_vec3());
+        let is_right = along > 0.0 && (f32::MIN_POSITIVE..f32::INFINITY).contains(&focal) && eye.is_finite();
+        is_right.then_some(Self {
+            eye,
+            focal,
+            ahead: ahead.unwrap_or(DVec3::ZERO).as_vec3(),
+            pixels,
+            near: up(near),
+            perspective: if perspective.is_some() { 1.0 } else { 0.0 },
+            unused_a: 0.0,
+            unused_b: 0.0,
+        })
+    }
+
+    /// The largest distance, in world units, by which every point inside a sphere may be off while the camera draws none
+    /// more than its `pixels` from its place: the CPU reference of `camera_allows` in `wgsl/lod/view.wgsl`.
+    pub fn allows(&self, center: Vec3, radius: f32) -> f32 {
+        if self.perspective == 0.0 {
+            return ALLOWED_MARGIN * (self.pixels / self.focal);
+        }
+        let towards = center - self.eye;
+        let ahead = self.ahead.dot(towards);
+        let aside = (towards - ahead * self.ahead).length();
+        let around = radius + POSITION_SLACK * (center.length() + self.eye.length() + radius);
+        let (depth, across) = if ahead + around < self.near {
+            (towards.length() - around, 0.0)
+        } else {
+            (ahead - around, aside + around)
+        };
+        if depth <= self.near {
+            return 0.0;
+        }
+        let cosine = depth / (depth * depth + across * across).sqrt();
+        let allowed = ALLOWED_MARGIN * (self.pixels * cosine * depth / (self.focal + self.pixels * cosine));
+        if depth - allowed <= self.near { 0.0 } else { allowed }
+    }
+}
+
+fn check_view(view_from_cell: &Mat4) -> Result<(), InputError> {
+    let matrix = view_from_cell.as_dmat4();
+    let axes = DMat3::from_mat4(matrix);
+    let lengths = axes.x_axis.length() * axes.y_axis.length() * axes.z_axis.length();
+    let is_affine = view_from_cell.row(3) == Vec4::W;
+    if view_from_cell.is_finite() && is_affine && axes.determinant().abs() > 1e-9 * lengths {
+        return Ok(());
+    }
+    let bound = "must be finite and invertible, with the last row (0, 0, 0, 1)";
+    Err(InputError::new("camera.view_from_cell", view_from_cell, bound))
+}
+
+fn refused(clip_from_view: &Mat4) -> InputError {
+    let bound = "must be a perspective or parallel projection to depth 0 to 1, whose near plane lies ahead of the eye, \
+                 nearer than the far plane, at depth 0, or at 1 if depth is reversed";
+    InputError::new("camera.clip_from_view", clip_from_view, bound)
+}
+
+/// Eye and direction; `Some(None)` for a parallel projection, `None` for a matrix that is neither.
+fn perspective([x, y, w]: [DVec4; 3]) -> Option<Option<Perspective>> {
+    let ahead = w.truncate();
+    let sides = x.truncate().length() * y.truncate().length();
+    if ahead == DVec3::ZERO {
+        return (w.w > 0.0 && sides.is_finite()).then_some(None);
+    }
+    let matrix = DMat3::from_cols(x.truncate(), y.truncate(), ahead).transpose();
+    // The comparison is false for what is not finite.
+    let is_picture = matrix.determinant().abs() > 1e-12 * sides * ahead.length();
+    let eye = matrix.inverse() * -DVec3::new(x.w, y.w, w.w);
+    (is_picture && eye.is_finite()).then(|| Some(Perspective { eye, ahead: ahead.normalize() }))
+}
+
+/// The depth of the near plane, 0 for one that is not parallel to the picture. `None` if it is behind the eye or beyond
+/// the far plane.
+fn near(perspective: &Perspective, front: DVec4, back: DVec4) -> Option<f64> {
+    let Perspective { eye, ahead } = perspective;
+    let normal = front.truncate();
+    let forward = normal.dot(*ahead);
+    if (normal - forward * *ahead).length() > 1e-4 * normal.length() {
+        return Some(0.0);
+    }
+    // A point at this depth lies in the plane.
+    let depth = |plane: DVec4| -plane.dot(eye.extend(1.0)) / plane.truncate().dot(*ahead);
+    let near = depth(front);
+    let far = depth(back);
+    let is_near = forward > 0.0 && near > 0.0 && near.is_finite();
+    (is_near && !(far > 0.0 && far < near)).then_some(near)
+}
+
+/// The largest singular value of a matrix of two rows.
+fn largest_singular_value([a, b]: [DVec3; 2]) -> f64 {
+    let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
+    (0.5 * (aa + bb + (aa - bb).hypot(2.0 * ab))).sqrt()
+}
+
+/// The number as an `f32` that is not less.
+fn up(number: f64) -> f32 {
+    let rounded = number as f32;
+    if f64::from(rounded) < number { rounded.next_up() } else { rounded }
+}

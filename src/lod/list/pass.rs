@@ -1,0 +1,80 @@
+//! The GPU pass of `kernels/lod/list.wgsl`.
+
+use crate::Error;
+use crate::gpu::bindings::lod::list as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::list::{ListParams, PLACED_BLOCKS, RUNS};
+
+/// What the lists are made from, and where they go.
+#[derive(Debug, Clone, Copy)]
+pub struct ListBuffers<'a> {
+    /// The objects. Their lists and draws must lie inside `lists` and `arguments`.
+    pub objects: &'a Buffer<LodObject>,
+    /// The index of the object that each block of 64 instances belongs to, [`NO_OBJECT`](crate::lod::NO_OBJECT) for none.
+    pub block_objects: &'a Buffer<u32>,
+    /// One for each instance: 0 if it is not seen, else 1 + its list.
+    pub decisions: &'a Buffer<u32>,
+    /// [`OBJECT_LISTS`] for each block: how many of its instances are in each list. Overwritten with how many are in the
+    /// blocks of the object before it.
+    pub counts: &'a Buffer<u32>,
+    /// Written: indices of instances, relative to the object's first one, at [`LodObject::list_begin`].
+    pub lists: &'a Buffer<u32>,
+    /// The draws of all objects ([`LodObject::draw`]), of which the numbers of instances are written.
+    pub arguments: &'a Buffer<SceneDraw>,
+}
+
+/// Lists instances.
+#[derive(Debug, Clone)]
+pub struct ListPass {
+    sum: Kernel,
+    place: Kernel,
+}
+
+impl ListPass {
+    /// Compiles the pipelines.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernel = |place| bindings::kernel(gpu, &bindings::Constants { place });
+        Ok(Self { sum: kernel(false)?, place: kernel(true)? })
+    }
+
+    /// Prepares the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
+    ///
+    /// # Errors
+    /// [`InputError`](crate::InputError) for buffers with fewer of them; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        buffers: ListBuffers<'_>,
+        object_count: u32,
+        blocks: u32,
+    ) -> Result<Job, Error> {
+        buffers.objects.check_holds("objects", object_count as usize)?;
+        buffers.block_objects.check_holds("block_objects", blocks as usize)?;
+        buffers.decisions.check_holds("decisions", (BLOCK * blocks) as usize)?;
+        buffers.counts.check_holds("counts", (OBJECT_LISTS * blocks) as usize)?;
+        let uniform = Uniform::new(gpu, "list", &ListParams { objects: object_count, blocks })?;
+        let group = bindings::Group {
+            params: &uniform,
+            objects: buffers.objects.slice(),
+            block_objects: buffers.block_objects.slice(),
+            decisions: buffers.decisions.slice(),
+            counts: buffers.counts.slice(),
+            lists: buffers.lists.slice(),
+            arguments: buffers.arguments.slice(),
+        };
+        let step = |kernel: &Kernel, groups: u32| {
+            Ok(Step {
+                groups: vec![group.bind(gpu, kernel)?],
+                workgroups: kernel.spread(gpu, OBJECT_LISTS * RUNS * groups),
+                kernel: kernel.clone(),
+            })
+        };
+        let steps = [step(&self.sum, object_count), step(&self.place, blocks.div_ceil(PLACED_BLOCKS))];
+        let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
+        Ok(Job::new(gpu, "lod/list", steps)?)
+    }
+}

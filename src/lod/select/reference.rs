@@ -1,0 +1,89 @@
+//! Selection of instances: the CPU reference of `kernels/lod/select.wgsl`.
+
+use glam::{IVec3, Vec3};
+
+use crate::lod::object::level_within;
+use crate::lod::{
+    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, LodObject, SceneInstance, SelectView,
+};
+use crate::shared::lod::select::{LEAST_SCALE, MAX_ALLOWED, UNSEEN_ALLOWED};
+use crate::shared::lod::view::POSITION_SLACK;
+
+/// What a view makes of an instance that it sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Selected {
+    /// 1 + 2 · level + mirrored.
+    pub decision: u32,
+    /// The displacement that the view allows, in the model's units.
+    pub allowed: f32,
+    /// The rows of the transform from the model's space to the corner of the view's cell.
+    pub rows: [[f32; 4]; 3],
+}
+
+/// The bounding sphere of an instance, relative to the corner of a cell: centre and radius.
+pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
+    let [x, y, z] = instance.axes();
+    let [cx, cy, cz, radius] = instance.bounding_sphere;
+    (x * cx + y * cy + z * cz + instance.position(cell), radius * instance.largest_scale())
+}
+
+/// Whether a view may see an instance at all, wherever it is.
+pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> bool {
+    let is_alive = object.shown != 0 && instance.flags & INSTANCE_ALIVE != 0;
+    let casts = view.casters == 0 || instance.flags & INSTANCE_CASTS != 0;
+    is_alive && casts && (instance.flags >> INSTANCE_MASK_SHIFT) & view.mask != 0
+}
+
+/// How far a sphere reaches into the view volume; negative if it is outside.
+pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
+    let depth = |side: &glam::Vec4| {
+        let slack = POSITION_SLACK * (center.length() + side.w.abs() + radius);
+        side.truncate().dot(center) + side.w + (radius + slack)
+    };
+    view.planes.iter().map(depth).fold(f32::INFINITY, f32::min)
+}
+
+/// The displacement that all of a view's cameras allow for a sphere, in units of a model with this largest scale.
+pub fn view_allows(view: &SelectView, center: Vec3, radius: f32, scale: f32) -> f32 {
+    let least =
+        view.cameras().iter().map(|camera| camera.allows(center, radius)).fold(f32::INFINITY, f32::min);
+    (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)
+}
+
+/// What a view makes of an instance; `None` if it does not see it.
+pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Option<Selected> {
+    let (center, radius) = placed_sphere(instance, view.cell);
+    if !is_shown(view, object, instance) || depth_inside(view, center, radius) < 0.0 {
+        return None;
+    }
+    let allowed = view_allows(view, center, radius, instance.largest_scale());
+    let level = level_within(object.levels, &object.errors, object.mesh_fraction * allowed);
+    let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
+    let rows = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
+    Some(Selected { decision: 1 + 2 * level + u32::from(instance.is_mirrored()), allowed, rows })
+}
+
+/// The displacement that is allowed an instance after another view of the frame. `before` is what the views before it
+/// allow, `None` for the first one.
+pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
+    match (before.filter(|before| *before >= 0.0), selected) {
+        (Some(before), Some(selected)) => before.min(selected.allowed),
+        (None, Some(selected)) => selected.allowed,
+        (Some(before), None) => before,
+        (None, None) => UNSEEN_ALLOWED,
+    }
+}
+
+/// The number of instances of each block in each list, from the decisions of all instances.
+pub fn counts(decisions: &[u32]) -> Vec<u32> {
+    let mut counts = Vec::with_capacity(decisions.len() / 4);
+    for block in decisions.chunks(BLOCK as usize) {
+        let mut tally = [0; crate::lod::OBJECT_LISTS as usize];
+        block
+            .iter()
+            .filter(|decision| **decision > 0)
+            .for_each(|decision| tally[*decision as usize - 1] += 1);
+        counts.extend(tally);
+    }
+    counts
+}

@@ -1,0 +1,54 @@
+// Instances as a scene keeps them on the device.
+
+// The edge of a cell in world units. A position is a whole number of cells and an offset, so that it stays precise far
+// from the origin.
+const CELL_SIZE: f32 = 256.0;
+
+// The instance exists.
+const INSTANCE_ALIVE = 1u;
+// The instance casts shadows.
+const INSTANCE_CASTS = 2u;
+// The first bit of the visibility mask, which takes the upper half of `flags`.
+const INSTANCE_MASK_SHIFT = 16u;
+
+// An instance of an object.
+struct SceneInstance {
+    // The cell that holds its position.
+    cell: vec3<i32>,
+    // `INSTANCE_ALIVE`, `INSTANCE_CASTS`, and from bit `INSTANCE_MASK_SHIFT` on the 16 bits of its visibility mask.
+    flags: u32,
+    // Its position in the cell, in world units.
+    offset: vec3<f32>,
+    // A word of the caller's.
+    word: u32,
+    // A unit quaternion.
+    rotation: vec4<f32>,
+    // Scale factors along the model's axes, applied before the rotation; negative ones mirror.
+    scale: vec3<f32>,
+    // The factor of its colours: red, green, blue and alpha, 8 bits each, red in the lowest.
+    tint: u32,
+    // A sphere around everything that it may draw, in the model's space: centre and radius.
+    bounding_sphere: vec4<f32>,
+}
+
+// The columns of the model's linear transform into the world.
+struct Axes {
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+}
+
+// The scale of an instance followed by its rotation.
+fn instance_axes(instance: SceneInstance) -> Axes {
+    let q = instance.rotation;
+    let s = instance.scale;
+    let x = vec3<f32>(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.w * q.z), 2.0 * (q.x * q.z - q.w * q.y));
+    let y = vec3<f32>(2.0 * (q.x * q.y - q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + q.w * q.x));
+    let z = vec3<f32>(2.0 * (q.x * q.z + q.w * q.y), 2.0 * (q.y * q.z - q.w * q.x), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
+    return Axes(s.x * x, s.y * y, s.z * z);
+}
+
+// The position of an instance relative to the corner of another cell.
+fn instance_position(instance: SceneInstance, cell: vec3<i32>) -> vec3<f32> {
+    return vec3<f32>(instance.cell - cell) * CELL_SIZE + instance.offset;
+}
