@@ -112,6 +112,8 @@ pub mod plot;
 pub mod render;
 #[cfg(feature = "samples")]
 pub mod samples;
+#[cfg(feature = "gpu")]
+mod scene;
 mod shared;
 pub mod skinning;
 pub mod srgb;
