@@ -25,8 +25,14 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
         Rgba([(16 * x) as u8, (255 - 16 * y) as u8, ((x ^ y) << 4) as u8, (17 * (x + y) % 256) as u8])
     };
     model.images.push(RgbaImage::from_fn(16, 16, color));
-    let texture = Some(Texture { image: 0, sampling: Sampling::default() });
-    model.materials.push(Material { name: "paint".to_owned(), color: [0.9, 1.0, 0.8, 0.9], texture, alpha });
+    model.materials.push(Material {
+        name: "paint".to_owned(),
+        color: [0.9, 1.0, 0.8, 0.9],
+        texture: Some(Texture { image: 0, sampling: Sampling::default() }),
+        normal: None,
+        normal_scale: 1.0,
+        alpha,
+    });
     model.meshes[0].material = Some(0);
     model.meshes[0].double_sided = double_sided;
     // A quarter of the triangles is left away, so that the inside shows.
