@@ -2,6 +2,8 @@
 
 mod pass;
 mod pipelines;
+#[cfg(all(test, feature = "samples"))]
+mod tests;
 
 use std::collections::HashMap;
 

@@ -41,10 +41,11 @@ impl PartMaterials {
         sampling: &Sampling,
     ) -> Result<Self, Error> {
         let mut colors = Layers::default();
+        let mut normals = Layers::default();
         let mut table = Vec::with_capacity(materials.len());
         for index in materials {
             table.push(match index {
-                Some(index) => entry(model, *index, &mut colors)?,
+                Some(index) => entry(model, *index, &mut colors, &mut normals)?,
                 None => WHITE,
             });
         }
@@ -53,7 +54,7 @@ impl PartMaterials {
         let group = Group2 {
             materials: entries.slice(),
             albedo: &texture_array(gpu, model, &colors.images, Texels::Color, has_mips)?,
-            normals: &texture_array(gpu, model, &[], Texels::Normal, has_mips)?,
+            normals: &texture_array(gpu, model, &normals.images, Texels::Normal, has_mips)?,
             filtering: &sampler_of(gpu, sampling)?,
         };
         let normal_mapped = table.iter().any(|entry| entry.normal_layer != NO_LAYER);
@@ -89,12 +90,17 @@ impl Layers {
 }
 
 /// The table's entry of a material.
-fn entry(model: &Model, index: usize, colors: &mut Layers) -> Result<SceneMaterial, InputError> {
+fn entry(
+    model: &Model,
+    index: usize,
+    colors: &mut Layers,
+    normals: &mut Layers,
+) -> Result<SceneMaterial, InputError> {
     let Some(material) = model.materials.get(index) else {
         let bound = format!("must be below {}", model.materials.len());
         return Err(InputError::new("mesh.material", index, bound));
     };
-    let Material { color, alpha, texture, .. } = material;
+    let Material { color, alpha, texture, normal, normal_scale, .. } = material;
     let layer = |image: usize, field: &str, layers: &mut Layers| {
         if model.images.get(image).is_none_or(|image| image.is_empty()) {
             let bound = format!("must be below {}, and the image must have texels", model.images.len());
@@ -110,6 +116,7 @@ fn entry(model: &Model, index: usize, colors: &mut Layers) -> Result<SceneMateri
             Alpha::Dithered => CUTOFF_DITHERED,
         },
         layer: texture.map_or(Ok(NO_LAYER), |texture| layer(texture.image, "texture", colors))?,
-        ..WHITE
+        normal_layer: normal.map_or(Ok(NO_LAYER), |normal| layer(normal.image, "normal", normals))?,
+        normal_scale: *normal_scale,
     })
 }
