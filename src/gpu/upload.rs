@@ -213,7 +213,7 @@ mod tests {
         let mut ring = StagingRing::new(2);
         let to = Buffer::<u32>::new(&gpu, "to", 2).expect("allocated");
         let mut encoder = gpu.encoder("unsubmitted");
-        let mut record = |ring: &mut StagingRing, encoder: &mut wgpu::CommandEncoder| {
+        let record = |ring: &mut StagingRing, encoder: &mut wgpu::CommandEncoder| {
             ring.record(&gpu, encoder, &mut staged(&to, 1)).expect("recorded")
         };
         assert_eq!([0; 3].map(|_| record(&mut ring, &mut encoder)), [true, true, false]);

@@ -19,6 +19,16 @@ pub(crate) enum Drawable {
     Terrain(TerrainDrawable),
 }
 
+impl Drawable {
+    /// Number of parts, each with draws of its own.
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.parts.len(),
+            Self::Terrain(_) => 1,
+        }
+    }
+}
+
 /// The buffers of a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshGeometry {

@@ -90,11 +90,6 @@ impl Instances {
         self.generations.get(index) == Some(&generation) && self.all[index].flags & INSTANCE_ALIVE != 0
     }
 
-    /// An instance.
-    pub fn get(&self, index: u32) -> &SceneInstance {
-        &self.all[index as usize]
-    }
-
     /// Changes an instance.
     pub fn change(&mut self, index: u32, change: impl FnOnce(&mut SceneInstance)) {
         change(&mut self.all[index as usize]);
@@ -145,11 +140,6 @@ impl Changed {
     /// Adds all of `count` elements.
     pub fn all(&mut self, count: usize) {
         (0..count as u32).for_each(|index| self.add(index, count));
-    }
-
-    /// Whether nothing has changed.
-    pub fn is_empty(&self) -> bool {
-        self.indices.is_empty()
     }
 
     /// Takes the changes as runs, each from its first element to before its end. Runs that are close to each other are

@@ -44,7 +44,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn new(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Self, Error> {
+    pub(super) fn new(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Self, Error> {
         let mut range = ObjectRange::default();
         let (mut all, mut block_objects, mut draws) = (Vec::new(), Vec::new(), Vec::new());
         for object in objects.iter_mut() {

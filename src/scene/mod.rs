@@ -37,8 +37,10 @@ use crate::gpu::{Gpu, Staged, StagingRing, Upload as _, compute_pass};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::skinning::picture::is_mirrored;
 use crate::terrain::mesh::GroundPoint;
 use crate::{Error, InputError};
+use drawable::{Drawable, DrawnObject, DrawnView};
 use handles::{Slots, stale};
 use layout::Layout;
 use layouts::SceneLayouts;
@@ -444,6 +446,51 @@ impl Scene {
         }
         self.frame = self.frame.wrapping_add(1);
         Ok(())
+    }
+
+    /// What is drawn, object by object.
+    pub(crate) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
+        self.objects.iter().flat_map(|object| &object.drawables)
+    }
+
+    /// What a renderer needs of a view and of all objects that are shown.
+    pub(crate) fn drawn<'a>(
+        &'a self,
+        view: &'a View,
+    ) -> Result<(DrawnView<'a>, Vec<DrawnObject<'a>>), InputError> {
+        if !view.is_of(&self.token) {
+            return Err(InputError::new("view", "of another scene", "must be of this scene"));
+        }
+        let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
+            return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
+        };
+        if lists.version != layout.version {
+            let bound = "must be recorded again, since objects were added or grew";
+            return Err(InputError::new("view", "out of date", bound));
+        }
+        let drawn = DrawnView {
+            group: &lists.group,
+            lists: &lists.lists,
+            arguments: &lists.arguments,
+            mirrors: is_mirrored(&camera.clip_from_world()),
+            reversed: camera.depth == Depth::Reversed,
+        };
+        let mut terrains = 0;
+        let mut objects = Vec::new();
+        for object in self.objects.iter() {
+            let ground = object.spacing().and_then(|_| view.ground(terrains));
+            terrains += usize::from(object.spacing().is_some());
+            if object.is_shown {
+                let of_object = object.drawables.iter().zip(&object.lods);
+                objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
+                    drawable,
+                    lod,
+                    mirrors: true,
+                    ground,
+                }));
+            }
+        }
+        Ok((drawn, objects))
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {

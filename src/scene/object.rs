@@ -10,7 +10,7 @@ use crate::scene::instances::Instances;
 use crate::scene::layout::{self, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::terrain::Terrain;
-use crate::shared::lod::object::{LodObject, SceneDraw};
+use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 
@@ -30,23 +30,11 @@ pub(crate) struct Object {
     /// Of each part, the draws of all lists, without instances.
     pub(super) draws: Vec<SceneDraw>,
     pub(crate) range: ObjectRange,
-    /// The object as kernels see it, in the layout for which it was prepared.
-    pub(crate) lod: LodObject,
+    /// For each drawable, the object as kernels see it, with the draws of the drawable's parts, in the layout for which it
+    /// was prepared.
+    pub(crate) lods: Vec<LodObject>,
     pub(super) fitted: u64,
 }
-
-/// An object of nothing.
-const NO_LOD: LodObject = LodObject {
-    first: 0,
-    instances: 0,
-    levels: 1,
-    first_list: 0,
-    first_draw: 0,
-    parts: 0,
-    mesh_fraction: 0.0,
-    shown: 0,
-    errors: [[0.0; 4]; 2],
-};
 
 /// What an object is.
 #[derive(Debug)]
@@ -64,7 +52,7 @@ impl Object {
         (errors, mesh_fraction): (Vec<f32>, f32),
         (drawables, draws): (Vec<Drawable>, Vec<SceneDraw>),
     ) -> Self {
-        let mut object = Self {
+        Self {
             kind,
             instances,
             sphere,
@@ -74,16 +62,9 @@ impl Object {
             drawables,
             draws,
             range: ObjectRange::default(),
-            lod: NO_LOD,
+            lods: Vec::new(),
             fitted: 0,
-        };
-        object.lod = layout::lod_object(&object);
-        object
-    }
-
-    /// Number of levels of detail.
-    pub(crate) fn levels(&self) -> usize {
-        self.errors.len()
+        }
     }
 
     /// World units between the samples of a terrain.
@@ -122,7 +103,12 @@ impl Object {
             return Ok(());
         }
         self.fitted = layout.version;
-        self.lod = layout::lod_object(self);
+        let mut lod = layout::lod_object(self);
+        self.lods.clear();
+        for drawable in &self.drawables {
+            self.lods.push(lod);
+            lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
+        }
         for drawable in &self.drawables {
             if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
                 let params = MeshParams { first_instance: self.range.first, clusters: *clusters };

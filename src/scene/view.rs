@@ -54,8 +54,6 @@ pub struct View {
 #[derive(Debug)]
 pub(crate) struct ViewLists {
     pub version: u64,
-    /// Three rows per instance: its placement relative to the view's cell.
-    pub rows: Buffer<[f32; 4]>,
     /// The lists of instances to draw.
     pub lists: Buffer<u32>,
     /// The draws of all objects.
@@ -253,7 +251,7 @@ impl ViewLists {
             Ok((uniform, group))
         };
         let terrain = (0..terrains).map(|_| ground()).collect::<Result<_, GpuError>>()?;
-        Ok(Self { version: layout.version, rows, lists, arguments, group, terrain, select, list })
+        Ok(Self { version: layout.version, lists, arguments, group, terrain, select, list })
     }
 }
 

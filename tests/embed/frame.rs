@@ -30,13 +30,13 @@ pub struct Frame {
     color: wgpu::Texture,
     /// Where samples are resolved to.
     resolved: Option<wgpu::Texture>,
-    others: Vec<wgpu::Texture>,
+    others: Vec<Option<wgpu::Texture>>,
     depth: Option<wgpu::Texture>,
 }
 
 fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let reads = samples == 1 && format.aspects() != wgpu::TextureAspect::DepthOnly.into_aspects();
+    let reads = samples == 1 && format.has_color_aspect();
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("the program's target"),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -49,25 +49,12 @@ fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32)
     })
 }
 
-trait IntoAspects {
-    fn into_aspects(self) -> wgpu::FormatAspects;
-}
-
-impl IntoAspects for wgpu::TextureAspect {
-    fn into_aspects(self) -> wgpu::FormatAspects {
-        match self {
-            wgpu::TextureAspect::DepthOnly => wgpu::FormatAspects::DEPTH,
-            _ => wgpu::FormatAspects::COLOR,
-        }
-    }
-}
-
 impl Frame {
     pub fn new(gpu: &Gpu, format: TargetFormat, size: [u32; 2]) -> Self {
         let color = texture(gpu, size, COLOR, format.samples);
         let resolved = (format.samples > 1).then(|| texture(gpu, size, COLOR, 1));
-        let others = (format.color.iter().skip(1).flatten())
-            .map(|state| texture(gpu, size, state.format, format.samples))
+        let others = (format.color.iter().skip(1))
+            .map(|state| state.as_ref().map(|state| texture(gpu, size, state.format, format.samples)))
             .collect();
         let depth = format.depth.as_ref().map(|depth| texture(gpu, size, depth.format, format.samples));
         Self { format, size, color, resolved, others, depth }
@@ -89,7 +76,7 @@ impl Frame {
     pub fn pass(&self, encoder: &mut wgpu::CommandEncoder, draw: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let (color, resolved) = (view(&self.color), self.resolved.as_ref().map(view));
-        let others: Vec<_> = self.others.iter().map(view).collect();
+        let others: Vec<_> = self.others.iter().map(|other| other.as_ref().map(view)).collect();
         let depth = self.depth.as_ref().map(view);
         let sky = wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 };
         let attachment = |view, resolve_target| {
@@ -101,7 +88,7 @@ impl Frame {
             })
         };
         let mut attachments = vec![attachment(&color, resolved.as_ref())];
-        attachments.extend(others.iter().map(|view| attachment(view, None)));
+        attachments.extend(others.iter().map(|view| view.as_ref().and_then(|view| attachment(view, None))));
         let is_reversed = self.format.depth.as_ref().is_some_and(|depth: &DepthFormat| depth.reversed);
         let has_stencil = self.depth.as_ref().is_some_and(|depth| depth.format().has_stencil_aspect());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

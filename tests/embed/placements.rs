@@ -40,7 +40,9 @@ fn shot(gpu: &relievo::gpu::Gpu, cell: [i32; 3], mirror: bool) -> RgbaImage {
     view.set(camera).expect("a camera");
     let frame = Frame::plain(gpu, SIZE);
     let renderer = frame.renderer(gpu, &scene);
-    frame.shot(&mut scene, &mut view, &renderer)
+    let x = frame.shot(&mut scene, &mut view, &renderer);
+    x.save(format!("/tmp/embed-{}-{mirror}.png", cell[0])).expect("x");
+    x
 }
 
 /// A million kilometres away the picture is the same, bit for bit: nothing shakes.
@@ -82,6 +84,7 @@ fn scale_counts() {
     };
     // Powers of two: every number is scaled exactly.
     let one = shot(1.0);
+    one.save("/tmp/embed-one.png").expect("x");
     assert!(coverage(&one) > 0.02);
     assert_eq!([shot(8.0), shot(0.125)], [one.clone(), one]);
 }

@@ -1,6 +1,6 @@
 //! Several views in one frame, and several frames in one submission.
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 use relievo::render::{Layer, Renderer, TargetFormat};
 use relievo::scene::{Camera, Quality, View};
 use relievo::wgpu;
@@ -135,7 +135,7 @@ fn casters_outside_the_view_are_in_the_shadow_map() {
     sun.set_lod_cameras(&[away]).expect("cameras");
     let look =
         glam::camera::rh::view::look_at_mat4(Vec3::new(20.0, 60.0, 20.0), Vec3::new(0.0, 0.0, -6.0), Vec3::Y);
-    let project = Mat4::orthographic_rh(-25.0, 25.0, -25.0, 25.0, 1.0, 200.0);
+    let project = glam::camera::rh::proj::directx::orthographic(-14.0, 14.0, -14.0, 14.0, 1.0, 200.0);
     let light = Camera { view_from_world: look, clip_from_view: project, ..camera([256; 2]) };
     sun.set(light).expect("a parallel camera");
     let depths = |world: &mut World, eye: &mut View, sun: &mut View| {

@@ -30,13 +30,9 @@ pub fn model() -> Model {
 }
 
 impl World {
+    /// With so many creatures, at a time in the middle of their walk.
     pub fn new(gpu: &Gpu, count: usize) -> Self {
-        let mut scene = Scene::new(gpu).expect("compiled");
-        let config = Config::new(33, 6.0, "embed").expect("valid");
-        let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3 - 1, at / 3 - 1]).collect();
-        let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
-        let creature = scene.add_character(&model(), count).expect("added");
-        let mut world = Self { scene, land, creature, crowd: Vec::new() };
+        let mut world = Self::empty(gpu, count);
         for at in 0..count {
             let instance = world.spawn(at);
             world.crowd.push(instance);
@@ -45,15 +41,35 @@ impl World {
         world
     }
 
+    /// Without creatures, at time 0.
+    pub fn empty(gpu: &Gpu, capacity: usize) -> Self {
+        let mut scene = Scene::new(gpu).expect("compiled");
+        let config = Config::new(33, 6.0, "embed").expect("valid");
+        let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3 - 1, at / 3 - 1]).collect();
+        let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
+        let creature = scene.add_character(&model(), capacity).expect("added");
+        Self { scene, land, creature, crowd: Vec::new() }
+    }
+
     /// Places character `at` in the grid on the ground, turned its own way, and at its own time in the walk.
     pub fn spawn(&mut self, at: usize) -> InstanceId {
-        let (x, z) = ((at % 5) as f64 * 5.0 - 10.0, (at / 5) as f64 * -6.0);
-        let ground = self.scene.ground(self.land, x, z).expect("terrain").expect("inside");
-        let placement = Placement::at_world([x, ground.height, z]).turned(0.7 * at as f32);
+        let placement = self.placement(at);
         let instance = self.scene.spawn(self.creature, placement).expect("room");
-        let play = Play { start: -0.37 * at as f64, ..Play::new("walk") };
+        let play = Play { start: Self::start(at), ..Play::new("walk") };
         self.scene.play(instance, &play).expect("the clip");
         instance
+    }
+
+    /// The place of character `at`.
+    pub fn placement(&self, at: usize) -> Placement {
+        let (x, z) = ((at % 5) as f64 * 5.0 - 10.0, (at / 5) as f64 * -6.0);
+        let ground = self.scene.ground(self.land, x, z).expect("terrain").expect("inside");
+        Placement::at_world([x, ground.height, z]).turned(0.7 * at as f32)
+    }
+
+    /// When character `at` began to walk.
+    pub fn start(at: usize) -> f64 {
+        -0.37 * at as f64
     }
 
     /// A view of the scene with the camera of these tests.
