@@ -128,7 +128,6 @@ fn a_jittered_camera_is_a_camera() {
     let still = frame.shot(&mut world.scene, &mut view, &renderer);
     view.set(moved).expect("a camera");
     let jittered = frame.shot(&mut world.scene, &mut view, &renderer);
-    still.save("/tmp/embed-still.png").expect("x");
     let difference = Difference::of(&jittered, &still, 3);
     assert!(difference.outliers > 0.0 && difference.flip < 0.1, "{difference:?}");
 }

@@ -64,7 +64,7 @@ impl World {
     pub fn placement(&self, at: usize) -> Placement {
         let (x, z) = ((at % 5) as f64 * 5.0 - 10.0, (at / 5) as f64 * -6.0);
         let ground = self.scene.ground(self.land, x, z).expect("terrain").expect("inside");
-        Placement::at_world([x, ground.height, z]).turned(0.7 * at as f32)
+        Placement::at_world([x, ground.height, z]).turned(0.7 * at as f32).scaled(3.0)
     }
 
     /// When character `at` began to walk.
