@@ -1,8 +1,7 @@
-//! Reads the meshes of nodes: vertices, triangles, influences, morph targets and the keys of their weights.
+//! Reads the meshes of nodes: vertices, triangles, influences and morph targets.
 
 use gltf_json::Index;
 use gltf_json::accessor::Accessor;
-use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
 use gltf_json::material::Material as GltfMaterial;
 use gltf_json::mesh::{Mode, MorphTarget as GltfTarget, Primitive, Semantic};
 use gltf_json::validation::Checked;
@@ -11,12 +10,12 @@ use super::document::Document;
 use super::materials::{Coordinates, Materials};
 use super::nodes::{Nodes, node_name};
 use super::tangents::{Surface, Tangents};
+use super::weights::{weight_keys, weights};
 use super::winding::{mirrored, mirrors, turn_mirrored};
 use crate::InputError;
-use crate::asset::clip::Interpolation;
 use crate::asset::influences::{Influence, Influences};
 use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals};
-use crate::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
+use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
 
 /// Elements charged for a primitive, whatever it contains.
@@ -67,59 +66,6 @@ pub fn meshes(
         }
     }
     Ok(meshes)
-}
-
-/// The weights of a node's targets: the node's own, or its mesh's, or 0.
-fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
-    let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
-    let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());
-    let targets = first.map_or(0, Vec::len);
-    let (path, weights) = match (&of_node.weights, &of_mesh.weights) {
-        (Some(weights), _) => (format!("nodes[{node}].weights"), weights.clone()),
-        (None, Some(weights)) => (format!("meshes[{mesh}].weights"), weights.clone()),
-        (None, None) => return Ok(vec![0.0; targets]),
-    };
-    if weights.len() != targets {
-        let bound = format!("must be {targets}, one a morph target");
-        return Err(InputError::new(format!("{path}.len"), weights.len(), bound));
-    }
-    crate::asset::transform::finite(&path, &weights)?;
-    Ok(weights)
-}
-
-/// The clips that animate the weights of a node's targets.
-fn weight_keys(
-    document: &Document<'_>,
-    node: usize,
-    targets: usize,
-) -> Result<Vec<(usize, WeightKeys)>, InputError> {
-    let mut all: Vec<(usize, WeightKeys)> = Vec::new();
-    for (clip, animation) in document.root.animations.iter().enumerate() {
-        for (at, channel) in animation.channels.iter().enumerate() {
-            let is_of_weights = channel.target.path == Checked::Valid(Property::MorphTargetWeights);
-            // A mesh without targets has no weights to animate.
-            if !is_of_weights || channel.target.node.value() != node || targets == 0 {
-                continue;
-            }
-            if all.last().is_some_and(|(last, _)| *last == clip) {
-                let path = format!("animations[{clip}].channels[{at}].target");
-                return Err(InputError::new(path, node, "must not be animated by two channels"));
-            }
-            let path = format!("animations[{clip}].samplers[{}]", channel.sampler.value());
-            let sampler = &animation.samplers[channel.sampler.value()];
-            let interpolation = match sampler.interpolation {
-                Checked::Valid(GltfInterpolation::Step) => Interpolation::Step,
-                Checked::Valid(GltfInterpolation::CubicSpline) => Interpolation::CubicSpline,
-                _ => Interpolation::Linear,
-            };
-            let floats = |accessor| Ok(document.vectors::<1>(accessor)?.into_iter().flatten().collect());
-            let paths = [format!("{path}.input"), format!("{path}.output")];
-            let (times, values) = (floats(sampler.input)?, floats(sampler.output)?);
-            let keys = WeightKeys::new([&paths[0], &paths[1]], times, values, interpolation, targets)?;
-            all.push((clip, keys));
-        }
-    }
-    Ok(all)
 }
 
 /// A primitive, with its path in the file.
@@ -220,10 +166,10 @@ impl Reader<'_, '_> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// The coordinates of the base colour's texture, which must exist; without a texture the first set, if
-    /// there is one.
+    /// The coordinates of the base colour's texture, which must exist, or of the normal map if there is no such
+    /// texture; without either the first set, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
-        let Some(texture) = self.material().filter(|_| !self.is_bare).and_then(Coordinates::of) else {
+        let Some(texture) = self.coordinates_of_material() else {
             return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
         };
         let name = format!("TEXCOORD_{}", texture.set);
@@ -236,13 +182,20 @@ impl Reader<'_, '_> {
         Ok(Some(uv))
     }
 
+    /// Where the material's textures are read.
+    fn coordinates_of_material(&self) -> Option<Coordinates<'_>> {
+        let index = self.primitive.material.filter(|_| !self.is_bare)?;
+        let of_color = Coordinates::of_color(&self.document.root.materials[index.value()]);
+        of_color.or_else(|| Coordinates::of_normals(self.document, index))
+    }
+
     /// The coordinates along which tangents run, untransformed, if they differ from the mesh's: those of the
     /// normal texture, or those of the base colour's texture if that has a transform.
     fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
-        let Some(material) = self.material().filter(|_| !self.is_bare) else { return Ok(None) };
-        let base = Coordinates::of(material);
-        let (own, is_moved) = base.map_or((0, false), |base| (base.set, base.is_moved()));
-        let of_normals = material.normal_texture.as_ref().map(|texture| texture.tex_coord);
+        let Some(index) = self.primitive.material.filter(|_| !self.is_bare) else { return Ok(None) };
+        let of_mesh = self.coordinates_of_material();
+        let (own, is_moved) = of_mesh.map_or((0, false), |of_mesh| (of_mesh.set, of_mesh.is_moved()));
+        let of_normals = Coordinates::of_normals(self.document, index).map(|texture| texture.set);
         let is_there = |set: &u32| self.accessor(&Semantic::TexCoords(*set)).is_some();
         let set = of_normals.filter(is_there).unwrap_or(own);
         if set == own && !is_moved {
