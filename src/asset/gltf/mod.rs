@@ -53,6 +53,7 @@ mod document;
 mod materials;
 mod meshes;
 mod nodes;
+mod primitive;
 mod rigid;
 mod scene;
 mod tangents;
