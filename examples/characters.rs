@@ -29,7 +29,7 @@ use relievo::samples::creature;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::lod::placed;
 use relievo::skinning::vertex::Blend;
-use relievo::skinning::{Extent, add_levels, level_errors, poses_of};
+use relievo::skinning::{Extent, FadeRange, add_levels, level_errors, poses_of};
 use relievo::surface::mips::Mips;
 
 /// Number of instances of each character.
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let poses = poses_of(clip)?;
         add_levels(model, &[0], poses)?;
         let (model, clip) = (&*model, &model.clips[0]);
-        let (fade, levels) = ranges(model, poses)?;
+        let (fade_range, levels) = ranges(model, poses)?;
         let (set, duration) = (ClipSet::new(&[clip])?, clip.duration());
         let play = |at: usize| Instance::new(0, Wrap::Loop, duration * (0.618 * at as f32).fract(), 1.0);
         let posed = Crowd::new(&gpu, &set, &(0..COUNT).map(play).collect::<Vec<_>>())?;
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 model,
                 matrices: posed.model_matrices(),
                 placements: &placements,
-                fade_range: fade,
+                fade_range,
                 levels: &levels,
                 blend: Blend::Linear,
                 albedos: &albedos,
@@ -111,7 +111,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// The distances between which a model fades, and those at which each of its levels of detail begins.
-fn ranges(model: &Model, poses: usize) -> Result<([f32; 2], Vec<f32>), relievo::InputError> {
+fn ranges(model: &Model, poses: usize) -> Result<(FadeRange, Vec<f32>), relievo::InputError> {
     let scale = scale(BoundingSphere::in_clips(model).radius);
     let extent = Extent::of_model(model, &[0], poses)?.scaled(scale);
     let projection = Projection::new(SIZE[1], FIELD_OF_VIEW, 0.1);

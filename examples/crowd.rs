@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     for number in 0..60 {
         let elapsed = number as f32 / 60.0;
-        frame.state.lods.write(&gpu, &lods)?;
+        frame.state.write_lods(&gpu, &lods)?;
         frame.set(
             &gpu,
             &Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 },

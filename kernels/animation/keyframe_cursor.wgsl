@@ -2,7 +2,7 @@
 // time and the fraction of the way to the next. A thread finds one cursor. With COMPACTED, only listed
 // instances are handled, with all their layers, and also the time of the base layer at which bones are sampled
 // ahead.
-import package::wgsl::animation::clip::ClipEntry;
+import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
@@ -22,11 +22,9 @@ struct KeyframeCursorParams {
 @group(0) @binding(0) var<uniform> params: KeyframeCursorParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
-// First time and number of keys.
-@group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
-// Binding 4 holds the key times. A cursor is a key and, as bits, a fraction; after those of all layers come
-// those of the base layer ahead.
-@group(0) @binding(5) var<storage, read_write> cursors: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
+// Binding 4 holds the key times. After the cursors of all layers come those of the base layer ahead.
+@group(0) @binding(5) var<storage, read_write> cursors: array<KeyframeCursor>;
 @group(0) @binding(6) var<storage, read> updated_instances: array<u32>;
 // In the first vector, w is the number of listed instances.
 @group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
@@ -73,5 +71,5 @@ fn main(
         }
         time = bitcast<f32>(select(seen.z, seen.w, is_ahead));
     }
-    cursors[entry * params.timelines + timeline_index] = keyframe_cursor(timeline.x, timeline.y, time);
+    cursors[entry * params.timelines + timeline_index] = keyframe_cursor(timeline, time);
 }

@@ -2,7 +2,7 @@
 // parent's matrix in registers; a dispatch handles the chains of one level, whose parents are done. With WHOLE,
 // a thread walks all chains of its instance. With COMPACTED, only listed instances are walked, and of them only
 // updated slots, which always include all bones below an updated one.
-import package::wgsl::animation::order::{CONTINUES, NO_PARENT};
+import package::wgsl::animation::order::{CONTINUES, Chain, NO_PARENT, Slot};
 
 override WHOLE: bool = false;
 override COMPACTED: bool = false;
@@ -17,10 +17,8 @@ struct LocalToModelParams {
 }
 
 @group(0) @binding(0) var<uniform> params: LocalToModelParams;
-// Bone, parent, number of slots of the subtree.
-@group(0) @binding(1) var<storage, read> slots: array<vec4<u32>>;
-// First slot and number of slots.
-@group(0) @binding(2) var<storage, read> chains: array<vec2<u32>>;
+@group(0) @binding(1) var<storage, read> slots: array<Slot>;
+@group(0) @binding(2) var<storage, read> chains: array<Chain>;
 // One bit per slot of each instance.
 @group(0) @binding(3) var<storage, read> updated_bones: array<u32>;
 @group(0) @binding(4) var<storage, read> updated_instances: array<u32>;
@@ -73,9 +71,9 @@ fn stored_rows(base: u32, bone: u32) -> Rows {
 
 // The parent of the bone of a slot.
 fn bone_above(slot: u32) -> u32 {
-    let parent = slots[slot].y;
+    let parent = slots[slot].parent;
     if parent == CONTINUES {
-        return slots[slot - 1u].x;
+        return slots[slot - 1u].bone;
     }
     return parent;
 }
@@ -113,23 +111,23 @@ fn walk_whole(instance: u32) {
             if slot >= params.bones {
                 break;
             }
-            end = slot + slots[slot].z;
+            end = slot + slots[slot].subtree;
             parent = bone_above(slot);
         } else {
-            parent = slots[slot].y;
+            parent = slots[slot].parent;
         }
         if parent != CONTINUES {
             rows = stored_rows(base, parent);
         }
-        rows = joined(rows, 3u * (base + slots[slot].x));
+        rows = joined(rows, 3u * (base + slots[slot].bone));
         slot++;
     }
 }
 
-fn walk_chain(instance: u32, chain: vec2<u32>) {
+fn walk_chain(instance: u32, chain: Chain) {
     let base = instance * params.bones;
-    let end = chain.x + chain.y;
-    var start = chain.x;
+    let end = chain.first + chain.count;
+    var start = chain.first;
     if COMPACTED {
         start = next_updated(instance, start, end);
     }
@@ -138,7 +136,7 @@ fn walk_chain(instance: u32, chain: vec2<u32>) {
     }
     var rows = stored_rows(base, bone_above(start));
     for (var slot = start; slot < end; slot++) {
-        rows = joined(rows, 3u * (base + slots[slot].x));
+        rows = joined(rows, 3u * (base + slots[slot].bone));
     }
 }
 

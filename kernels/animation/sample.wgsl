@@ -1,6 +1,7 @@
 // Samples the local transforms of bones at the keyframe cursors of their instances (glTF 2.0, appendix C). A
 // thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it
 // blends the clips of further layers over the base, by weight and mask.
+import package::wgsl::animation::clip::{CONSTANT, KeyframeCursor, SetTrack, cursor_of_words, first_value_of, interpolation_of, timeline_of};
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_STEP};
@@ -26,10 +27,10 @@ struct SampleParams {
 @group(0) @binding(0) var<uniform> params: SampleParams;
 // Instances layer by layer; cursors have the same order.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three tracks per bone and clip: timeline (30 bits) and interpolation, and the index of the first value.
-@group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
+// Three tracks per bone and clip.
+@group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;
-// Key and, as bits, fraction; after those of all layers come those of the base layer ahead.
+// The words of cursors (cursor_of_words); after those of all layers come those of the base layer ahead.
 @group(0) @binding(4) var<storage, read> cursors: array<vec2<u32>>;
 // instance * bones + bone of each pair to be sampled; with PAIR_AHEAD, it is sampled at the cursor ahead.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
@@ -41,8 +42,6 @@ struct SampleParams {
 // per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
-// A track's timeline when its value never changes.
-const CONSTANT: u32 = 0x3fffffffu;
 // A spline of rotations that passes this close to zero, as a squared length, keeps the key before: nothing has a
 // direction there.
 const VANISHING: f32 = 1e-12;
@@ -54,32 +53,31 @@ struct Between {
     fraction: f32,
 }
 
-fn cursor_of(track: vec2<u32>, first_cursor: u32) -> vec2<u32> {
-    let timeline = track.x & CONSTANT;
+fn cursor_of(track: SetTrack, first_cursor: u32) -> KeyframeCursor {
+    let timeline = timeline_of(track);
     if timeline == CONSTANT {
-        return vec2<u32>(0u);
+        return KeyframeCursor(0u, 0.0);
     }
-    return cursors[first_cursor + timeline];
+    return cursor_of_words(cursors[first_cursor + timeline]);
 }
 
 // Whether a track has another timeline than the one before. Most tracks of a bone share one, whose cursor is
 // loaded once.
-fn is_elsewhere(track: vec2<u32>, before: vec2<u32>) -> bool {
-    return ((track.x ^ before.x) & CONSTANT) != 0u;
+fn is_elsewhere(track: SetTrack, before: SetTrack) -> bool {
+    return timeline_of(track) != timeline_of(before);
 }
 
-fn between(track: vec2<u32>, cursor: vec2<u32>) -> Between {
-    let timeline = track.x & CONSTANT;
-    if timeline == CONSTANT {
-        return Between(track.y, INTERPOLATION_STEP, 0.0);
+fn between(track: SetTrack, cursor: KeyframeCursor) -> Between {
+    if timeline_of(track) == CONSTANT {
+        return Between(first_value_of(track), INTERPOLATION_STEP, 0.0);
     }
-    let fraction = bitcast<f32>(cursor.y);
-    let code = track.x >> 30u;
+    let fraction = cursor.fraction;
+    let code = interpolation_of(track);
     if SPLINES && code > INTERPOLATION_LINEAR {
         // Splines have three values per key.
-        return Between(track.y + 3u * cursor.x + 1u, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
+        return Between(first_value_of(track) + 3u * cursor.key + 1u, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
     }
-    return Between(track.y + cursor.x, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
+    return Between(first_value_of(track) + cursor.key, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
 }
 
 fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
@@ -142,7 +140,7 @@ fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     if is_elsewhere(turning, moving) {
         cursor = cursor_of(turning, first_cursor);
     }
-    let turned = rotation(between(turning, cursor), turning.x >> 30u > INTERPOLATION_LINEAR);
+    let turned = rotation(between(turning, cursor), interpolation_of(turning) > INTERPOLATION_LINEAR);
     if is_elsewhere(scaling, turning) {
         cursor = cursor_of(scaling, first_cursor);
     }

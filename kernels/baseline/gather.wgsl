@@ -1,6 +1,7 @@
 // Moves the bytes that sampling moves, without its arithmetic. For each bone a thread reads the two keys around
 // the current cursor on three tracks, which instances share as they share a clip's, and writes the words of a
 // local transform: each is the exclusive or of its two keys.
+import package::wgsl::animation::clip::{SetTrack, first_value_of};
 import package::wgsl::animation::instance::AnimationInstance;
 
 // Whether tracks are looked up as sampling does, or are evenly spaced, so that only the keys are read.
@@ -16,9 +17,9 @@ struct GatherParams {
 
 @group(0) @binding(0) var<uniform> params: GatherParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three entries per bone and clip: the timeline and the index of the first value.
-@group(0) @binding(2) var<storage, read> tracks: array<vec2<u32>>;
-// One entry per instance: the key and, as bits, the fraction.
+// Three tracks per bone and clip.
+@group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
+// The words of one cursor per instance: the key and, as bits, the fraction.
 @group(0) @binding(3) var<storage, read> cursors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> values: array<vec4<u32>>;
 // Three entries per pair of instance and bone.
@@ -43,8 +44,8 @@ fn main(
     if TABLES {
         let track = 3u * (instances[instance].clip * params.bones + bone);
         let found = array(tracks[track], tracks[track + 1u], tracks[track + 2u]);
-        first = vec3<u32>(found[0].y, found[1].y, found[2].y);
-        unused = found[0].x ^ found[1].x ^ found[2].x ^ cursor.y;
+        first = vec3<u32>(first_value_of(found[0]), first_value_of(found[1]), first_value_of(found[2]));
+        unused = found[0].words.x ^ found[1].words.x ^ found[2].words.x ^ cursor.y;
     } else {
         first *= params.keys;
     }

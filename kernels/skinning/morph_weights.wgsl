@@ -1,6 +1,7 @@
 // Weights of morph targets at each instance's time in its clip (glTF 2.0, section 3.11). The kernel runs before
 // skinning/select. A thread computes one target's weight of one instance; instances that are not seen keep
 // their weights.
+import package::wgsl::animation::clip::Timeline;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_SPLINE};
@@ -70,22 +71,22 @@ fn main(
     let instance = instances[index];
     let entry = entries[instance.clip];
     let time = inside_clip(instance.wrap_code, entry.duration, instance.start + instance.rate * params.elapsed);
-    let found = keyframe_cursor(entry.first_time, entry.keys, time);
-    let t = bitcast<f32>(found.y);
+    let found = keyframe_cursor(Timeline(entry.first_time, entry.keys), time);
+    let t = found.fraction;
     let first = entry.first_value + pair - index * params.targets;
     // At the last key the fraction is 0.
     let is_between = t > 0.0;
     var weight = 0.0;
     if entry.interpolation == INTERPOLATION_SPLINE {
-        weight = values[first + (3u * found.x + 1u) * params.targets];
+        weight = values[first + (3u * found.key + 1u) * params.targets];
         if is_between {
-            let at = entry.first_time + found.x;
-            weight = spline(first, found.x, t, times[at + 1u] - times[at]);
+            let at = entry.first_time + found.key;
+            weight = spline(first, found.key, t, times[at + 1u] - times[at]);
         }
     } else {
-        weight = values[first + found.x * params.targets];
+        weight = values[first + found.key * params.targets];
         if is_between && entry.interpolation == INTERPOLATION_LINEAR {
-            weight += (values[first + (found.x + 1u) * params.targets] - weight) * t;
+            weight += (values[first + (found.key + 1u) * params.targets] - weight) * t;
         }
     }
     weights[pair] = weight;

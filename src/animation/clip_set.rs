@@ -4,32 +4,30 @@
 use std::collections::HashMap;
 
 use crate::InputError;
-use crate::asset::Track;
-use crate::asset::clip::Clip;
-pub use crate::shared::animation::clip::ClipEntry;
-pub use crate::shared::animation::sample::CONSTANT;
+use crate::asset::clip::{Clip, Interpolation, Track};
+#[cfg(feature = "gpu")]
+use crate::shared::animation::clip as packed;
+pub use crate::shared::animation::clip::{ClipEntry, Timeline};
 
-/// A list of key times that tracks share.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Timeline {
-    /// Index of the first time.
-    pub first_time: u32,
-    /// Number of times, at least 1.
-    pub keys: u32,
-}
-
-/// A track of a set: 8 bytes.
+/// A track of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
 pub struct SetTrack {
-    /// In the lower 30 bits the timeline, counted from the clip's first, or [`CONSTANT`]; above them 0 for
-    /// step, 1 for linear, 2 for cubic spline.
-    pub timeline_and_code: u32,
+    /// The timeline with its key times, counted from the clip's first; `None` if its value never changes.
+    pub timeline: Option<u32>,
+    /// How values between keys are interpolated.
+    pub interpolation: Interpolation,
     /// Index of its first value; for a constant spline, of the middle one of its three.
     pub first_value: u32,
+}
+
+#[cfg(feature = "gpu")]
+impl SetTrack {
+    /// The track as kernels read it, in 8 bytes.
+    pub(crate) fn packed(&self) -> packed::SetTrack {
+        let timeline = self.timeline.unwrap_or(packed::CONSTANT);
+        let interpolation = self.interpolation as u32;
+        packed::SetTrack { words: [interpolation << packed::TIMELINE_BITS | timeline, self.first_value] }
+    }
 }
 
 /// Clips of one skeleton.
@@ -86,21 +84,17 @@ impl ClipSet {
         for track in clip.tracks() {
             let first_value = self.values.len() as u32 + track.first_value;
             let is_constant = track.keys < 2;
-            let timeline = if is_constant {
-                CONSTANT
-            } else {
+            let timeline = (!is_constant).then(|| {
                 let timeline =
                     Timeline { first_time: first_time as u32 + track.first_time, keys: track.keys };
                 *known.entry(timeline).or_insert_with(|| {
                     self.timelines.push(timeline);
                     (self.timelines.len() - first_timeline - 1) as u32
                 })
-            };
-            let middle = u32::from(is_constant && track.code == 2);
-            self.tracks.push(SetTrack {
-                timeline_and_code: track.code << 30 | timeline,
-                first_value: first_value + middle,
             });
+            let interpolation = track.interpolation;
+            let middle = u32::from(is_constant && interpolation == Interpolation::CubicSpline);
+            self.tracks.push(SetTrack { timeline, interpolation, first_value: first_value + middle });
         }
         self.values.extend(clip.values());
         self.clips.push(ClipEntry {
@@ -164,7 +158,7 @@ impl ClipSet {
 
     /// Whether any track is a cubic spline. Sampling is faster without splines.
     pub fn has_splines(&self) -> bool {
-        self.tracks.iter().any(|track| track.timeline_and_code >> 30 == 2)
+        self.tracks.iter().any(|track| track.interpolation == Interpolation::CubicSpline)
     }
 
     /// Number of bones of every clip.
@@ -230,7 +224,8 @@ mod tests {
         let clips: Vec<&Clip> = model.clips.iter().collect();
         let set = ClipSet::new(&clips).expect("one skeleton");
         assert_eq!((set.bones(), set.clips().len(), set.tracks().len()), (153, 3, 3 * 153 * 3));
-        let is_spline = |clip: &Clip| clip.tracks().iter().any(|track| track.code == 2);
+        let is_spline =
+            |clip: &Clip| clip.tracks().iter().any(|track| track.interpolation == Interpolation::CubicSpline);
         for clip in &clips {
             assert_eq!(ClipSet::new(&[clip]).expect("valid").has_splines(), is_spline(clip));
         }
@@ -241,14 +236,13 @@ mod tests {
             // Many tracks share a timeline.
             assert!((2..20).contains(&entry.timelines), "{}", entry.timelines);
             for (track, own) in tracks.iter().zip(clip.tracks()) {
-                let code = track.timeline_and_code >> 30;
-                assert_eq!(code, own.code);
-                let middle = if own.keys == 1 && code == 2 { 1 } else { 0 };
+                assert_eq!(track.interpolation, own.interpolation);
+                let is_spline = own.interpolation == Interpolation::CubicSpline;
+                let middle = if own.keys == 1 && is_spline { 1 } else { 0 };
                 let own_value = clip.values()[own.first_value as usize + middle];
                 assert_eq!(set.values()[track.first_value as usize], own_value);
-                let timeline = track.timeline_and_code & CONSTANT;
-                assert_eq!(timeline == CONSTANT, own.keys < 2);
-                if timeline != CONSTANT {
+                assert_eq!(track.timeline.is_none(), own.keys < 2);
+                if let Some(timeline) = track.timeline {
                     let found = set.timelines()[(entry.first_timeline + timeline) as usize];
                     let times = &set.times()[found.first_time as usize..][..found.keys as usize];
                     assert_eq!(times, clip.times_of(own));

@@ -10,6 +10,7 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::Transform;
 use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::shared::animation::clip::SetTrack as PackedTrack;
 use crate::{Error, InputError};
 
 /// A local transform in the kernels' layout: translation and scale x; rotation; scale y and z, and two unused
@@ -34,7 +35,7 @@ pub struct ClipBuffers {
     /// One per clip.
     pub clips: Buffer<ClipEntry>,
     /// Three per bone and clip.
-    pub tracks: Buffer<SetTrack>,
+    pub(crate) tracks: Buffer<PackedTrack>,
     /// Timelines, clip by clip.
     pub timelines: Buffer<Timeline>,
     /// Key times in seconds.
@@ -53,9 +54,10 @@ impl ClipBuffers {
     /// # Errors
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, set: &ClipSet) -> Result<Self, GpuError> {
+        let tracks: Vec<PackedTrack> = set.tracks().iter().map(SetTrack::packed).collect();
         Ok(Self {
             clips: Buffer::from_slice(gpu, "clips", set.clips())?,
-            tracks: Buffer::from_slice(gpu, "tracks", set.tracks())?,
+            tracks: Buffer::from_slice(gpu, "tracks", &tracks)?,
             timelines: Buffer::from_slice(gpu, "timelines", set.timelines())?,
             times: Buffer::from_slice(gpu, "times", set.times())?,
             values: Buffer::from_slice(gpu, "values", set.values())?,

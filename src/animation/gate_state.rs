@@ -1,15 +1,16 @@
 //! The state of gates on the device.
 
 use super::crowd::Crowd;
-use super::lod::Lod;
+use super::lod::{Lod, PackedLod};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::shared::animation::gate_state::ClipClock;
 
 /// What gates know of a crowd, and keep from frame to frame. All buffers may be read and bound by the caller.
 #[derive(Debug, Clone)]
 pub struct GateState {
-    /// One level of detail per instance, written by the host; full detail at first.
-    pub lods: Buffer<Lod>,
+    /// One level of detail per instance, written by the host ([`GateState::write_lods`]) or by a kernel; full detail
+    /// at first.
+    pub lods: Buffer<PackedLod>,
     /// The clip clocks that [`crate::animation::clip_clock::ClipClockPass`] writes.
     pub clip_clocks: Buffer<ClipClock>,
     /// For each instance: the last clip + 1, with the highest bit set if layers were above it; a hash of what
@@ -28,10 +29,18 @@ impl GateState {
     pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
         let instances = crowd.len();
         Ok(Self {
-            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL; instances])?,
+            lods: Buffer::from_slice(gpu, "lods", &vec![Lod::FULL.packed(); instances])?,
             clip_clocks: Buffer::new(gpu, "clip_clocks", instances)?,
             history: Buffer::new(gpu, "history", instances)?,
             sampled: Buffer::new(gpu, "sampled", crowd.pairs())?,
         })
+    }
+
+    /// Replaces the levels of detail of the first `lods.len()` instances, for submissions that follow.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`] for more levels of detail than instances.
+    pub fn write_lods(&self, gpu: &Gpu, lods: &[Lod]) -> Result<(), GpuError> {
+        self.lods.write(gpu, &lods.iter().map(Lod::packed).collect::<Vec<_>>())
     }
 }

@@ -4,15 +4,51 @@
 
 use crate::InputError;
 use crate::shared::animation::gate_state;
-pub use crate::shared::animation::gate_state::{Lod, OMEGA_ONE};
+/// A [`Lod`] as kernels read and write it: the struct `Lod` of the WGSL module `animation`, whose `flags` are
+/// `LOD_HIDDEN`, `LOD_FORCED` or 0.
+pub use crate::shared::animation::gate_state::Lod as PackedLod;
+pub use crate::shared::animation::gate_state::OMEGA_ONE;
+
+/// An instance's level of detail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Lod {
+    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], at which nothing is skipped. See
+    /// [`Range::omega`].
+    pub omega: u32,
+    /// The motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
+    pub allowed: u32,
+    /// The weight of this instance's motion against that of other instances, 0 to 65535, proportional to its
+    /// size on screen.
+    pub weight: u32,
+    /// Which bones a frame samples.
+    pub sampling: Sampling,
+}
+
+/// Which bones of an instance a frame samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Sampling {
+    /// Those that the gate chooses.
+    #[default]
+    Gated,
+    /// None: the instance is not in view. It costs nothing, and is sampled in full when it comes back.
+    Hidden,
+    /// All of them, whatever the gate says.
+    Forced,
+}
 
 impl Lod {
-    /// The instance is not in view: it costs nothing, and is sampled in full when it comes back.
-    pub const HIDDEN: u32 = gate_state::LOD_HIDDEN;
-    /// The instance is sampled in full this frame, whatever the gate says.
-    pub const REFRESH: u32 = gate_state::LOD_REFRESH;
     /// Full detail.
-    pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, flags: 0 };
+    pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, sampling: Sampling::Gated };
+
+    /// The level of detail as kernels read it.
+    pub fn packed(&self) -> PackedLod {
+        let flags = match self.sampling {
+            Sampling::Gated => 0,
+            Sampling::Hidden => gate_state::LOD_HIDDEN,
+            Sampling::Forced => gate_state::LOD_FORCED,
+        };
+        PackedLod { omega: self.omega, allowed: self.allowed, weight: self.weight, flags }
+    }
 }
 
 impl Default for Lod {

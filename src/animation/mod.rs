@@ -44,7 +44,7 @@ pub use gate_state::GateState;
 pub use gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 pub use instance::{Instance, Wrap};
 pub use layers::Layer;
-pub use lod::{Lod, Projection, Range};
+pub use lod::{Lod, Projection, Range, Sampling};
 #[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;
 pub use order::Order;

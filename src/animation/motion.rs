@@ -87,7 +87,7 @@ struct Keys<'a> {
 
 impl<'a> Keys<'a> {
     fn new(clip: &'a Clip, track: &Track, part: Part, path: RotationPath) -> Self {
-        let interpolation = track.interpolation();
+        let interpolation = track.interpolation;
         let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         let count = each * track.keys.max(1) as usize;
         let values = &clip.values()[track.first_value as usize..][..count];

@@ -1,32 +1,43 @@
 //! The order in which bones are walked: parents first, split into chains.
 
 use crate::asset::skeleton::Skeleton;
-pub use crate::shared::animation::order::{CONTINUES, NO_PARENT};
+pub use crate::shared::animation::order::Chain;
+#[cfg(feature = "gpu")]
+use crate::shared::animation::order::{self as packed, CONTINUES, NO_PARENT};
 
-/// The entry of a bone in an [`Order`].
+/// The place of a bone in an [`Order`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
 pub struct Slot {
-    /// The bone.
+    /// Index of the bone.
     pub bone: u32,
-    /// The parent bone, [`CONTINUES`] or [`NO_PARENT`].
-    pub parent: u32,
+    /// Where the bone's parent is found.
+    pub parent: SlotParent,
     /// Number of slots of the bone and all bones below it, starting with this one.
     pub subtree: u32,
-    /// Unused.
-    pub padding: u32,
 }
 
-/// A run of slots from parent to child.
+/// Where the parent of a slot's bone is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct Chain {
-    /// Index of the first slot.
-    pub first: u32,
-    /// Number of slots.
-    pub count: u32,
+pub enum SlotParent {
+    /// The bone is a root.
+    Root,
+    /// The bone of the slot before: the slot continues its chain.
+    PreviousSlot,
+    /// The bone of this index: the slot begins a chain.
+    Bone(u32),
+}
+
+#[cfg(feature = "gpu")]
+impl Slot {
+    /// The slot as kernels read it.
+    pub(crate) fn packed(&self) -> packed::Slot {
+        let parent = match self.parent {
+            SlotParent::Root => NO_PARENT,
+            SlotParent::PreviousSlot => CONTINUES,
+            SlotParent::Bone(bone) => bone,
+        };
+        packed::Slot { bone: self.bone, parent, subtree: self.subtree }
+    }
 }
 
 /// The order in which a skeleton's bones are walked, split into chains so that as few as possible wait for each
@@ -56,10 +67,13 @@ impl Order {
         while let Some((first_bone, level)) = waiting.pop() {
             let first = slots.len() as u32;
             for bone in std::iter::successors(Some(first_bone), |bone| target[*bone as usize]) {
-                let above = bones[bone as usize].parent.unwrap_or(NO_PARENT);
-                let parent = if bone == first_bone { above } else { CONTINUES };
+                let parent = match bones[bone as usize].parent {
+                    _ if bone != first_bone => SlotParent::PreviousSlot,
+                    Some(above) => SlotParent::Bone(above),
+                    None => SlotParent::Root,
+                };
                 let subtree = skeleton.descendants()[bone as usize] + 1;
-                slots.push(Slot { bone, parent, subtree, padding: 0 });
+                slots.push(Slot { bone, parent, subtree });
                 waiting.extend(others[bone as usize].iter().map(|child| (*child, level + 1)));
             }
             chains.resize(chains.len().max(level + 1), Vec::new());
@@ -80,6 +94,12 @@ impl Order {
         let mut slot_of = vec![0; self.slots.len()];
         self.slots.iter().enumerate().for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
         slot_of
+    }
+
+    /// The slots as kernels read them.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn packed_slots(&self) -> Vec<packed::Slot> {
+        self.slots.iter().map(Slot::packed).collect()
     }
 
     /// The number of 32-bit words that hold one bit per bone.
@@ -143,8 +163,9 @@ mod tests {
         for (at, slot) in order.slots.iter().enumerate() {
             let above = skeleton.bones()[slot.bone as usize].parent;
             match slot.parent {
-                CONTINUES => assert_eq!(above, Some(order.slots[at - 1].bone)),
-                parent => assert_eq!(above.unwrap_or(NO_PARENT), parent),
+                SlotParent::Root => assert_eq!(above, None),
+                SlotParent::PreviousSlot => assert_eq!(above, Some(order.slots[at - 1].bone)),
+                SlotParent::Bone(parent) => assert_eq!(above, Some(parent)),
             }
             assert!(above.is_none_or(|above| slot_of[above as usize] < at), "a parent comes later");
             let old = std::mem::replace(&mut slot_of[slot.bone as usize], at);
@@ -163,9 +184,15 @@ mod tests {
             assert!(!here.is_empty());
             let slots = |chain: &Chain| chain.first as usize..(chain.first + chain.count) as usize;
             for chain in here {
-                let parent = order.slots[chain.first as usize].parent;
-                assert!(parent == NO_PARENT || done[slot_of[parent as usize]], "a parent of the same level");
-                assert!(order.slots[slots(chain)][1..].iter().all(|slot| slot.parent == CONTINUES));
+                match order.slots[chain.first as usize].parent {
+                    SlotParent::Root => {}
+                    SlotParent::PreviousSlot => panic!("a chain begins with the parent of the slot before"),
+                    SlotParent::Bone(parent) => {
+                        assert!(done[slot_of[parent as usize]], "a parent of the same level");
+                    }
+                }
+                let rest = &order.slots[slots(chain)][1..];
+                assert!(rest.iter().all(|slot| slot.parent == SlotParent::PreviousSlot));
             }
             here.iter().flat_map(slots).for_each(|slot| assert!(!std::mem::replace(&mut done[slot], true)));
         }

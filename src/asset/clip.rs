@@ -3,9 +3,9 @@
 //!
 //! # Layout
 //!
-//! A clip consists of three flat arrays, which can be copied to storage buffers as they are:
+//! A clip consists of three flat arrays:
 //!
-//! - `tracks`: three [`Track`]s per bone, translation, rotation, scale; 16 bytes each.
+//! - `tracks`: three [`Track`]s per bone, translation, rotation, scale.
 //! - `times`: `f32` seconds, ascending within a track. Tracks with equal times share them.
 //! - `values`: `vec4<f32>`s: a translation or scale followed by 0, or a quaternion x, y, z, w. Cubic splines
 //!   have three per key: in-tangent, value, out-tangent. Tangents are multiplied by the seconds of the segment
@@ -64,8 +64,6 @@ impl Part {
 
 /// Where the keys of a track lie in the clip's arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
 pub struct Track {
     /// Index of its first key's time in `times`.
     pub first_time: u32,
@@ -73,15 +71,8 @@ pub struct Track {
     pub first_value: u32,
     /// Number of keys. 0 means that the single value is the rest pose.
     pub keys: u32,
-    /// 0 for step, 1 for linear, 2 for cubic spline; see [`Track::interpolation`].
-    pub code: u32,
-}
-
-impl Track {
     /// How values between keys are interpolated.
-    pub fn interpolation(&self) -> Interpolation {
-        Interpolation::of_code(self.code)
-    }
+    pub interpolation: Interpolation,
 }
 
 /// A clip of one skeleton, in flat arrays.
@@ -188,7 +179,7 @@ impl Clip {
 
     /// The value of a key, without its tangents.
     pub fn key(&self, track: &Track, key: usize) -> [f32; 4] {
-        let at = if track.interpolation() == Interpolation::CubicSpline { 3 * key + 1 } else { key };
+        let at = if track.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key };
         self.values[track.first_value as usize + at]
     }
 
@@ -225,8 +216,15 @@ mod tests {
         assert_eq!((clip.name(), clip.duration(), clip.bones()), ("a", 0.5, 2));
         // Translation and rotation share their times.
         assert_eq!(clip.times(), [0.0, 0.5, 0.25]);
-        let track = |first_time, first_value, keys, code| Track { first_time, first_value, keys, code };
-        assert_eq!(clip.tracks()[..3], [track(0, 0, 2, 0), track(0, 2, 2, 1), track(2, 4, 1, 2)]);
+        let track = |first_time, first_value, keys, interpolation| Track {
+            first_time,
+            first_value,
+            keys,
+            interpolation,
+        };
+        let [step, linear, spline] = [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline];
+        let expected = [track(0, 0, 2, step), track(0, 2, 2, linear), track(2, 4, 1, spline)];
+        assert_eq!(clip.tracks()[..3], expected);
         assert_eq!(clip.tracks()[3].keys, 0);
         let identity = [0.0, 0.0, 0.0, 1.0];
         assert_eq!(clip.values()[2..4], [identity; 2], "unit, and the short way");

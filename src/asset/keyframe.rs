@@ -1,15 +1,12 @@
 //! Finds the position of a time among the times of keys.
 
-/// A position between two keys of a timeline.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-#[repr(C)]
-pub struct KeyframeCursor {
-    /// The key before the time.
-    pub key: u32,
-    /// The fraction of the way from that key to the next, 0 to below 1; 0 before the first key and after the
-    /// last.
-    pub fraction: f32,
+pub use crate::shared::animation::clip::KeyframeCursor;
+
+impl Default for KeyframeCursor {
+    /// The first key.
+    fn default() -> Self {
+        Self { key: 0, fraction: 0.0 }
+    }
 }
 
 /// The position of a time among key times, both in seconds. Of equal key times the last counts.

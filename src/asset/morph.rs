@@ -89,9 +89,9 @@ impl WeightKeys {
         (0..self.targets).map(|target| self.between(key, fraction, target)).collect()
     }
 
-    /// Times, values and the code of the interpolation.
-    pub(crate) fn parts(&self) -> (&[f32], &[f32], u32) {
-        (&self.times, &self.values, self.interpolation as u32)
+    /// Times, values and the interpolation.
+    pub(crate) fn parts(&self) -> (&[f32], &[f32], Interpolation) {
+        (&self.times, &self.values, self.interpolation)
     }
 
     fn between(&self, key: usize, t: f32, target: usize) -> f32 {

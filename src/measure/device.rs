@@ -144,7 +144,7 @@ impl Gated {
         let skeleton = &stage.subject.model.skeleton;
         let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
         let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, gate)?;
-        frame.state.lods.write(gpu, lods)?;
+        frame.state.write_lods(gpu, lods)?;
         Ok(Self { crowd, frame })
     }
 }

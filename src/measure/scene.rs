@@ -191,7 +191,7 @@ fn report(
     distances: Vec<SceneRow>,
 ) -> Result<SceneReport, Error> {
     let units = |metres: f32| metres / stage.metres_a_unit;
-    let fade = |mesh| stage.fade(drawn.skinning, mesh).map(|ends| ends.map(units));
+    let fade = |mesh| stage.fade(drawn.skinning, mesh).map(|range| [range.start, range.end].map(units));
     let levels = |(at, mesh): (usize, &Mesh)| {
         let own = stage.levelled.as_ref().map_or(&[][..], |levelled| &levelled.own[at]);
         LevelReport::of_mesh(mesh, own, &stage.level_begins(drawn.mesh, at), stage.metres_a_unit)

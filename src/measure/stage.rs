@@ -10,9 +10,9 @@ use crate::animation::instance::{Instance, Wrap};
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::lod::OMEGA_ONE;
 use crate::animation::order::Order;
-use crate::animation::{ClipSet, Gate, Lod, Projection};
+use crate::animation::{ClipSet, Gate, Lod, Projection, Sampling};
 use crate::asset::{Affine, Clip, Model, bone_radii};
-use crate::skinning::{Extent, poses_of};
+use crate::skinning::{Extent, FadeRange, poses_of};
 
 /// Height of the picture, in pixels.
 pub(crate) const LINES: u32 = 1080;
@@ -131,18 +131,21 @@ impl<'a> Stage<'a> {
                 _ => 0,
             };
             let weight = (65535.0 * nearest / depth(origin)).round().clamp(1.0, 65535.0) as u32;
-            Lod { omega: self.options.range.omega(distance), allowed, weight, flags: 0 }
+            Lod { omega: self.options.range.omega(distance), allowed, weight, sampling: Sampling::Gated }
         };
         placements.origins.iter().map(lod).collect()
     }
 
     /// The distances in metres at which a mesh begins to fade and at which it is rigid; `None` if it never
     /// fades.
-    pub(crate) fn fade(&self, skinning: SkinningDetail, mesh: usize) -> Option<[f32; 2]> {
+    pub(crate) fn fade(&self, skinning: SkinningDetail, mesh: usize) -> Option<FadeRange> {
         let range = self.options.range;
         match skinning {
             SkinningDetail::Full | SkinningDetail::Truncate { .. } => None,
-            SkinningDetail::Fade => Some([range.min, range.max].map(|units| units * self.metres_a_unit)),
+            SkinningDetail::Fade => {
+                let [start, end] = [range.min, range.max].map(|units| units * self.metres_a_unit);
+                Some(FadeRange { start, end })
+            }
             SkinningDetail::Bounded { pixels } => {
                 Some(self.extents[mesh].fade_range(&self.projection, pixels))
             }

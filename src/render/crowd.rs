@@ -13,7 +13,7 @@ use crate::render::albedo::Albedo;
 use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::frame::SkinFrame;
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
@@ -32,10 +32,9 @@ pub struct Character<'a> {
     pub matrices: &'a ModelMatrices,
     /// The transforms from the model's space into the world, one per instance. They may mirror.
     pub placements: &'a Buffer<Affine>,
-    /// The distances, in world units as [`LodView::projected_distance`] measures them, up to which every influence
-    /// counts, and from which on vertices follow one bone.
-    pub fade_range: [f32; 2],
-    /// Distances, measured likewise and not descending, from which on levels 1, 2 … of the character are used:
+    /// The distances between which influences fade.
+    pub fade_range: FadeRange,
+    /// Distances, in world units as [`LodView::projected_distance`] measures them and not descending, from which on levels 1, 2 … of the character are used:
     /// those at which each of its [`level_errors`](crate::skinning::level_errors) is permitted, as computed by
     /// [`Extent::level_ranges`](crate::skinning::Extent::level_ranges). If empty, the meshes themselves are
     /// drawn.
@@ -119,14 +118,12 @@ impl CrowdScene {
             frames.push(skin);
         }
         let BoundingSphere { center, radius } = BoundingSphere::in_clips(model);
-        let [fade_start, fade_end] = fade_range;
         let (clip_from_world, eye) = (Mat4::IDENTITY, Vec3::ZERO);
         let most = InstanceLod::FULL.max_influences;
         let view = LodView {
             clip_from_world,
             eye,
-            fade_start,
-            fade_end,
+            fade_range,
             steps: STEPS,
             max_influences: most,
             center,

@@ -5,6 +5,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of};
+use super::instance_lod::FadeRange;
 use super::pose::{Moment, Pose, mean, moments};
 use crate::InputError;
 use crate::animation::Projection;
@@ -75,14 +76,13 @@ impl Extent {
     }
 
     /// The projected distances at which a crowd may begin to fade and may be rigid
-    /// ([`LodView::fade_start`](super::lod::LodView::fade_start),
-    /// [`LodView::fade_end`](super::lod::LodView::fade_end)), so that no vertex is drawn more than `pixels` from
+    /// ([`LodView::fade_range`](super::lod::LodView::fade_range)), so that no vertex is drawn more than `pixels` from
     /// its position, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
     /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
-    pub fn fade_range(&self, projection: &Projection, pixels: f32) -> [f32; 2] {
-        let near = self.beyond(projection, pixels, 0.0);
-        [near, self.beyond(projection, pixels, self.stray).max(near.next_up())]
+    pub fn fade_range(&self, projection: &Projection, pixels: f32) -> FadeRange {
+        let start = self.beyond(projection, pixels, 0.0);
+        FadeRange { start, end: self.beyond(projection, pixels, self.stray).max(start.next_up()) }
     }
 
     /// The projected distances from which on levels with these `errors`
@@ -233,16 +233,16 @@ mod tests {
         let projection = Projection::new(1080, 1.0, 0.1);
         let extent = Extent { center: Vec3::ZERO, radius: 1.5, stray: 0.02 };
         let range = |extent: &Extent, pixels| extent.fade_range(&projection, pixels);
-        let [near, far] = range(&extent, 0.5);
-        assert_eq!(near, 4.5);
+        let FadeRange { start, end } = range(&extent, 0.5);
+        assert_eq!(start, 4.5);
         // Twice the pixels allow half the distance.
-        let nearer = range(&extent, 1.0)[1];
-        assert!(((nearer - near) / (far - near) - 0.5).abs() < 1e-3, "{nearer} {far}");
-        assert_eq!([0.0, -1.0].map(|pixels| range(&extent, pixels)), [[4.5, f32::MAX]; 2]);
+        let nearer = range(&extent, 1.0).end;
+        assert!(((nearer - start) / (end - start) - 0.5).abs() < 1e-3, "{nearer} {end}");
+        let endless = FadeRange { start: 4.5, end: f32::MAX };
+        assert_eq!([0.0, -1.0].map(|pixels| range(&extent, pixels)), [endless; 2]);
         let rigid = Extent { stray: 0.0, ..extent };
         for pixels in [0.0, 1.0] {
-            let [near, far] = range(&rigid, pixels);
-            assert!(near < far && far.is_finite(), "{near} {far}");
+            assert_eq!(range(&rigid, pixels).validate(), Ok(()));
         }
     }
 
@@ -254,7 +254,7 @@ mod tests {
             |pixels, errors: &[f32]| extent.level_ranges(&projection, pixels, errors.iter().copied());
         let errors = [0.0, 0.02, 0.02, 0.5];
         let begins = ranges(1.0, &errors);
-        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&projection, 1.0)[1]));
+        assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&projection, 1.0).end));
         assert!(begins.is_sorted() && LevelRanges::new(&begins).is_ok());
         assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
         assert!(ranges(1.0, &[]).is_empty());

@@ -5,6 +5,39 @@ use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 pub use crate::shared::skinning::instance_lod::InstanceLod;
 
+/// The distances between which the influences of an instance fade, in world units as
+/// [`LodView::projected_distance`](super::lod::LodView::projected_distance) measures them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FadeRange {
+    /// Up to this distance every influence counts.
+    pub start: f32,
+    /// From this distance on each vertex follows one bone; above `start`.
+    pub end: f32,
+}
+
+impl FadeRange {
+    /// The range of instances that never fade: the first step of the fade is farther than any instance.
+    pub const NEVER: Self = Self { start: 0.0, end: f32::MAX };
+
+    /// Checks the distances.
+    ///
+    /// # Errors
+    /// [`InputError`] for distances that are not finite, and for a start that is not below the end.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let Self { start, end } = *self;
+        for (field, value) in [("fade_range.start", start), ("fade_range.end", end)] {
+            if !value.is_finite() {
+                return Err(InputError::new(field, value, "must be finite"));
+            }
+        }
+        if start >= end {
+            let bound = format!("must be below {end}, where vertices are rigid");
+            return Err(InputError::new("fade_range.start", start, bound));
+        }
+        Ok(())
+    }
+}
+
 impl InstanceLod {
     /// All influences of all vertices.
     pub const FULL: Self = Self { influence_fade: 0.0, max_influences: MAX_INFLUENCES as u32, mesh_lod: 0 };
@@ -39,24 +72,17 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Full quality up to `fade_start`, rigid from `fade_end` on, and a fade in between.
+    /// Full quality up to the range's start, rigid from its end on, and a fade in between.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and if `fade_start` is not below `fade_end`.
-    pub fn at_distance(distance: f32, [fade_start, fade_end]: [f32; 2]) -> Result<Self, InputError> {
-        for (field, value) in [("distance", distance), ("fade_start", fade_start), ("fade_end", fade_end)] {
-            if !value.is_finite() {
-                return Err(InputError::new(field, value, "must be finite"));
-            }
+    /// [`InputError`] for a distance that is not finite, and as [`FadeRange::validate`].
+    pub fn at_distance(distance: f32, fade_range: FadeRange) -> Result<Self, InputError> {
+        if !distance.is_finite() {
+            return Err(InputError::new("distance", distance, "must be finite"));
         }
-        if fade_start >= fade_end {
-            return Err(InputError::new(
-                "fade_start",
-                fade_start,
-                format!("must be below {fade_end}, where vertices are rigid"),
-            ));
-        }
-        Self::fade(((distance - fade_start) / (fade_end - fade_start)).clamp(0.0, 1.0))
+        fade_range.validate()?;
+        let FadeRange { start, end } = fade_range;
+        Self::fade(((distance - start) / (end - start)).clamp(0.0, 1.0))
     }
 
     /// Checks the ranges; the instance must be one that is seen.

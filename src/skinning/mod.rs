@@ -31,7 +31,7 @@ pub mod vertex;
 pub use character_levels::{level_errors, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;
-pub use instance_lod::InstanceLod;
+pub use instance_lod::{FadeRange, InstanceLod};
 pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};
 pub use pose::poses_of;
 pub use posed::{Portrait, PosedModel};

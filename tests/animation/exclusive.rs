@@ -19,9 +19,9 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::samples::creature;
 use relievo::skinning::Blend;
+use relievo::skinning::FadeRange;
 use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::lod::NO_FADE;
 use relievo::skinning::palette::PalettePass;
 use relievo::surface::Mips;
 
@@ -129,7 +129,7 @@ impl Rig {
             model: &self.model,
             matrices,
             placements: &Buffer::from_slice(gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
-            fade_range: NO_FADE,
+            fade_range: FadeRange::NEVER,
             levels: &[],
             blend,
             albedos: &[Albedo::from(ColorTexture::new(gpu, &clay, true).expect("uploaded"))],

@@ -55,7 +55,7 @@ fn misses_nothing(gpu: &Gpu) {
     let crowd = || Crowd::layered(gpu, &set, &plays(0), &layers).expect("fits");
     let (lazy, full) = (crowd(), crowd());
     let state = GateState::new(gpu, &lazy).expect("allocated");
-    state.lods.write(gpu, &[Lod::FULL; 5]).expect("written");
+    state.write_lods(gpu, &[Lod::FULL; 5]).expect("written");
     let active = Active::new(gpu, &order, &lazy).expect("fits");
     let (cursor, sample) = (KeyframeCursorPass::new(gpu), SamplePass::layered(gpu, RotationPath::Slerp));
     let (cursor, sample) = (cursor.expect("compiled"), sample.expect("compiled"));
@@ -115,7 +115,7 @@ fn played(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate) -> (Vec<u32>, Ve
     let prepared = prepared.expect("prepared");
     let allowed = if let Gate::Bounded(table) = gate { table.units(0.01) } else { 0 };
     let lod = |at: u32| Lod { omega: 65536 / (1 + at % 2), allowed, ..Lod::FULL };
-    prepared.state.lods.write(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
+    prepared.state.write_lods(gpu, &(0..40).map(lod).collect::<Vec<_>>()).expect("written");
     for number in 0..4 {
         prepared.set(gpu, &frame(number), number as f32 / 8.0).expect("set");
         gpu.run("test", |encoder| prepared.record(encoder)).expect("run");

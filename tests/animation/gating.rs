@@ -10,7 +10,7 @@ use relievo::animation::order::Order;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::verify::{Draw, random_clips, random_skeleton};
 use relievo::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable,
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable, Sampling,
 };
 use relievo::asset::clip::BoneKeys;
 use relievo::asset::keyframe::RotationPath;
@@ -265,13 +265,13 @@ fn hidden_instances_cost_nothing_and_come_back_whole() {
             crowd.advance(&frame(number), number as f32 / 60.0).pairs.len()
         };
         assert_eq!(done(&mut crowd, 0), 2 * 153);
-        crowd.lods[0].flags = Lod::HIDDEN;
+        crowd.lods[0].sampling = Sampling::Hidden;
         assert_eq!(done(&mut crowd, 1), 0);
-        crowd.lods[0].flags = 0;
+        crowd.lods[0].sampling = Sampling::Gated;
         assert_eq!(done(&mut crowd, 2), 153, "came back");
-        crowd.lods[1].flags = Lod::REFRESH;
+        crowd.lods[1].sampling = Sampling::Forced;
         assert_eq!(done(&mut crowd, 3), 153, "asked for");
-        crowd.lods[1].flags = 0;
+        crowd.lods[1].sampling = Sampling::Gated;
         crowd.instances[1].clip = 1;
         assert_eq!(done(&mut crowd, 4), 153, "another clip");
         assert_eq!(done(&mut crowd, 5), 0);

@@ -13,6 +13,7 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::samples::creature;
+use relievo::skinning::FadeRange;
 use relievo::skinning::lod::placed;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
@@ -57,7 +58,15 @@ impl Instances {
 
     fn character<'a>(&'a self, model: &'a Model, albedos: &'a [Albedo], blend: Blend) -> Character<'a> {
         let Self { matrices, placements } = self;
-        Character { model, matrices, placements, fade_range: [5.0, 25.0], levels: &[], blend, albedos }
+        Character {
+            model,
+            matrices,
+            placements,
+            fade_range: FadeRange { start: 5.0, end: 25.0 },
+            levels: &[],
+            blend,
+            albedos,
+        }
     }
 }
 

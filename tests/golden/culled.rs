@@ -15,7 +15,7 @@ use relievo::render::{ColorTexture, SkinnedInstances, SkinnedRenderer, SkinnedSc
 use relievo::samples::creature;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
 use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, placed};
 use relievo::skinning::select::SKINNED_WORDS;
 use relievo::skinning::vertex::Blend;
@@ -61,8 +61,7 @@ impl Stage {
             view: LodView {
                 clip_from_world,
                 eye,
-                fade_start: 5.0,
-                fade_end: 12.0,
+                fade_range: FadeRange { start: 5.0, end: 12.0 },
                 steps: 16,
                 max_influences: 4,
                 center,

@@ -13,10 +13,10 @@ use relievo::gpu::{Buffer, Gpu};
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
 use relievo::skinning::bounding_sphere::BoundingSphere;
-use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
 use relievo::skinning::level_errors;
 use relievo::skinning::lod::reference::{lod, seen};
-use relievo::skinning::lod::{LevelRanges, LodView, NO_FADE, placed};
+use relievo::skinning::lod::{LevelRanges, LodView, placed};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::texture::Surface;
@@ -93,12 +93,10 @@ impl Crowd {
     fn view(&self, eye: Vec3) -> LodView {
         let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.5, -6.0), Vec3::Y);
         let BoundingSphere { center, radius } = BoundingSphere::in_clips(&self.model);
-        let [fade_start, fade_end] = NO_FADE;
         LodView {
             clip_from_world: camera::rh::proj::directx::perspective(0.6, 176.0 / 112.0, 0.2, 100.0) * look,
             eye,
-            fade_start,
-            fade_end,
+            fade_range: FadeRange::NEVER,
             steps: 1,
             max_influences: 8,
             center,
@@ -155,7 +153,7 @@ fn a_crowd_with_levels() {
         model,
         matrices: &ModelMatrices::new(&models).with_updated_bones(&updated),
         placements: &Buffer::from_slice(gpu, "placements", places).expect("uploaded"),
-        fade_range: NO_FADE,
+        fade_range: FadeRange::NEVER,
         levels: &BEGINS,
         blend: Blend::Linear,
         albedos: &[clay.clone(), clay],

@@ -10,7 +10,7 @@ use relievo::asset::transform::{AFFINE_IDENTITY, Affine};
 use relievo::gpu::Buffer;
 use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
-use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::framing;
@@ -45,7 +45,7 @@ fn a_figure_in_its_materials() {
         model: &model,
         matrices: &ModelMatrices::new(&matrices),
         placements: &Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
-        fade_range: [1e3, 2e3],
+        fade_range: FadeRange { start: 1e3, end: 2e3 },
         levels: &[],
         blend: Blend::Linear,
         albedos: &albedos,

@@ -13,7 +13,7 @@ use relievo::render::target::LINEAR_FORMAT;
 use relievo::render::{
     Albedo, Character, ColorTexture, CrowdScene, SkinnedInstances, SkinnedRenderer, Target,
 };
-use relievo::skinning::lod::NO_FADE;
+use relievo::skinning::FadeRange;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::picture::texture::Surface;
@@ -99,7 +99,7 @@ fn drawn(gpu: &Gpu, double_sided: bool, clip_from_world: Mat4, is_by_hand: bool)
             &Buffer::from_slice(gpu, "model matrices", &bones.repeat(4)).expect("uploaded"),
         ),
         placements,
-        fade_range: NO_FADE,
+        fade_range: FadeRange::NEVER,
         levels: &[],
         blend: Blend::Linear,
         albedos: std::slice::from_ref(&clay),

@@ -15,7 +15,7 @@ use relievo::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, S
 use relievo::samples::creature;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
 use relievo::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
@@ -202,8 +202,7 @@ fn a_crowd_near_and_far() {
     let view = LodView {
         clip_from_world,
         eye,
-        fade_start: 5.0,
-        fade_end: 30.0,
+        fade_range: FadeRange { start: 5.0, end: 30.0 },
         steps: 64,
         max_influences: 8,
         center,

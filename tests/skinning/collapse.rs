@@ -248,7 +248,7 @@ fn below_bones_that_stand_still_keys_stay() {
         let palm = kept(&model, &collapsed).into_iter().find(|(old, _)| *old == 8).expect("named").1;
         let clip = &collapsed.model.clips[0];
         let track = clip.track(palm, Part::Rotation);
-        assert_eq!(track.interpolation(), Interpolation::CubicSpline);
+        assert_eq!(track.interpolation, Interpolation::CubicSpline);
         assert_eq!(clip.times_of(track), [0.0, 0.2, 0.7]);
         for part in [Part::Translation, Part::Scale] {
             assert_eq!(clip.track(palm, part).keys, 0);

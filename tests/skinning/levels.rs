@@ -55,13 +55,11 @@ fn each_mesh_changes_where_its_own_error_allows() {
     let extent = Extent::of_model(&model, &[0], poses_of(&model.clips[0]).expect("short")).expect("valid");
     let projection = Projection::new(1080, 1.0, 0.1);
     let begins = extent.level_ranges(&projection, PIXELS, errors.iter().copied());
-    let [near, far] = extent.fade_range(&projection, PIXELS);
     let screen = |place: Vec3| place.truncate() / place.z * projection.focal_pixels;
     let view = LodView {
         clip_from_world: camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 1e5),
         eye: Vec3::ZERO,
-        fade_start: near,
-        fade_end: far,
+        fade_range: extent.fade_range(&projection, PIXELS),
         steps: 64,
         max_influences: 8,
         center: extent.center,

@@ -246,10 +246,10 @@ fn value(clip: &Clip, bone: usize, part: Part, time: f64) -> DVec4 {
     let track = clip.track(bone, part);
     let times: Vec<f64> = clip.times_of(track).iter().map(|time| f64::from(*time)).collect();
     let stored = |at: usize| DVec4::from_array(clip.values()[track.first_value as usize + at].map(f64::from));
-    let is_spline = track.interpolation() == Interpolation::CubicSpline && track.keys > 0;
+    let is_spline = track.interpolation == Interpolation::CubicSpline && track.keys > 0;
     let key = |key: usize| if is_spline { stored(3 * key + 1) } else { stored(key) };
     let after = times.iter().filter(|other| **other <= time).count();
-    if after == 0 || after == times.len() || track.interpolation() == Interpolation::Step {
+    if after == 0 || after == times.len() || track.interpolation == Interpolation::Step {
         return key(after.saturating_sub(1));
     }
     let t = (time - times[after - 1]) / (times[after] - times[after - 1]);

@@ -109,7 +109,7 @@ fn bone_keys(clip: &Clip, bone: usize, translations: f32) -> BoneKeys {
 /// The keys as they were given: a clip stores tangents multiplied by the seconds of their segment.
 fn keys(clip: &Clip, bone: usize, part: Part) -> Option<Keys> {
     let track = clip.track(bone, part);
-    let (times, interpolation) = (clip.times_of(track).to_vec(), track.interpolation());
+    let (times, interpolation) = (clip.times_of(track).to_vec(), track.interpolation);
     let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
     let mut values = clip.values()[track.first_value as usize..][..each * times.len()].to_vec();
     if each == 3 {

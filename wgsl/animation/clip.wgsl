@@ -1,3 +1,5 @@
+// The tables of a set of clips, and positions in time.
+
 // Where the parts of a clip lie in a set.
 struct ClipEntry {
     // Index of its first timeline.
@@ -8,4 +10,55 @@ struct ClipEntry {
     duration: f32,
     // Its first row in gate tables, which have one row for each time of its first timeline and one more.
     first_row: u32,
+}
+
+// A list of key times that tracks share.
+struct Timeline {
+    // Index of the first time.
+    first_time: u32,
+    // Number of times, at least 1.
+    keys: u32,
+}
+
+// A position between two keys of a timeline.
+struct KeyframeCursor {
+    // The key before the time.
+    key: u32,
+    // The fraction of the way from that key to the next, 0 to below 1; 0 before the first key and after the last.
+    fraction: f32,
+}
+
+// The cursor with these two words. Sampling loads both in one memory operation, which on processors decides its
+// speed; the members of a struct take one each.
+fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
+    return KeyframeCursor(words.x, bitcast<f32>(words.y));
+}
+
+// A track of a set, in two words that one memory operation loads; see timeline_of, interpolation_of and
+// first_value_of.
+struct SetTrack {
+    // In the lower TIMELINE_BITS bits of x the timeline, counted from the clip's first, or CONSTANT; above them
+    // INTERPOLATION_STEP, INTERPOLATION_LINEAR or INTERPOLATION_SPLINE. In y the index of the first value; for a
+    // constant spline, of the middle one of its three.
+    words: vec2<u32>,
+}
+
+// Number of bits of a track's timeline.
+const TIMELINE_BITS: u32 = 30u;
+// The timeline of a track whose value never changes: all of these bits.
+const CONSTANT: u32 = (1u << TIMELINE_BITS) - 1u;
+
+// The timeline of a track, counted from the clip's first, or CONSTANT.
+fn timeline_of(track: SetTrack) -> u32 {
+    return track.words.x & CONSTANT;
+}
+
+// How a track's values go from one key to the next: INTERPOLATION_STEP or another.
+fn interpolation_of(track: SetTrack) -> u32 {
+    return track.words.x >> TIMELINE_BITS;
+}
+
+// The index of a track's first value; for a constant spline, of the middle one of its three.
+fn first_value_of(track: SetTrack) -> u32 {
+    return track.words.y;
 }

@@ -1,8 +1,8 @@
 // The integer position of an instance on the common timeline of its clip, and the reason, other than time, to
 // update its pose. Gates decide by these.
-import package::wgsl::animation::clip::ClipEntry;
+import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
-import package::wgsl::animation::gate_state::{LOD_HIDDEN, LOD_REFRESH, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock};
+import package::wgsl::animation::gate_state::{FRACTION_BITS, FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock};
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
 
@@ -19,8 +19,7 @@ struct ClipClockParams {
 @group(0) @binding(0) var<uniform> clip_clock_params: ClipClockParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
-// First time and number of keys.
-@group(0) @binding(3) var<storage, read> timelines: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
 // Binding 4 holds the key times, binding 5 the levels of detail. Weights of the layers above the base, layer by
 // layer.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
@@ -42,9 +41,9 @@ fn clips_above(instance: u32) -> u32 {
     return clips;
 }
 
-// Converts a float, given as bits, to a fraction of 0 to 65536.
-fn whole_fraction(bits: u32) -> u32 {
-    return u32(clamp(bitcast<f32>(bits), 0.0, 1.0) * 65536.0);
+// The fraction of a cursor, in FRACTION_ONE-ths.
+fn whole_fraction(cursor: KeyframeCursor) -> u32 {
+    return u32(clamp(cursor.fraction, 0.0, 1.0) * f32(FRACTION_ONE));
 }
 
 // The clip clock of an instance with the flags of its level of detail; updates its history.
@@ -53,13 +52,13 @@ fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let clip = clips[instance.clip];
     let time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * clip_clock_params.elapsed);
     let timeline = timelines[clip.first_timeline];
-    let found = keyframe_cursor(timeline.x, timeline.y, time);
+    let found = keyframe_cursor(timeline, time);
     var later = time;
     var ahead = found;
     if clip_clock_params.ahead != 0.0 {
         let seconds = clip_clock_params.elapsed + clip_clock_params.ahead;
         later = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
-        ahead = keyframe_cursor(timeline.x, timeline.y, later);
+        ahead = keyframe_cursor(timeline, later);
     }
     let above = clips_above(index);
     let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
@@ -70,13 +69,13 @@ fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
         reason = UPDATE_REASON_HIDDEN;
         history[index] = vec4<u32>(0u);
     } else {
-        if (flags & LOD_REFRESH) != 0u || last.x != known.x || last.y != known.y {
+        if (flags & LOD_FORCED) != 0u || last.x != known.x || last.y != known.y {
             reason = UPDATE_REASON_FORCED;
         } else if above != 0u {
             reason = UPDATE_REASON_BLENDED;
         }
         history[index] = known;
     }
-    let own = (reason << 20u) | whole_fraction(found.y);
-    return ClipClock(clip.first_row + found.x, own, instance.clip, clip.first_row + ahead.x, whole_fraction(ahead.y));
+    let own = (reason << FRACTION_BITS) | whole_fraction(found);
+    return ClipClock(clip.first_row + found.key, own, instance.clip, clip.first_row + ahead.key, whole_fraction(ahead));
 }

@@ -1,6 +1,7 @@
 // The steps that turn bits into lists, for kernels/animation/compact.wgsl.
 import package::wgsl::animation::gated::bits::bits;
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
+import package::wgsl::animation::order::Slot;
 import package::wgsl::dispatch::rows_of_workgroups;
 
 const WIDTH = 64u;
@@ -17,8 +18,8 @@ struct CompactParams {
 }
 
 @group(0) @binding(15) var<uniform> compact_params: CompactParams;
-// Binding 14 holds the bits. Bone, parent, number of slots of the subtree.
-@group(0) @binding(16) var<storage, read> slots: array<vec4<u32>>;
+// Binding 14 holds the bits.
+@group(0) @binding(16) var<storage, read> slots: array<Slot>;
 @group(0) @binding(17) var<storage, read_write> updated_bones: array<u32>;
 // The number of active pairs of each instance; after the scan, of all instances before it.
 @group(0) @binding(18) var<storage, read_write> counts: array<u32>;
@@ -58,7 +59,7 @@ fn spread_word(instance: u32, word: u32, chosen: u32, so_far: Spread) -> Spread 
     var rest = chosen & ~below;
     while rest != 0u {
         let bit = firstTrailingBit(rest);
-        end = first + bit + slots[first + bit].z;
+        end = first + bit + slots[first + bit].subtree;
         below |= run(bit, min(end - first, 32u));
         rest &= ~below;
     }
@@ -127,7 +128,7 @@ fn list_word(instance: u32, word: u32, start: u32) -> u32 {
     var rest = bits[at_word];
     while rest != 0u {
         let bit = firstTrailingBit(rest);
-        let pair = first_pair + slots[first_slot + bit].x;
+        let pair = first_pair + slots[first_slot + bit].bone;
         pairs[at] = select(pair, pair | PAIR_AHEAD, (ahead & (1u << bit)) != 0u);
         rest &= rest - 1u;
         at++;

@@ -10,14 +10,14 @@ struct Lod {
     // The weight of this instance's motion against that of other instances, 0 to 65535, proportional to its
     // size on screen.
     weight: u32,
-    // [`Lod::HIDDEN`] and [`Lod::REFRESH`].
+    // LOD_HIDDEN, LOD_FORCED or none of them; a hidden instance is not sampled even if it has both.
     flags: u32,
 }
 
 // The instance is not in view: it costs nothing, and is sampled in full when it comes back.
-const LOD_HIDDEN = 1u;
+const LOD_HIDDEN: u32 = 1u;
 // The instance is sampled in full this frame, whatever the gate says.
-const LOD_REFRESH = 2u;
+const LOD_FORCED: u32 = 2u;
 // The value of `Lod::omega` at full detail.
 const OMEGA_ONE = 65536u;
 
@@ -25,16 +25,21 @@ const OMEGA_ONE = 65536u;
 struct ClipClock {
     // Row of the gate's table: the clip's first row plus the key before the current time.
     row: u32,
-    // In the lower 20 bits the fraction of the way to the next row, 0 to 65536; above them the
+    // In the lower FRACTION_BITS bits the fraction of the way to the next row, 0 to FRACTION_ONE; above them the
     // [`UpdateReason`].
     fraction_and_reason: u32,
     // Index of the clip.
     clip: u32,
     // The row at the time at which bones may be sampled ahead; equal to `row` if there is no such time.
     ahead_row: u32,
-    // The fraction of the way from that row to the next, 0 to 65536.
+    // The fraction of the way from that row to the next, 0 to FRACTION_ONE.
     ahead_fraction: u32,
 }
+
+// Number of bits of the fraction in ClipClock::fraction_and_reason.
+const FRACTION_BITS: u32 = 20u;
+// The fraction of the whole way from one row to the next.
+const FRACTION_ONE: u32 = 65536u;
 
 // Update reasons: the gate decides; nothing is sampled; everything is; layers are blended over the clip.
 const UPDATE_REASON_FREE = 0u;
@@ -44,7 +49,7 @@ const UPDATE_REASON_BLENDED = 3u;
 
 // The update reason: one of the constants above.
 fn update_reason_of(clip_clock: ClipClock) -> u32 {
-    return clip_clock.fraction_and_reason >> 20u;
+    return clip_clock.fraction_and_reason >> FRACTION_BITS;
 }
 
 // Whether bones that are sampled ahead get a different pose.
@@ -52,9 +57,9 @@ fn is_ahead(clip_clock: ClipClock) -> bool {
     return clip_clock.ahead_row != clip_clock.row || clip_clock.ahead_fraction != fraction_of(clip_clock);
 }
 
-// The fraction of the way to the next row, 0 to 65536.
+// The fraction of the way to the next row, 0 to FRACTION_ONE.
 fn fraction_of(clip_clock: ClipClock) -> u32 {
-    return clip_clock.fraction_and_reason & 0xfffffu;
+    return clip_clock.fraction_and_reason & ((1u << FRACTION_BITS) - 1u);
 }
 
 // Marks a pair of instance and bone that is sampled ahead.

@@ -1,18 +1,19 @@
 // The position of a time among the key times of a timeline.
+import package::wgsl::animation::clip::{KeyframeCursor, Timeline};
 
 @group(0) @binding(4) var<storage, read> times: array<f32>;
 
-// The cursor, a key and (as bits) a fraction, on the timeline with the given first time and number of keys. Of
-// equal times the last counts.
-fn keyframe_cursor(first: u32, keys: u32, time: f32) -> vec2<u32> {
-    let last = keys - 1u;
+// The cursor on a timeline at a time. Of equal times the last counts.
+fn keyframe_cursor(timeline: Timeline, time: f32) -> KeyframeCursor {
+    let first = timeline.first_time;
+    let last = timeline.keys - 1u;
     let start = times[first];
     if time < start {
-        return vec2<u32>(0u);
+        return KeyframeCursor(0u, 0.0);
     }
     let end_time = times[first + last];
     if time >= end_time {
-        return vec2<u32>(last, 0u);
+        return KeyframeCursor(last, 0.0);
     }
     // Most clips have evenly spaced keys, so that a first guess is usually right.
     let evenly = (time - start) / (end_time - start) * f32(last);
@@ -33,5 +34,5 @@ fn keyframe_cursor(first: u32, keys: u32, time: f32) -> vec2<u32> {
         before = times[first + key];
         after = times[first + key + 1u];
     }
-    return vec2<u32>(key, bitcast<u32>((time - before) / (after - before)));
+    return KeyframeCursor(key, (time - before) / (after - before));
 }

@@ -62,7 +62,7 @@ pub struct Active {
     /// per chain of each instance, and the level's number of chains. Last, workgroups for one thread per cursor
     /// of each instance, and an instance's number of cursors.
     pub dispatches: Buffer<[u32; 4]>,
-    pub(crate) slots: Buffer<crate::animation::order::Slot>,
+    pub(crate) slots: Buffer<crate::shared::animation::order::Slot>,
     pub(crate) counts: Buffer<u32>,
     pub(crate) words: u32,
 }
@@ -89,7 +89,7 @@ impl Active {
             pairs: ActivePairs::new(gpu, crowd)?,
             instances: Buffer::new(gpu, "updated instances", instances)?,
             dispatches: Buffer::from_slice(gpu, "dispatches", &dispatches)?,
-            slots: Buffer::from_slice(gpu, "slots", &order.slots)?,
+            slots: Buffer::from_slice(gpu, "slots", &order.packed_slots())?,
             counts: Buffer::new(gpu, "counts", instances)?,
             words: words as u32,
         })

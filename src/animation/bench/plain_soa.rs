@@ -3,7 +3,7 @@
 //! for all tracks, linear keys only, no gates and no threads.
 
 use crate::InputError;
-use crate::animation::clip_set::ClipSet;
+use crate::animation::clip_set::{ClipSet, SetTrack};
 use crate::animation::local_to_model::reference::{affine, product};
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::clip::Interpolation;
@@ -34,8 +34,9 @@ impl PlainSoa {
     /// [`InputError`] for tracks that are not linear, or not all on the clip's first timeline.
     pub(crate) fn new(skeleton: &Skeleton, set: &ClipSet) -> Result<Self, InputError> {
         let tracks = &set.tracks()[..3 * set.bones()];
-        let common = (Interpolation::Linear as u32) << 30;
-        if let Some(index) = tracks.iter().position(|track| track.timeline_and_code != common) {
+        let is_common =
+            |track: &SetTrack| track.timeline == Some(0) && track.interpolation == Interpolation::Linear;
+        if let Some(index) = tracks.iter().position(|track| !is_common(track)) {
             return Err(InputError::new("tracks", index, "must be linear and on the first timeline"));
         }
         let blocks = set.bones().div_ceil(LANES);

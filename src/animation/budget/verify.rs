@@ -47,7 +47,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let weight = |draw: &mut Draw| draw.word() >> (16 + draw.word() % 17).min(31);
             lods.iter_mut()
                 .for_each(|lod| lod.weight = if frame % 2 == 0 { 65535 } else { weight(&mut draw) });
-            state.lods.write(gpu, &lods)?;
+            state.write_lods(gpu, &lods)?;
             state.clip_clocks.write(gpu, &clip_clocks)?;
             job.set(gpu, most)?;
             output.poison(gpu)?;

@@ -1,7 +1,7 @@
 //! Clip clocks: the integer position of each instance on the timeline that all bones of its clip share. Gates
 //! decide by them, so this operation runs before `animation/gate`. It also finds whether an instance must be
 //! sampled in full: in its first frame, after it was hidden, when its clip changes, when the host asks for it
-//! ([`Lod::REFRESH`](super::lod::Lod::REFRESH)), and when layers above its clip gain or lose all weight, or
+//! ([`Sampling::Forced`](super::lod::Sampling::Forced)), and when layers above its clip gain or lose all weight, or
 //! change their clips. While such layers have weight, sums of motion, which describe a single clip, cannot be
 //! used.
 
@@ -45,7 +45,7 @@ impl UpdateReason {
 impl ClipClock {
     /// A clip clock from its parts, without sampling ahead.
     pub fn new(row: u32, fraction: u32, reason: UpdateReason, clip: u32) -> Self {
-        let fraction_and_reason = (reason as u32) << 20 | fraction;
+        let fraction_and_reason = (reason as u32) << gate_state::FRACTION_BITS | fraction;
         Self { row, fraction_and_reason, clip, ahead_row: row, ahead_fraction: fraction }
     }
 
@@ -56,12 +56,12 @@ impl ClipClock {
 
     /// The fraction of the way to the next row, 0 to 65536.
     pub fn fraction(&self) -> u32 {
-        self.fraction_and_reason & 0xf_ffff
+        self.fraction_and_reason & ((1 << gate_state::FRACTION_BITS) - 1)
     }
 
     /// The reason, other than time, to update the pose.
     pub fn reason(&self) -> UpdateReason {
-        match self.fraction_and_reason >> 20 {
+        match self.fraction_and_reason >> gate_state::FRACTION_BITS {
             gate_state::UPDATE_REASON_FREE => UpdateReason::Free,
             gate_state::UPDATE_REASON_HIDDEN => UpdateReason::Hidden,
             gate_state::UPDATE_REASON_FORCED => UpdateReason::Forced,

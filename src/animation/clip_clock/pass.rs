@@ -56,7 +56,7 @@ pub(crate) fn group<'a>(
         clip_clock_params: &time.uniform,
         instances: crowd.instances.slice(),
         clips: clips.clips.slice(),
-        timelines: clips.timelines.slice().cast(),
+        timelines: clips.timelines.slice(),
         times: clips.times.slice(),
         lods: gate_state.lods.slice(),
         layer_weights: crowd.layer_weights.slice(),

@@ -5,7 +5,7 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::animation::layers::Layer;
-use crate::animation::lod::Lod;
+use crate::animation::lod::{Lod, Sampling};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::keyframe_cursor;
 
@@ -36,11 +36,11 @@ pub fn clip_clocks(
         let blended = if above != 0 { BLENDED } else { 0 };
         let known = [(instance.clip + 1) | blended, above, now.to_bits(), later.to_bits()];
         let last = std::mem::replace(&mut history[index], known);
-        let flags = lods[index].flags;
-        let reason = if flags & Lod::HIDDEN != 0 {
+        let sampling = lods[index].sampling;
+        let reason = if sampling == Sampling::Hidden {
             history[index] = [0; 4];
             UpdateReason::Hidden
-        } else if flags & Lod::REFRESH != 0 || last[..2] != known[..2] {
+        } else if sampling == Sampling::Forced || last[..2] != known[..2] {
             UpdateReason::Forced
         } else if blended != 0 {
             UpdateReason::Blended

@@ -7,7 +7,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
-use crate::animation::lod::Lod;
+use crate::animation::lod::{Lod, Sampling};
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
@@ -37,12 +37,15 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut history = vec![[0; 4]; count];
         for (frame, elapsed) in [0.0, 0.25, 0.5, 300.0, 300.25].into_iter().enumerate() {
             let choose = |draw: &mut Draw| match draw.word() % 8 {
-                0 => Lod::HIDDEN,
-                1 => Lod::REFRESH,
-                _ => 0,
+                0 => Sampling::Hidden,
+                1 => Sampling::Forced,
+                _ => Sampling::Gated,
             };
             let lods: Vec<Lod> = (0..count)
-                .map(|_| Lod { flags: if frame == 0 { 0 } else { choose(&mut draw) }, ..Lod::FULL })
+                .map(|_| match frame {
+                    0 => Lod::FULL,
+                    _ => Lod { sampling: choose(&mut draw), ..Lod::FULL },
+                })
                 .collect();
             for instance in &mut instances {
                 let start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
@@ -55,7 +58,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 crowd.set_weights(gpu, at + 1, &layer.weights)?;
             }
             crowd.instances.write_at(gpu, 0, &instances)?;
-            state.lods.write(gpu, &lods)?;
+            state.write_lods(gpu, &lods)?;
             output.poison(gpu)?;
             let job = pass.prepare(gpu, &clips, &crowd, &state)?;
             let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];

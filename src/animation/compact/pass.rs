@@ -95,7 +95,7 @@ pub(crate) fn group<'a>(uniform: &'a Uniform<CompactParams>, active: &'a Active)
     bindings::Group {
         bits: active.bits.slice(),
         compact_params: uniform,
-        slots: active.slots.slice().cast(),
+        slots: active.slots.slice(),
         updated_bones: active.updated_bones.slice(),
         counts: active.counts.slice(),
         pairs: active.pairs.pairs.slice(),

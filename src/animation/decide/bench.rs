@@ -32,7 +32,7 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     let state = GateState::new(gpu, &scene.crowd)?;
     let active = Active::new(gpu, &order, &scene.crowd)?;
     let lods = vec![Lod { omega, ..Lod::FULL }; count];
-    state.lods.write(gpu, &lods)?;
+    state.write_lods(gpu, &lods)?;
     let pass = DecidePass::new(gpu, &gate, &scene.crowd)?;
     let job = pass.prepare(gpu, &scene.clips, &scene.crowd, &state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };

@@ -15,7 +15,7 @@ use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
-use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::animation::lod::{Lod, OMEGA_ONE, Sampling};
 use crate::animation::order::Order;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::gpu::GpuError;
@@ -92,7 +92,7 @@ impl Play<'_> {
         let job = pass.prepare(gpu, &clips, &crowd, &state, &active)?;
         for (number, elapsed) in [0.0, 0.25, 0.5, 300.0].into_iter().enumerate() {
             let lods = random_lods(&mut draw, count, number == 0);
-            state.lods.write(gpu, &lods)?;
+            state.write_lods(gpu, &lods)?;
             for instance in &mut instances {
                 instance.start = (draw.word() % 4096) as f32 / 64.0 - 32.0;
                 instance.rate = [1.0, -1.0, 0.5][draw.word() as usize % 3];
@@ -167,11 +167,11 @@ fn random_lods(draw: &mut Draw, count: usize, is_first: bool) -> Vec<Lod> {
     let lod = |_| Lod {
         omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
         allowed: draw.word() >> (draw.word() % 32),
-        flags: match draw.word() % 8 {
-            _ if is_first => 0,
-            0 => Lod::HIDDEN,
-            1 => Lod::REFRESH,
-            _ => 0,
+        sampling: match draw.word() % 8 {
+            _ if is_first => Sampling::Gated,
+            0 => Sampling::Hidden,
+            1 => Sampling::Forced,
+            _ => Sampling::Gated,
         },
         ..Lod::FULL
     };

@@ -37,7 +37,7 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
     let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
     let clip_clock = |instance: u32| ClipClock::new(instance % rows, instance % 65536, UpdateReason::Free, 0);
     let clip_clocks: Vec<ClipClock> = (0..count as u32).map(clip_clock).collect();
-    state.lods.write(gpu, &lods)?;
+    state.write_lods(gpu, &lods)?;
     state.clip_clocks.write(gpu, &clip_clocks)?;
     let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &state, &active)?;
     let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };

@@ -79,7 +79,7 @@ fn add(
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
         let (lods, clip_clocks) = random_state(&mut draw, set, count, number == 0);
-        state.lods.write(gpu, &lods)?;
+        state.write_lods(gpu, &lods)?;
         state.clip_clocks.write(gpu, &clip_clocks)?;
         let frame = Frame {
             ticks,

@@ -109,7 +109,7 @@ pub(crate) fn bits_of(word: u32) -> impl Iterator<Item = usize> {
 fn moves(clip: &Clip, bone: usize) -> bool {
     Part::ALL.iter().any(|part| {
         let track = clip.track(bone, *part);
-        let is_spline = track.interpolation() == Interpolation::CubicSpline;
+        let is_spline = track.interpolation == Interpolation::CubicSpline;
         let each = if is_spline { 3 } else { 1 };
         let keys = track.keys as usize;
         let values = &clip.values()[track.first_value as usize..][..each * keys];

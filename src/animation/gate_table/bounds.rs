@@ -6,11 +6,12 @@ use super::{AnimatedBones, EVERYTHING, rows_of};
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::motion::{bounding_levers, budget_fractions, motions, subtree_radii};
-use crate::animation::order::{NO_PARENT, Order};
+use crate::animation::order::Order;
 use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::shared::animation::gate;
+use crate::shared::animation::order::NO_PARENT;
 
 /// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
 /// needed if fractions alone decide; with 0, all animated bones get equal fractions.
@@ -107,7 +108,7 @@ impl BoundTable {
 
     /// The entries, row by row: the sum of motion at the row's time and its rise to the next row. A clip's last
     /// row holds the sum over the whole clip and an [`ErrorBudget`]. After all others follows one more row per
-    /// clip: for each slot that the clip moves, the nearest slot above it that the clip moves, or [`NO_PARENT`].
+    /// clip: for each slot that the clip moves, the nearest slot above it that the clip moves, or `u32::MAX`.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.motion.rows
     }

@@ -2,18 +2,12 @@
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::clip_set::Timeline;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::check_elapsed;
-use crate::asset::keyframe::KeyframeCursor;
-use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
-
-impl SeenAs<[u32; 2]> for Timeline {}
-impl SeenAs<[u32; 2]> for KeyframeCursor {}
 
 /// Finds the keyframe cursors of instances.
 #[derive(Debug, Clone)]
@@ -107,9 +101,9 @@ fn bind(
         params: uniform,
         instances: crowd.instances.slice(),
         clips: clips.clips.slice(),
-        timelines: clips.timelines.slice().cast(),
+        timelines: clips.timelines.slice(),
         times: clips.times.slice(),
-        cursors: crowd.cursors.slice().cast(),
+        cursors: crowd.cursors.slice(),
         updated_instances: listed.instances.slice(),
         dispatches: listed.dispatches.slice(),
         history: listed.history.slice(),

@@ -2,16 +2,13 @@
 
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
-use crate::animation::order::{Chain, Order, Slot};
+use crate::animation::order::{Chain, Order};
 use crate::asset::skeleton::Skeleton;
-use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::local_to_model as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::local_to_model::LocalToModelParams;
+use crate::shared::animation::order::Slot as PackedSlot;
 use crate::{Error, InputError};
-
-impl SeenAs<[u32; 4]> for Slot {}
-impl SeenAs<[u32; 2]> for Chain {}
 
 /// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,7 +147,7 @@ impl Nothing {
 /// The resources that all dispatches bind.
 struct Binder<'a> {
     order: Order,
-    slots: Buffer<Slot>,
+    slots: Buffer<PackedSlot>,
     chains: Buffer<Chain>,
     crowd: &'a Crowd,
 }
@@ -162,7 +159,7 @@ impl<'a> Binder<'a> {
             return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
         }
         let order = Order::new(skeleton);
-        let slots = Buffer::from_slice(gpu, "slots", &order.slots)?;
+        let slots = Buffer::from_slice(gpu, "slots", &order.packed_slots())?;
         let chains = Buffer::from_slice(gpu, "chains", &order.chains)?;
         Ok(Self { order, slots, chains, crowd })
     }
@@ -179,8 +176,8 @@ impl<'a> Binder<'a> {
         let uniform = Uniform::new(gpu, "local_to_model", &params)?;
         let group = bindings::Group {
             params: &uniform,
-            slots: self.slots.slice().cast(),
-            chains: self.chains.slice().cast(),
+            slots: self.slots.slice(),
+            chains: self.chains.slice(),
             updated_bones: lists.updated_bones.slice(),
             updated_instances: lists.instances.slice(),
             dispatches: lists.dispatches.slice(),

@@ -1,6 +1,6 @@
 //! Concatenation into the model's space: the CPU reference of `kernels/animation/local_to_model.wgsl`.
 
-use crate::animation::order::{CONTINUES, NO_PARENT, Order};
+use crate::animation::order::{Order, SlotParent};
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
@@ -73,9 +73,9 @@ pub fn local_to_model_updated(
         }
         let local = affine(&locals[slot.bone as usize]);
         model_matrices[slot.bone as usize] = match slot.parent {
-            NO_PARENT => local,
-            CONTINUES => product(&model_matrices[order.slots[at - 1].bone as usize], &local),
-            parent => product(&model_matrices[parent as usize], &local),
+            SlotParent::Root => local,
+            SlotParent::PreviousSlot => product(&model_matrices[order.slots[at - 1].bone as usize], &local),
+            SlotParent::Bone(parent) => product(&model_matrices[parent as usize], &local),
         };
     }
 }

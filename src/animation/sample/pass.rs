@@ -1,16 +1,15 @@
 //! The GPU pass of `kernels/animation/sample.wgsl`.
 
 use crate::animation::active::ActivePairs;
-use crate::animation::clip_set::SetTrack;
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::asset::keyframe::RotationPath;
+use crate::asset::keyframe::{KeyframeCursor, RotationPath};
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::sample as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
 use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
 
-impl SeenAs<[u32; 2]> for SetTrack {}
+impl SeenAs<[u32; 2]> for KeyframeCursor {}
 
 /// Samples bones.
 #[derive(Debug, Clone)]
@@ -118,7 +117,7 @@ fn bind(
     let group = bindings::Group {
         params: &uniform,
         instances: crowd.instances.slice(),
-        tracks: clips.tracks.slice().cast(),
+        tracks: clips.tracks.slice(),
         values: clips.values.slice(),
         cursors: crowd.cursors.slice().cast(),
         pairs: pairs.slice(),

@@ -23,17 +23,6 @@ pub enum Interpolation {
     CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 
-impl Interpolation {
-    /// The interpolation that a track's `code` stands for.
-    pub fn of_code(code: u32) -> Self {
-        match code {
-            interpolation::INTERPOLATION_STEP => Self::Step,
-            interpolation::INTERPOLATION_LINEAR => Self::Linear,
-            _ => Self::CubicSpline,
-        }
-    }
-}
-
 /// The keys of one track, as an importer gives them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keys {

@@ -29,7 +29,7 @@ impl Layout {
             first_time: first_time as u32,
             first_value: self.values.len() as u32,
             keys: keys.times.len() as u32,
-            code: keys.interpolation as u32,
+            interpolation: keys.interpolation,
         });
         self.values.extend(keys.values);
     }

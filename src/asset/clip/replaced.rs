@@ -7,7 +7,7 @@ impl Clip {
     /// The keys of a track as they are stored, with tangents multiplied by the seconds of their segment. A
     /// track at rest gives no keys and one value.
     pub(crate) fn stored_keys(&self, track: &Track) -> Keys {
-        let interpolation = track.interpolation();
+        let interpolation = track.interpolation;
         let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         let values = &self.values[track.first_value as usize..][..each * track.keys.max(1) as usize];
         Keys { times: self.times_of(track).to_vec(), values: values.to_vec(), interpolation }

@@ -43,7 +43,7 @@ impl GatherPass {
         let group = bindings::Group {
             params: &uniform,
             instances: crowd.instances.slice(),
-            tracks: clips.tracks.slice().cast(),
+            tracks: clips.tracks.slice(),
             cursors: crowd.cursors.slice().cast(),
             values: clips.values.slice().cast(),
             gathered: crowd.locals.slice().cast(),

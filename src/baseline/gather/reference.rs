@@ -23,7 +23,7 @@ pub(crate) fn gather(
             let [moved, turned, scaled] =
                 [0, 1, 2].map(|part| both_keys(set, tracks[part].first_value, *cursor));
             let unused =
-                tracks.iter().fold(cursor.fraction.to_bits(), |bits, track| bits ^ track.timeline_and_code);
+                tracks.iter().fold(cursor.fraction.to_bits(), |bits, track| bits ^ track.packed().words[0]);
             *gathered =
                 [[moved[0], moved[1], moved[2], scaled[0]], turned, [scaled[1], scaled[2], unused, 0]];
         }

@@ -2,7 +2,7 @@
 
 use super::AssignParams;
 use crate::Error;
-use crate::animation::Lod;
+use crate::animation::lod::PackedLod;
 use crate::gpu::bindings::lod::assign as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::skinning::instance_lod::InstanceLod;
@@ -15,7 +15,7 @@ pub struct AssignBuffers<'a> {
     /// For each instance of the scene the displacement that is allowed, in the model's units, negative if none sees it.
     pub allowed: &'a Buffer<f32>,
     /// Written, one for each instance of the object: what gates use.
-    pub lods: &'a Buffer<Lod>,
+    pub lods: &'a Buffer<PackedLod>,
     /// Written, one for each instance of the object: what skinning uses.
     pub instance_lods: &'a Buffer<InstanceLod>,
 }

@@ -1,7 +1,7 @@
 //! Assignment of allowed displacements: the CPU reference of `kernels/lod/assign.wgsl`.
 
 use super::AssignParams;
-use crate::animation::Lod;
+use crate::animation::{Lod, Sampling};
 use crate::lod::object::level_within;
 use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
@@ -10,7 +10,7 @@ use crate::skinning::instance_lod::InstanceLod;
 /// negative if no view sees it.
 pub fn assign(params: &AssignParams, allowed: f32) -> (Lod, InstanceLod) {
     if allowed < 0.0 {
-        return (Lod { flags: Lod::HIDDEN, ..Lod::FULL }, InstanceLod::UNSEEN);
+        return (Lod { sampling: Sampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
     }
     let lod = Lod { allowed: units(params, allowed).floor().min(MAX_UNITS) as u32, ..Lod::FULL };
     let errors = params.errors.map(|errors| errors.to_array());

@@ -17,8 +17,8 @@ use crate::render::target::COLOR_FORMAT;
 use crate::render::{Albedo, ColorTexture};
 use crate::skinning::Extent;
 use crate::skinning::frame::SkinFrame;
-use crate::skinning::instance_lod::InstanceLod;
-use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, NO_FADE, list_words};
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
+use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words};
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::vertex::Blend;
 use crate::surface::mips::Mips;
@@ -133,7 +133,6 @@ impl<'a> World<'a> {
         (skin, drawn, scene): (&SkinFrame, &Buffer<u32>, &SkinnedScene),
     ) -> Result<LodJob, Error> {
         let Self { gpu, stage, placements, .. } = self;
-        let [fade_start, fade_end] = stage.fade(skinning, index).unwrap_or(NO_FADE);
         let Extent { center, radius, .. } = stage.extents[index];
         let max_influences = match skinning {
             SkinningDetail::Truncate { max_influences } => max_influences,
@@ -142,8 +141,7 @@ impl<'a> World<'a> {
         let view = LodView {
             clip_from_world: self.clip_from_world,
             eye: Vec3::ZERO,
-            fade_start,
-            fade_end,
+            fade_range: stage.fade(skinning, index).unwrap_or(FadeRange::NEVER),
             steps: STEPS,
             max_influences,
             center,

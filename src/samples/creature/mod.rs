@@ -168,12 +168,12 @@ mod tests {
             assert!(counts[0] > 0 && counts[2] > 0, "{}: {counts:?}", clip.name());
             assert!(clip.tracks().iter().all(|track| track.keys <= 33));
         }
-        let codes: std::collections::BTreeSet<_> = model
+        let codes: std::collections::BTreeSet<u32> = model
             .clips
             .iter()
             .flat_map(Clip::tracks)
             .filter(|track| track.keys > 0)
-            .map(|track| track.code)
+            .map(|track| track.interpolation as u32)
             .collect();
         assert_eq!(codes.into_iter().collect::<Vec<_>>(), [0, 1, 2]);
     }

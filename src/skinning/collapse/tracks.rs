@@ -223,7 +223,7 @@ fn value(transform: &Transform, part: Part) -> [f32; 4] {
 fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
     let of = |part| {
         let track = clip.track(bone, part);
-        let (times, interpolation) = (clip.times_of(track), track.interpolation());
+        let (times, interpolation) = (clip.times_of(track), track.interpolation);
         let cursor = match side {
             Side::Before => cursor_before(times, interpolation, time),
             Side::After => keyframe_cursor(times, time),

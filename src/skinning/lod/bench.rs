@@ -6,7 +6,7 @@ use crate::Error;
 use crate::asset::transform::Affine;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::reference::lod;
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, placed};
 use crate::terrain::bench::copy_of;
@@ -23,8 +23,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let view = LodView {
         clip_from_world,
         eye: Vec3::Y,
-        fade_start: 10.0,
-        fade_end: 100.0,
+        fade_range: FadeRange { start: 10.0, end: 100.0 },
         steps: 64,
         max_influences: 8,
         center: Vec3::Y,

@@ -2,7 +2,7 @@
 //! and which level of detail each uses.
 //!
 //! The fade has discrete steps, so that an instance that hardly moves keeps its vertices; a single step moves
-//! no vertex noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`]); when it is seen
+//! no vertex noticeably. An instance that is not seen is not skinned ([`InstanceLod::UNSEEN`](crate::skinning::InstanceLod::UNSEEN)); when it is seen
 //! again, all of it is skinned.
 
 use glam::{Mat4, Vec3, Vec4};
@@ -11,7 +11,7 @@ use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::FadeRange;
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
@@ -33,11 +33,8 @@ pub struct LodView {
     pub clip_from_world: Mat4,
     /// Position of the eye in world units.
     pub eye: Vec3,
-    /// The distance up to which every influence counts, in world units as [`LodView::projected_distance`]
-    /// measures them.
-    pub fade_start: f32,
-    /// The distance from which on vertices follow one bone, measured likewise.
-    pub fade_end: f32,
+    /// The distances between which influences fade.
+    pub fade_range: FadeRange,
     /// Number of steps of the fade; 64 is a good number.
     pub steps: u32,
     /// The largest number of influences of instances that are seen, 1 to 8.
@@ -109,9 +106,6 @@ pub fn list_words(instances: usize, levels: usize) -> usize {
     if levels == 1 { instances } else { levels * list_stride(instances) }
 }
 
-/// [`LodView::fade_start`] and [`LodView::fade_end`] for crowds that do not fade.
-pub const NO_FADE: [f32; 2] = [0.0, f32::MAX];
-
 impl LodView {
     /// Checks the ranges.
     ///
@@ -139,8 +133,8 @@ impl LodView {
                 format!("must be in 1..={MAX_INFLUENCES}"),
             ));
         }
-        InstanceLod::at_distance(0.0, [self.fade_start, self.fade_end])
-            .map(|_| ())
+        self.fade_range
+            .validate()
             .map_err(|error| InputError::new(format!("view.{}", error.path), error.value, error.bound))
     }
 
@@ -192,8 +186,7 @@ mod tests {
         LodView {
             clip_from_world: Mat4::IDENTITY,
             eye: Vec3::ZERO,
-            fade_start: 10.0,
-            fade_end: 30.0,
+            fade_range: FadeRange { start: 10.0, end: 30.0 },
             steps: 64,
             max_influences: 8,
             center: Vec3::ZERO,
@@ -215,8 +208,9 @@ mod tests {
         assert_eq!(refused(LodView { steps: 0, ..view() }), "view.steps");
         assert_eq!(refused(LodView { max_influences: 0, ..view() }), "view.max_influences");
         assert_eq!(refused(LodView { max_influences: 9, ..view() }), "view.max_influences");
-        assert_eq!(refused(LodView { fade_start: 30.0, ..view() }), "view.fade_start");
-        assert_eq!(refused(LodView { fade_end: f32::INFINITY, ..view() }), "view.fade_end");
+        let fade = |start, end| LodView { fade_range: FadeRange { start, end }, ..view() };
+        assert_eq!(refused(fade(30.0, 30.0)), "view.fade_range.start");
+        assert_eq!(refused(fade(10.0, f32::INFINITY)), "view.fade_range.end");
     }
 
     #[test]

@@ -22,10 +22,10 @@ impl LodParams {
         let begin = |at: usize| begins.get(at).copied().unwrap_or(f32::MAX);
         Self {
             planes: view.planes(),
-            eye: view.eye.extend(view.fade_start),
+            eye: view.eye.extend(view.fade_range.start),
             ahead: view.ahead().map_or(Vec4::ZERO, |ahead| ahead.extend(1.0)),
             bounding_sphere: view.center.extend(view.radius),
-            fade_end: view.fade_end,
+            fade_end: view.fade_range.end,
             steps: view.steps as f32,
             instances: instances as u32,
             max_influences: view.max_influences,
@@ -161,19 +161,18 @@ impl LodJob {
 mod tests {
     use super::*;
     use crate::gpu::Options;
-    use crate::skinning::lod::{LevelRanges, NO_FADE, placed};
+    use crate::skinning::FadeRange;
+    use crate::skinning::lod::{LevelRanges, placed};
     use glam::{Mat4, Vec3};
 
     /// Lists of levels that a view no longer has become empty; more levels than there are lists are refused.
     #[test]
     fn views_may_have_fewer_levels() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
-        let [near, far] = NO_FADE;
         let view = |distances: &[f32]| LodView {
             clip_from_world: Mat4::IDENTITY,
             eye: Vec3::ZERO,
-            fade_start: near,
-            fade_end: far,
+            fade_range: FadeRange::NEVER,
             steps: 1,
             max_influences: 8,
             center: Vec3::ZERO,

@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
 use crate::asset::transform::Affine;
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::LodView;
 use crate::skinning::picture::is_mirrored;
 
@@ -34,7 +34,8 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
     let radius = view.radius * stretch(rows.map(Vec4::truncate));
     let depths = view.planes().map(|plane| plane.truncate().dot(center) + plane.w + radius);
     let projected_distance = view.projected_distance(center);
-    let fade_fraction = (projected_distance - view.fade_start) / (view.fade_end - view.fade_start);
+    let FadeRange { start, end } = view.fade_range;
+    let fade_fraction = (projected_distance - start) / (end - start);
     Seen {
         depth: depths.into_iter().fold(f32::INFINITY, f32::min),
         projected_distance,

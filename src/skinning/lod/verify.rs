@@ -9,7 +9,7 @@ use crate::gpu::Buffer;
 use crate::harness::compare::{Comparison, LeftOut};
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
-use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::reference::{Seen, lod, may_mirror, seen};
 use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, placed};
 
@@ -99,8 +99,7 @@ fn view(towards: Vec3) -> LodView {
     LodView {
         clip_from_world,
         eye,
-        fade_start: 10.0,
-        fade_end: 70.0,
+        fade_range: FadeRange { start: 10.0, end: 70.0 },
         steps: 16,
         max_influences: 5,
         center: Vec3::new(0.0, 0.9, 0.1),

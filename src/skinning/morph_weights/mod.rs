@@ -3,8 +3,10 @@
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
+use crate::asset::Interpolation;
 use crate::asset::Mesh;
-pub use crate::shared::skinning::morph_weights::WeightEntry;
+#[cfg(feature = "gpu")]
+use crate::shared::skinning::morph_weights as packed;
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
@@ -23,6 +25,31 @@ pub use pass::{MorphWeightsJob, MorphWeightsPass};
 /// Let ε = 2⁻²⁴. A time carries 3ε of 16 s, which in segments of 1/8 s is 2.3e-5 of a segment. The slope of a
 /// spline there is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline carries some 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
+
+/// The keys of a clip in a [`WeightSet`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightEntry {
+    /// The clip's duration in seconds.
+    pub duration: f32,
+    /// Index of its first key time.
+    pub first_time: u32,
+    /// Number of keys, at least 1.
+    pub keys: u32,
+    /// Index of its first value.
+    pub first_value: u32,
+    /// How weights between keys are interpolated.
+    pub interpolation: Interpolation,
+}
+
+#[cfg(feature = "gpu")]
+impl WeightEntry {
+    /// The entry as kernels read it.
+    fn packed(&self) -> packed::WeightEntry {
+        let Self { duration, first_time, keys, first_value, interpolation } = *self;
+        let interpolation = interpolation as u32;
+        packed::WeightEntry { duration, first_time, keys, first_value, interpolation }
+    }
+}
 
 /// The keys of a mesh's morph weights in several clips.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,13 +79,14 @@ impl WeightSet {
         let mut all = Self { entries: Vec::new(), times: Vec::new(), values: Vec::new(), targets };
         for (of_set, clip) in set.clips().iter().zip(clips) {
             let keys = mesh.weight_keys.iter().find(|(of, _)| of == clip).map(|(_, keys)| keys);
-            let (times, values, code) = keys.map_or((&[0.0][..], &mesh.weights[..], 0), |keys| keys.parts());
+            let rest = (&[0.0][..], &mesh.weights[..], Interpolation::Step);
+            let (times, values, interpolation) = keys.map_or(rest, |keys| keys.parts());
             all.entries.push(WeightEntry {
                 duration: of_set.duration,
                 first_time: all.times.len() as u32,
                 keys: times.len() as u32,
                 first_value: all.values.len() as u32,
-                interpolation: code,
+                interpolation,
             });
             all.times.extend(times);
             all.values.extend(values);
@@ -70,7 +98,6 @@ impl WeightSet {
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
-    use crate::asset::Interpolation;
     use crate::asset::MorphTarget;
     use crate::asset::morph::WeightKeys;
 
@@ -89,7 +116,10 @@ mod tests {
         };
         let [walk, wave] = [0, 2].map(|clip: usize| model.clips[clip].duration());
         let found: Vec<_> = weights.entries.iter().map(keys).collect();
-        assert_eq!(found, [(0, 1, 0, 0, walk), (1, 2, 2, 2, wave)]);
+        assert_eq!(
+            found,
+            [(0, 1, 0, Interpolation::Step, walk), (1, 2, 2, Interpolation::CubicSpline, wave)]
+        );
         assert_eq!((&weights.times[..], weights.values.len()), (&[0.0, 0.0, 1.0][..], 14));
         let refused = WeightSet::new(&model.meshes[0], &set, &[0]).expect_err("refused");
         assert_eq!((&*refused.path, &*refused.bound), ("clips.len", "must be 2, one a clip of the set"));

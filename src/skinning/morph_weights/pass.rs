@@ -1,6 +1,6 @@
 //! The GPU pass of `kernels/skinning/morph_weights.wgsl`.
 
-use super::WeightSet;
+use super::{WeightEntry, WeightSet};
 use crate::Error;
 use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::bindings::skinning::morph_weights as bindings;
@@ -44,7 +44,8 @@ impl MorphWeightsPass {
         let uniform = Uniform::new(gpu, "morph weights", &params)?;
         let mut steps = Vec::new();
         if pairs > 0 {
-            let entries = Buffer::from_slice(gpu, "weight keys", &set.entries)?;
+            let entries: Vec<_> = set.entries.iter().map(WeightEntry::packed).collect();
+            let entries = Buffer::from_slice(gpu, "weight keys", &entries)?;
             let times = Buffer::from_slice(gpu, "weight times", &set.times)?;
             let values = Buffer::from_slice(gpu, "weight values", &set.values)?;
             let group = bindings::Group {

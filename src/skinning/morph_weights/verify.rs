@@ -24,9 +24,6 @@ use crate::{Error, InputError};
 /// three roundings of times up to 16 s.
 const TOUCH: f32 = 5e-6;
 
-/// The code of [`Interpolation::Step`] in a [`WeightSet`].
-const STEP: u32 = Interpolation::Step as u32;
-
 /// Times in seconds since the starts.
 const ELAPSED: [f32; 3] = [0.0, 2.71, -1.3];
 
@@ -104,7 +101,7 @@ fn is_at_a_jump(instance: &Instance, weights: &WeightSet, elapsed: f32) -> bool 
     let is_near = |key: &f32| (time - key).abs() < TOUCH;
     let is_at_end = instance.wrap() == Wrap::Loop && (is_near(&0.0) || is_near(&entry.duration));
     let times = &weights.times[entry.first_time as usize..][..entry.keys as usize];
-    entry.keys > 1 && (is_at_end || entry.interpolation == STEP && times.iter().any(is_near))
+    entry.keys > 1 && (is_at_end || entry.interpolation == Interpolation::Step && times.iter().any(is_near))
 }
 
 /// A model with four clips, three of which animate the weights, each with another interpolation.
@@ -164,7 +161,7 @@ mod tests {
             first_time,
             keys,
             first_value: 0,
-            interpolation: interpolation as u32,
+            interpolation,
         };
         let weights = WeightSet {
             entries: vec![

@@ -1,6 +1,6 @@
 //! Sampling of clips: the CPU reference of `kernels/animation/sample.wgsl`.
 
-use crate::animation::clip_set::{CONSTANT, ClipSet, SetTrack};
+use crate::animation::clip_set::{ClipSet, SetTrack};
 use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, all_instances};
 use crate::asset::clip::{Clip, Interpolation, Part, Track};
@@ -24,7 +24,7 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
     let of = |part| {
         let track: &Track = clip.track(bone, part);
         let values = &clip.values()[track.first_value as usize..];
-        (values, track.interpolation(), keyframe_cursor(clip.times_of(track), time))
+        (values, track.interpolation, keyframe_cursor(clip.times_of(track), time))
     };
     let vector = |part| {
         let (values, interpolation, cursor) = of(part);
@@ -229,11 +229,11 @@ fn find<'a>(
     cursors: &[KeyframeCursor],
 ) -> (&'a [[f32; 4]], Interpolation, KeyframeCursor) {
     let first = track.first_value as usize;
-    let code = track.timeline_and_code >> 30;
-    match (track.timeline_and_code & CONSTANT, code) {
+    let start = KeyframeCursor::default();
+    match (track.timeline, track.interpolation) {
         // The middle one of three.
-        (CONSTANT, 2) => (&set.values()[first - 1..], Interpolation::CubicSpline, KeyframeCursor::default()),
-        (CONSTANT, _) => (&set.values()[first..], Interpolation::Step, KeyframeCursor::default()),
-        (timeline, _) => (&set.values()[first..], Interpolation::of_code(code), cursors[timeline as usize]),
+        (None, Interpolation::CubicSpline) => (&set.values()[first - 1..], Interpolation::CubicSpline, start),
+        (None, _) => (&set.values()[first..], Interpolation::Step, start),
+        (Some(timeline), between) => (&set.values()[first..], between, cursors[timeline as usize]),
     }
 }

@@ -33,6 +33,7 @@ pub fn reduced(influences: &[Influence], instance_lod: InstanceLod) -> Vec<Influ
 mod tests {
     use super::*;
     use crate::asset::influences::Influences;
+    use crate::skinning::FadeRange;
 
     fn vertex(weights: &[f32]) -> Vec<Influence> {
         let given = (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight: *weight }).collect();
@@ -120,9 +121,12 @@ mod tests {
         assert_eq!(field(InstanceLod::truncate(9)), "max_influences");
         assert_eq!(field(InstanceLod::level(16)), "mesh_lod");
         assert_eq!(InstanceLod::level(15), Ok(InstanceLod { mesh_lod: 15, ..InstanceLod::FULL }));
-        assert_eq!(field(InstanceLod::at_distance(1.0, [5.0, 5.0])), "fade_start");
-        let fade =
-            |distance| InstanceLod::at_distance(distance, [10.0, 30.0]).expect("in range").influence_fade;
+        assert_eq!(
+            field(InstanceLod::at_distance(1.0, FadeRange { start: 5.0, end: 5.0 })),
+            "fade_range.start"
+        );
+        let range = FadeRange { start: 10.0, end: 30.0 };
+        let fade = |distance| InstanceLod::at_distance(distance, range).expect("in range").influence_fade;
         assert_eq!([fade(0.0), fade(10.0), fade(15.0), fade(30.0), fade(99.0)], [0.0, 0.0, 0.25, 1.0, 1.0]);
     }
 }
