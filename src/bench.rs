@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::{Error, InputError};
 
 use crate::harness::{Bench, Row, selected};
-use crate::{animation, baseline, skinning, surface, terrain};
+use crate::{animation, baseline, lod, skinning, surface, terrain};
 
 /// The benchmark cases of a kernel.
 #[derive(Clone, Copy)]
@@ -52,6 +52,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/morph", run: skinning::morph::bench::cases },
     Stem { name: "skinning/select", run: skinning::select::bench::cases },
     Stem { name: "skinning/skin", run: skinning::skin::bench::cases },
+    Stem { name: "lod/select", run: lod::select::bench::cases },
+    Stem { name: "lod/list", run: lod::list::bench::cases },
+    Stem { name: "lod/assign", run: lod::assign::bench::cases },
     // It draws pictures, so it comes last: afterwards lavapipe's timestamps are too short (see its cases).
     Stem { name: "surface/relief", run: surface::relief::bench::cases },
 ];

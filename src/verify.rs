@@ -9,7 +9,7 @@ use crate::Error;
 use crate::gpu::{AdapterSummary, Gpu};
 use crate::harness::compare::Comparison;
 use crate::harness::{CaseResult, Cases, Skipped, selected};
-use crate::{animation, baseline, skinning, surface, terrain};
+use crate::{animation, baseline, lod, skinning, surface, terrain};
 
 /// The parity cases of a kernel.
 #[derive(Clone, Copy)]
@@ -55,6 +55,9 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/morph", run: skinning::morph::verify::cases },
     Stem { name: "skinning/select", run: skinning::select::verify::cases },
     Stem { name: "skinning/skin", run: skinning::skin::verify::cases },
+    Stem { name: "lod/select", run: lod::select::verify::cases },
+    Stem { name: "lod/list", run: lod::list::verify::cases },
+    Stem { name: "lod/assign", run: lod::assign::verify::cases },
 ];
 
 /// The results of all cases on one adapter.

@@ -29,6 +29,13 @@ pub struct Influences {
     all: Vec<Influence>,
 }
 
+impl Default for Influences {
+    /// Those of no vertices.
+    fn default() -> Self {
+        Self { offsets: vec![0], all: Vec::new() }
+    }
+}
+
 impl Influences {
     /// The influences of vertices, each given as bones and weights in any order. Weights of one bone are added,
     /// weights of 0 are left out, the rest is sorted, the largest first (equal ones by bone), and divided by
@@ -43,7 +50,7 @@ impl Influences {
         bones: usize,
         vertices: impl IntoIterator<Item = Vec<Influence>>,
     ) -> Result<Self, InputError> {
-        let mut influences = Self { offsets: vec![0], all: Vec::new() };
+        let mut influences = Self::default();
         for (vertex, mut given) in vertices.into_iter().enumerate() {
             order(&mut given)
                 .and_then(|()| check(&given, bones))
@@ -62,6 +69,16 @@ impl Influences {
     pub(crate) fn repeat(&mut self, vertex: usize) {
         self.all.extend_from_within(self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize);
         self.offsets.push(self.all.len() as u32);
+    }
+
+    /// Appends the vertices of another mesh, whose influences keep their order and weights; `bone` gives the new
+    /// number of a bone.
+    pub(crate) fn append(&mut self, other: &Self, mut bone: impl FnMut(u32) -> u32) {
+        let first = self.all.len() as u32;
+        self.offsets.extend(other.offsets[1..].iter().map(|offset| first + offset));
+        let renamed =
+            other.all.iter().map(|influence| Influence { bone: bone(influence.bone), ..*influence });
+        self.all.extend(renamed);
     }
 
     /// The influences of a vertex, the strongest first.

@@ -114,7 +114,7 @@ impl LodCamera {
         let ahead = self.ahead.dot(towards);
         let aside = (towards - ahead * self.ahead).length();
         let around = radius + POSITION_SLACK * (center.length() + self.eye.length() + radius);
-        let (depth, across) = if ahead + around < self.near {
+        let (depth, across) = if ahead + around < 0.0 {
             (towards.length() - around, 0.0)
         } else {
             (ahead - around, aside + around)
@@ -188,3 +188,6 @@ fn up(number: f64) -> f32 {
     let rounded = number as f32;
     if f64::from(rounded) < number { rounded.next_up() } else { rounded }
 }
+
+#[cfg(all(test, feature = "verify"))]
+mod tests;

@@ -6,9 +6,9 @@ use super::pose::poses_of;
 use crate::animation::bounds::reference::bounds;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample;
-use crate::asset::Model;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::bone_radii;
+use crate::asset::{Clip, Model, Transform};
 
 /// The smallest and the largest number of moments at which a clip is sampled; the largest is an hour at 60 per
 /// second.
@@ -27,8 +27,8 @@ pub struct BoundingSphere {
 }
 
 impl BoundingSphere {
-    /// A sphere around points, such as the vertices of a model at rest, larger by a twentieth. Without points it has the
-    /// radius 0 and lies at the origin.
+    /// A sphere around points, such as the vertices of a model at rest, larger by a twentieth. Without points it has
+    /// the radius 0 and lies at the origin.
     pub fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
         let (low, high) =
             points.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
@@ -45,7 +45,25 @@ impl BoundingSphere {
     /// # Panics
     /// As [`bone_radii`].
     pub fn in_clips(model: &Model) -> Self {
-        let [low, high] = box_in_clips(model);
+        let rest = std::iter::once(model.skeleton.rest());
+        Self::in_poses(model, rest.chain(model.clips.iter().flat_map(poses)))
+    }
+
+    /// A sphere around all meshes in one clip, computed as [`BoundingSphere::in_clips`] computes that of all. The
+    /// rest pose does not count, unless the model has no clips: then it alone counts, whichever clip is asked for.
+    ///
+    /// # Panics
+    /// For a clip that the model does not have while it has others, and as [`bone_radii`].
+    pub fn in_clip(model: &Model, clip: usize) -> Self {
+        if model.clips.is_empty() {
+            return Self::in_clips(model);
+        }
+        Self::in_poses(model, poses(&model.clips[clip]))
+    }
+
+    /// A sphere around all meshes in these poses, enlarged for motion between them.
+    fn in_poses(model: &Model, poses: impl Iterator<Item = Vec<Transform>>) -> Self {
+        let [low, high] = box_in_poses(model, poses);
         Self { center: middle_of(low, high), radius: MARGIN * low.distance(high) / 2.0 }
     }
 }
@@ -55,21 +73,23 @@ pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
     if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }
 
-/// The corners of a box around all meshes at rest and in every clip.
-fn box_in_clips(model: &Model) -> [Vec3; 2] {
+/// The transforms of all bones at the sampled moments of a clip.
+fn poses(clip: &Clip) -> impl Iterator<Item = Vec<Transform>> {
+    let [least, most] = MOMENTS;
+    let moments = poses_of(clip).unwrap_or(most).max(least);
+    let time = move |moment| clip.duration() * (moment as f32 / (moments - 1) as f32);
+    (0..moments).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
+}
+
+/// The corners of a box around all meshes in these poses.
+fn box_in_poses(model: &Model, poses: impl Iterator<Item = Vec<Transform>>) -> [Vec3; 2] {
     let skeleton = &model.skeleton;
     let bone_radii = bone_radii(skeleton.len(), &model.skins, &model.meshes);
     let followed = followed(model);
     let weighted: Vec<usize> = (0..bone_radii.len()).filter(|bone| followed[*bone]).collect();
-    let of_clips = model.clips.iter().flat_map(|clip| {
-        let [least, most] = MOMENTS;
-        let moments = poses_of(clip).unwrap_or(most).max(least);
-        let time = move |moment| clip.duration() * (moment as f32 / (moments - 1) as f32);
-        (0..moments).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
-    });
     let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
     let bone_radii: Vec<f32> = weighted.iter().map(|bone| bone_radii[*bone]).collect();
-    for locals in std::iter::once(skeleton.rest()).chain(of_clips) {
+    for locals in poses {
         let models = local_to_model(skeleton, &locals);
         let models: Vec<_> = weighted.iter().map(|bone| models[*bone]).collect();
         if let Some(found) = (!bone_radii.is_empty()).then(|| bounds(&models, &bone_radii)[0]) {
@@ -95,7 +115,6 @@ fn followed(model: &Model) -> Vec<bool> {
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
-    use crate::asset::Clip;
     use crate::asset::clip::{BoneKeys, Interpolation, Keys};
     use crate::skinning::instance_lod::InstanceLod;
     use crate::skinning::morph::reference::morph;
@@ -103,26 +122,35 @@ mod tests {
     use crate::skinning::skin::reference::skin;
     use crate::skinning::vertex::Blend;
 
+    /// The largest distance from a point of any vertex in 45 poses of a clip.
+    fn farthest(model: &Model, clip: &Clip, center: Vec3) -> f32 {
+        let mesh = &model.meshes[0];
+        let in_pose = |moment: u16| {
+            let locals = sample(clip, clip.duration() * f32::from(moment) / 44.0, RotationPath::Slerp);
+            let models = local_to_model(&model.skeleton, &locals);
+            let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
+            let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
+            vertices.iter().map(|vertex| Vec3::from(vertex.position).distance(center)).fold(0.0, f32::max)
+        };
+        (0..45).map(in_pose).fold(0.0, f32::max)
+    }
+
     #[test]
     fn the_sphere_holds_every_vertex_and_not_much_more() {
         let model = crate::samples::creature().expect("valid");
-        let BoundingSphere { center, radius } = BoundingSphere::in_clips(&model);
-        let mesh = &model.meshes[0];
-        let mut farthest = 0.0_f32;
-        for clip in &model.clips {
-            for moment in 0..45 {
-                let locals = sample(clip, clip.duration() * moment as f32 / 44.0, RotationPath::Slerp);
-                let models = local_to_model(&model.skeleton, &locals);
-                let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
-                let vertices = skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL);
-                let away = vertices.iter().map(|vertex| Vec3::from(vertex.position).distance(center));
-                farthest = away.fold(farthest, f32::max);
-            }
+        let all = BoundingSphere::in_clips(&model);
+        let largest = model.clips.iter().map(|clip| farthest(&model, clip, all.center)).fold(0.0, f32::max);
+        assert!((largest..1.6 * largest).contains(&all.radius), "{} for {largest}", all.radius);
+        for (at, clip) in model.clips.iter().enumerate() {
+            let BoundingSphere { center, radius } = BoundingSphere::in_clip(&model, at);
+            let largest = farthest(&model, clip, center);
+            assert!((largest..1.6 * largest).contains(&radius), "{radius} for {largest} in {}", clip.name());
+            assert!(radius <= all.radius && center.distance(all.center) + radius < 1.5 * all.radius);
         }
-        assert!((farthest..1.6 * farthest).contains(&radius), "{radius} for {farthest}");
         let bare = Model { meshes: vec![], ..model };
         let none = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
         assert_eq!(BoundingSphere::in_clips(&bare), none);
+        assert_eq!(BoundingSphere::in_clip(&bare, 0), none);
         assert_eq!(BoundingSphere::around(std::iter::empty()), none);
     }
 
@@ -148,5 +176,32 @@ mod tests {
         model.clips = vec![Clip::new("jump", &model.skeleton, &keys, 90.0).expect("valid")];
         let radius = BoundingSphere::in_clips(&model).radius;
         assert!(radius > still + 3.5, "{radius}, {still} without a clip");
+        assert_eq!(BoundingSphere::in_clip(&model, 0).radius, radius);
+    }
+
+    /// The rest pose counts only where there is no clip.
+    #[test]
+    fn clips_have_spheres_of_their_own() {
+        let mut model = crate::samples::creature().expect("valid");
+        model.clips.clear();
+        let rest = BoundingSphere::in_clip(&model, 7);
+        assert_eq!(rest, BoundingSphere::in_clips(&model));
+        let clip = |y: f32| {
+            let mut keys = vec![BoneKeys::default(); model.skeleton.len()];
+            let values = vec![[0.0, y, 0.0, 0.0]];
+            keys[0].translation = Some(Keys { times: vec![0.0], values, interpolation: Interpolation::Step });
+            Clip::new("far", &model.skeleton, &keys, 1.0).expect("valid")
+        };
+        model.clips = vec![clip(-50.0), clip(90.0)];
+        let height = model.skeleton.bones()[0].rest.translation[1];
+        for (at, y) in [-50.0, 90.0].into_iter().enumerate() {
+            let found = BoundingSphere::in_clip(&model, at);
+            let moved = rest.center + Vec3::new(0.0, y - height, 0.0);
+            assert!(
+                found.center.distance(moved) < 0.1 && (found.radius - rest.radius).abs() < 0.01,
+                "{found:?}"
+            );
+        }
+        assert!(BoundingSphere::in_clips(&model).radius > 70.0);
     }
 }

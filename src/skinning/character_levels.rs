@@ -10,6 +10,15 @@ use crate::asset::mesh::{MAX_LEVELS, Mesh};
 /// fewest additional triangles, counted over the logarithm of the distance. For a character with one mesh whose
 /// levels have different errors, they are those errors.
 pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
+    level_errors_within(meshes, MAX_LEVELS)
+}
+
+/// As [`level_errors`], for a character with at most `most` levels, level 0 included: at most `most` − 1 errors. With
+/// at least two levels, the coarsest level of all is kept.
+pub fn level_errors_within(meshes: &[Mesh], most: usize) -> Vec<f32> {
+    if most < 2 {
+        return Vec::new();
+    }
     // The triangles that a mesh loses when the error reaches that of its next level. The key is the error's
     // bits, whose order is right because errors are not negative.
     let mut lost: BTreeMap<u32, usize> = BTreeMap::new();
@@ -23,7 +32,7 @@ pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     }
     let mut steps: Vec<Step> =
         lost.into_iter().map(|(error, lost)| Step::new(f32::from_bits(error), lost)).collect();
-    while steps.len() >= MAX_LEVELS {
+    while steps.len() >= most {
         // Without a step, its triangles stay until the next step.
         let costs = steps.windows(2).map(|pair| pair[0].cost(&pair[1]));
         let cheapest = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(at, _)| at);

@@ -1,6 +1,7 @@
 //! Skinning: meshes that follow skeletons, their levels of detail, and bounds of their motion (A sections 8.4
 //! and 9).
 
+pub mod at_rest;
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
 pub mod bounding_sphere;
@@ -16,6 +17,7 @@ pub mod frame;
 pub mod instance_lod;
 pub mod levels;
 pub mod lod;
+pub mod merged;
 pub mod morph;
 pub mod morph_weights;
 pub mod palette;
@@ -28,11 +30,13 @@ pub mod skin;
 pub(crate) mod verify;
 pub mod vertex;
 
-pub use character_levels::{level_errors, own_levels};
+pub use at_rest::at_rest;
+pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
 pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};
+pub use merged::{Merged, merged};
 pub use pose::poses_of;
 pub use posed::{Portrait, PosedModel};
 pub use vertex::{Blend, Vertex};

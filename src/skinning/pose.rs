@@ -123,11 +123,14 @@ impl Pose {
         (0..self.vertices.len()).map(position).collect()
     }
 
+    /// All vertices, in the model's space.
+    pub(super) fn vertices(self, mesh: &Mesh) -> Vec<Vertex> {
+        skin(&self.vertices, &mesh.influences, &Palette::Linear(self.palette), InstanceLod::FULL)
+    }
+
     /// The normals of all vertices: unit vectors, or 0.
     pub(super) fn normals(self, mesh: &Mesh) -> Vec<[f32; 3]> {
-        let palette = Palette::Linear(self.palette);
-        let placed = skin(&self.vertices, &mesh.influences, &palette, InstanceLod::FULL);
-        placed.into_iter().map(|vertex| vertex.normal).collect()
+        self.vertices(mesh).into_iter().map(|vertex| vertex.normal).collect()
     }
 }
 

@@ -8,6 +8,7 @@ mod gating;
 #[path = "../harness/mod.rs"]
 mod harness;
 mod levels;
+mod merged;
 mod rigs;
 mod scales;
 mod shapes;

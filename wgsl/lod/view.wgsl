@@ -41,9 +41,9 @@ struct SelectView {
     blocks: u32,
 }
 
-// What rounding may do to positions relative to the corner of the view's cell, as a fraction of all lengths from which a
-// distance is computed.
-const POSITION_SLACK: f32 = 1e-6;
+// How far rounding may move what is computed from positions relative to the corner of the view's cell, as a fraction of
+// all their lengths.
+const POSITION_SLACK: f32 = 3e-6;
 
 // What `camera_allows` keeps back, so that no rounding, its own or that of what is computed from its result, permits more
 // than `pixels`.
@@ -60,7 +60,7 @@ fn camera_allows(camera: LodCamera, center: vec3<f32>, radius: f32) -> f32 {
     let ahead = dot(camera.ahead, towards);
     let aside = length(towards - ahead * camera.ahead);
     let around = radius + POSITION_SLACK * (length(center) + length(camera.eye) + radius);
-    let is_behind = ahead + around < camera.near;
+    let is_behind = ahead + around < 0.0;
     let depth = select(ahead, length(towards), is_behind) - around;
     let across = select(aside + around, 0.0, is_behind);
     if depth <= camera.near {

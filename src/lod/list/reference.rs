@@ -14,3 +14,40 @@ pub fn lists(object: &LodObject, decisions: &[u32]) -> [Vec<u32>; OBJECT_LISTS a
     }
     lists
 }
+
+/// For each block and list, the number of instances in the blocks before it, from the numbers of instances of the blocks
+/// of one object.
+pub fn before_blocks(counts: &[u32]) -> Vec<u32> {
+    let mut sums = [0; OBJECT_LISTS as usize];
+    let mut before = Vec::with_capacity(counts.len());
+    for block in counts.chunks(OBJECT_LISTS as usize) {
+        before.extend(sums);
+        sums.iter_mut().zip(block).for_each(|(sum, count)| *sum += count);
+    }
+    before
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lod::LodObject;
+
+    #[test]
+    fn lists_keep_the_order_of_instances() {
+        let object = LodObject { first: 64, instances: 64, ..LodObject::NONE };
+        let mut decisions = vec![9; 64];
+        decisions.extend((0..64).map(|instance| if instance < 60 { 1 + instance % 3 } else { 0 }));
+        let lists = lists(&object, &decisions);
+        assert_eq!(lists[1], (0..20).map(|at| 3 * at + 1).collect::<Vec<u32>>());
+        assert_eq!(lists.iter().map(Vec::len).sum::<usize>(), 60);
+        assert!(lists[8].is_empty(), "another object's instances");
+    }
+
+    #[test]
+    fn sums_leave_out_their_own_block() {
+        let counts: Vec<u32> = (0..48).map(|at| at / 16 + at % 16).collect();
+        let before = before_blocks(&counts);
+        assert_eq!(before[..16], [0; 16]);
+        assert_eq!([before[16 + 3], before[32 + 3]], [3, 3 + 4]);
+    }
+}

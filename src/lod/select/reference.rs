@@ -20,11 +20,13 @@ pub struct Selected {
     pub rows: [[f32; 4]; 3],
 }
 
-/// The bounding sphere of an instance, relative to the corner of a cell: centre and radius.
+/// The bounding sphere of an instance, relative to the corner of a cell: centre and radius. The radius includes what
+/// rounding may do to the centre.
 pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
-    let [x, y, z] = instance.axes();
+    let ([x, y, z], at, scale) = (instance.axes(), instance.position(cell), instance.largest_scale());
     let [cx, cy, cz, radius] = instance.bounding_sphere;
-    (x * cx + y * cy + z * cz + instance.position(cell), radius * instance.largest_scale())
+    let rounding = POSITION_SLACK * (at.length() + scale * Vec3::new(cx, cy, cz).length());
+    (x * cx + y * cy + z * cz + at, radius * scale + rounding)
 }
 
 /// Whether a view may see an instance at all, wherever it is.

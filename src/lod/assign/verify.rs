@@ -1,0 +1,171 @@
+//! Parity cases of `kernels/lod/assign.wgsl`.
+
+use glam::Vec4;
+
+use super::AssignParams;
+use crate::Error;
+use crate::animation::Lod;
+use crate::animation::verify::Draw;
+use crate::gpu::{Buffer, Uniform};
+use crate::harness::Cases;
+use crate::harness::compare::{Comparison, Judgement, each};
+use crate::harness::poison::Poisoned;
+use crate::lod::assign::reference::assign;
+use crate::lod::assign::{AssignBuffers, AssignPass};
+use crate::skinning::instance_lod::InstanceLod;
+
+/// How far rounding may move the quotients: products round by 2⁻²³, divisions by 5 · 2⁻²⁴.
+const QUOTIENT: f32 = 1e-6;
+
+/// The fraction of instances whose level or fade rounding may decide either way.
+const MAY_TOUCH: f64 = 1.0 / 200.0;
+
+/// The cases cover numbers of instances around a workgroup's, behind and before instances of other objects; all numbers of
+/// levels, characters without influences to fade, and displacements from 0 to the largest, or of unseen instances.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = AssignPass::new(gpu)?;
+    for (case, instances) in (0..).zip([1, 63, 64, 65, 1000]) {
+        for levels in [1, 2, 5, 8] {
+            let params = params(64 * case, instances, levels);
+            let allowed = random_allowed(case, (64 * case + instances) as usize + 64);
+            let (lods, instance_lods) =
+                (Poisoned::<Lod>::new(gpu, instances as usize)?, Poisoned::new(gpu, instances as usize)?);
+            let buffers = AssignBuffers {
+                params: &Uniform::new(gpu, "params", &params)?,
+                allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
+                lods: &lods.buffer,
+                instance_lods: &instance_lods.buffer,
+            };
+            // More threads than instances.
+            let job = pass.prepare(gpu, buffers, instances)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let allowed = &allowed[params.first as usize..][..instances as usize];
+            let name = format!("{instances} instances, {levels} levels");
+            let gates = lods.check(gpu, |lods| compared_lods(&params, allowed, lods))?;
+            cases.add(format!("{name}: gates"), gates);
+            let skins = instance_lods.check(gpu, |lods| compared_instance_lods(&params, allowed, lods))?;
+            cases.add(format!("{name}: skins"), skins);
+        }
+    }
+    Ok(())
+}
+
+/// Parameters of a character with so many levels; with two of them it has no influences to fade.
+fn params(first: u32, instances: u32, levels: u32) -> AssignParams {
+    let error = |level: usize| if level == 0 { 0.0 } else { 1e-3 * (1 << (2 * level)) as f32 };
+    AssignParams {
+        first,
+        instances,
+        levels,
+        mesh_fraction: 0.5,
+        bone_fraction: 0.3,
+        influence_fraction: 0.2,
+        unit: 3.7e-7,
+        stray: if levels == 2 { 0.0 } else { 0.7 },
+        max_influences: 4,
+        errors: [0, 1].map(|four| Vec4::from_array(std::array::from_fn(|lane| error(4 * four + lane)))),
+    }
+}
+
+/// Displacements from 1e-6 to 1e4, and some that are 0, as large as possible, or of unseen instances.
+fn random_allowed(case: u32, count: usize) -> Vec<f32> {
+    let mut draw = Draw::new(case ^ 0xa551);
+    let mut random = |_| match draw.word() % 16 {
+        0 => 0.0,
+        1 => 1e9,
+        2 | 3 => -1.0,
+        _ => libm::exp2f(3.0 + 20.0 * draw.signed()),
+    };
+    (0..count).map(&mut random).collect()
+}
+
+/// The right results for the displacement as it is, and for the least and the largest to which rounding may change it.
+fn around(params: &AssignParams, allowed: f32) -> [(Lod, InstanceLod); 3] {
+    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| assign(params, factor * allowed))
+}
+
+/// Units must lie between those of the least and the largest displacement; everything else must be equal.
+fn compared_lods(params: &AssignParams, allowed: &[f32], found: &[Lod]) -> Comparison {
+    let judge = |(found, allowed): (&Lod, &f32)| {
+        let [(right, _), (least, _), (largest, _)] = around(params, *allowed);
+        let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
+            && Lod { allowed: right.allowed, ..*found } == right;
+        let error = f64::from(found.allowed.abs_diff(right.allowed));
+        Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: false }
+    };
+    let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
+    each(&judgements, "units", MAY_TOUCH, |at| {
+        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).0)
+    })
+}
+
+/// A level or a fade may be that of the least or of the largest displacement, if these differ.
+fn compared_instance_lods(params: &AssignParams, allowed: &[f32], found: &[InstanceLod]) -> Comparison {
+    let judge = |(found, allowed): (&InstanceLod, &f32)| {
+        let [(_, right), (_, least), (_, largest)] = around(params, *allowed);
+        let is_right = (least.influence_fade..=largest.influence_fade).contains(&found.influence_fade)
+            && (least.mesh_lod..=largest.mesh_lod).contains(&found.mesh_lod)
+            && found.max_influences == right.max_influences
+            // Fades are whole steps, exact in f32.
+            && libm::truncf(64.0 * found.influence_fade) == 64.0 * found.influence_fade;
+        let error = f64::from((found.influence_fade - right.influence_fade).abs());
+        Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: least != largest }
+    };
+    let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
+    each(&judgements, "fade", MAY_TOUCH, |at| {
+        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).1)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_of_one_instance_is_seen() {
+        let params = params(0, 200, 5);
+        let allowed = random_allowed(5, 200);
+        let (lods, instance_lods): (Vec<Lod>, Vec<InstanceLod>) =
+            allowed.iter().map(|allowed| assign(&params, *allowed)).unzip();
+        assert!(compared_lods(&params, &allowed, &lods).holds);
+        assert!(compared_instance_lods(&params, &allowed, &instance_lods).holds);
+        let unseen = allowed.iter().position(|allowed| *allowed < 0.0).expect("some");
+        let faded =
+            instance_lods.iter().position(|lod| (0.1..0.9).contains(&lod.influence_fade)).expect("some");
+        let gate = |at: usize, change: fn(&mut Lod)| {
+            let mut found = lods.clone();
+            change(&mut found[at]);
+            compared_lods(&params, &allowed, &found).holds
+        };
+        assert!(!gate(unseen, |lod| lod.flags = 0) && !gate(faded, |lod| lod.flags = Lod::HIDDEN));
+        assert!(!gate(faded, |lod| lod.allowed += lod.allowed / 1000));
+        assert!(!gate(faded, |lod| lod.omega = 0) && !gate(faded, |lod| lod.weight -= 1));
+        let skin = |at: usize, change: fn(&mut InstanceLod)| {
+            let mut found = instance_lods.clone();
+            change(&mut found[at]);
+            compared_instance_lods(&params, &allowed, &found).holds
+        };
+        assert!(!skin(unseen, |lod| lod.max_influences = 4) && !skin(faded, |lod| lod.max_influences = 0));
+        assert!(!skin(faded, |lod| lod.influence_fade += 1.0 / 64.0));
+        assert!(!skin(faded, |lod| lod.influence_fade = f32::NAN));
+        assert!(!skin(faded, |lod| lod.mesh_lod += 1));
+    }
+
+    /// A displacement at the very edge of a level may give either level.
+    #[test]
+    fn an_edge_may_go_either_way() {
+        let params = params(0, 1, 5);
+        let edge = params.errors[0].y / params.mesh_fraction;
+        let (_, right) = assign(&params, edge);
+        let level =
+            |level| compared_instance_lods(&params, &[edge], &[InstanceLod { mesh_lod: level, ..right }]);
+        assert!(level(0).holds && level(1).holds && !level(2).holds);
+        assert_eq!(level(0).spread.expect("given").touching, 1);
+        let two = compared_instance_lods(&params, &[edge; 2], &[right; 2]);
+        assert!(!two.holds && two.fault.expect("a fault").contains("2 of 2 touch"));
+    }
+}

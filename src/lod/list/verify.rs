@@ -1,0 +1,187 @@
+//! Parity cases of `kernels/lod/list.wgsl`.
+
+use crate::Error;
+use crate::animation::verify::Draw;
+use crate::gpu::{Buffer, Gpu};
+use crate::harness::compare::Comparison;
+use crate::harness::poison::{POISON, Poisoned};
+use crate::harness::{Cases, compare};
+use crate::lod::list::reference::{before_blocks, lists};
+use crate::lod::list::{ListBuffers, ListPass};
+use crate::lod::select::reference::counts;
+use crate::lod::verify::{Blocks, SIZES};
+use crate::lod::{BLOCK, OBJECT_LISTS, SceneDraw};
+
+/// How instances are spread over lists.
+const KINDS: [&str; 4] = ["none seen", "all in one list", "some in every list", "few"];
+
+/// The cases cover no instance seen, all of them in one list, and some or few in every list; one object and several, one
+/// without instances, blocks of no object with decisions that mean nothing, and objects whose blocks no power of two
+/// divides. Memory outside the lists and draws must stay untouched. The last block of the larger scenes is left out.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let pass = ListPass::new(cases.gpu)?;
+    for (case, sizes) in (0..).zip(SIZES) {
+        let blocks = Blocks::new(case, sizes);
+        for kind in KINDS {
+            let decisions = random_decisions(case, kind, &blocks);
+            let (ends, found) = run(cases.gpu, &pass, &blocks, &decisions)?;
+            let name = format!("{} blocks, {kind}", blocks.block_objects.len());
+            ends.into_iter().for_each(|(output, end)| cases.add(format!("{name}: the end of {output}"), end));
+            let expected = Written::expected(&blocks, &decisions);
+            for (what, comparison) in found.compared(&expected) {
+                cases.add(format!("{name}: {what}"), comparison);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Decisions of all instances, also of those in blocks of no object.
+fn random_decisions(case: u32, kind: &str, blocks: &Blocks) -> Vec<u32> {
+    let mut draw = Draw::new(case ^ 0x1157);
+    let mut decision = |index: usize| match kind {
+        _ if blocks.object_of(index).is_none() => 1 + draw.word() % OBJECT_LISTS,
+        "none seen" => 0,
+        "all in one list" => 1 + case,
+        "few" if draw.word() % 40 > 0 => 0,
+        _ => draw.word() % (1 + OBJECT_LISTS),
+    };
+    (0..BLOCK as usize * blocks.block_objects.len()).map(&mut decision).collect()
+}
+
+/// What the kernel wrote, and in it poison where it did not.
+#[derive(Clone)]
+struct Written {
+    counts: Vec<u32>,
+    lists: Vec<u32>,
+    arguments: Vec<u32>,
+}
+
+/// Whether an output's end is untouched, by its name.
+type Ends = Vec<(&'static str, Comparison)>;
+
+fn run(gpu: &Gpu, pass: &ListPass, blocks: &Blocks, decisions: &[u32]) -> Result<(Ends, Written), Error> {
+    let words = OBJECT_LISTS as usize * blocks.block_objects.len();
+    let (count, list) = (Poisoned::new(gpu, words)?, Poisoned::new(gpu, blocks.list_words())?);
+    let arguments = Poisoned::<SceneDraw>::new(gpu, blocks.draws())?;
+    count.buffer.write(gpu, &counts(decisions))?;
+    let buffers = ListBuffers {
+        objects: &Buffer::from_slice(gpu, "objects", &blocks.objects)?,
+        block_objects: &Buffer::from_slice(gpu, "block_objects", &blocks.block_objects)?,
+        decisions: &Buffer::from_slice(gpu, "decisions", decisions)?,
+        counts: &count.buffer,
+        lists: &list.buffer,
+        arguments: &arguments.buffer,
+    };
+    let all = blocks.block_objects.len() as u32;
+    let job = pass.prepare(gpu, buffers, blocks.objects.len() as u32, all)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let mut found = Written { counts: vec![], lists: vec![], arguments: vec![] };
+    let same = || compare::exact(&[0], &[0]);
+    let ends = vec![
+        (
+            "counts",
+            count.check(gpu, |all| {
+                found.counts = all.to_vec();
+                same()
+            })?,
+        ),
+        (
+            "lists",
+            list.check(gpu, |all| {
+                found.lists = all.to_vec();
+                same()
+            })?,
+        ),
+        (
+            "arguments",
+            arguments.check(gpu, |all| {
+                found.arguments = bytemuck::cast_slice(all).to_vec();
+                same()
+            })?,
+        ),
+    ];
+    Ok((ends, found))
+}
+
+impl Written {
+    /// What the reference writes.
+    fn expected(blocks: &Blocks, decisions: &[u32]) -> Self {
+        let mut written = Self {
+            counts: counts(decisions),
+            lists: vec![POISON; blocks.list_words()],
+            arguments: vec![POISON; size_of::<SceneDraw>() / 4 * blocks.draws()],
+        };
+        for object in &blocks.objects {
+            let own = (OBJECT_LISTS * object.first / BLOCK) as usize..;
+            let own = &mut written.counts[own][..(OBJECT_LISTS * object.instances / BLOCK) as usize];
+            let before = before_blocks(own);
+            own.copy_from_slice(&before);
+            for (list, members) in (0..).zip(lists(object, decisions)) {
+                written.lists[object.list_begin(list) as usize..][..members.len()].copy_from_slice(&members);
+                for part in 0..object.parts {
+                    // The second of a draw's words is the number of its instances.
+                    let draw = size_of::<SceneDraw>() / 4 * object.draw(part, list) as usize;
+                    written.arguments[draw + 1] = members.len() as u32;
+                }
+            }
+        }
+        written
+    }
+
+    fn compared(&self, expected: &Self) -> [(&'static str, Comparison); 3] {
+        [
+            ("counts", compare::exact(&self.counts, &expected.counts)),
+            ("lists", compare::exact(&self.lists, &expected.lists)),
+            ("arguments", compare::exact(&self.arguments, &expected.arguments)),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_in_another_order_and_a_foreign_word_are_seen() {
+        let blocks = Blocks::new(3, &[3, 2]);
+        let decisions = random_decisions(3, "some in every list", &blocks);
+        let right = Written::expected(&blocks, &decisions);
+        let faults = |found: &Written| {
+            let compared = found.compared(&right).into_iter();
+            compared.filter(|(_, comparison)| !comparison.holds).map(|(what, _)| what).collect::<Vec<_>>()
+        };
+        assert_eq!(faults(&right), Vec::<&str>::new());
+        let object = &blocks.objects[0];
+        let begin = object.list_begin(4) as usize;
+        let swapped = {
+            let mut found = right.clone();
+            found.lists.swap(begin, begin + 1);
+            found
+        };
+        assert_eq!(faults(&swapped), ["lists"]);
+        // Behind the last member of a list.
+        let members = lists(object, &decisions)[4].len();
+        let long = {
+            let mut found = right.clone();
+            found.lists[begin + members] = 0;
+            found
+        };
+        assert_eq!(faults(&long), ["lists"]);
+        let totals = {
+            let mut found = right.clone();
+            found.arguments[5 * object.draw(0, 4) as usize + 1] += 1;
+            found
+        };
+        assert_eq!(faults(&totals), ["arguments"]);
+        let sums = {
+            let mut found = right.clone();
+            found.counts[20] += 1;
+            found
+        };
+        assert_eq!(faults(&sums), ["counts"]);
+    }
+}

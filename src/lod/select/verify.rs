@@ -1,0 +1,424 @@
+//! Parity cases of `kernels/lod/select.wgsl`.
+
+use crate::Error;
+use crate::gpu::{Buffer, Gpu, GpuError, Uniform};
+use crate::harness::compare::{Comparison, Judgement, each};
+use crate::harness::poison::{POISON, Poisoned};
+use crate::harness::{Cases, compare};
+use crate::lod::object::level_within;
+use crate::lod::select::reference::{counts, depth_inside, is_shown, placed_sphere, select, view_allows};
+use crate::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
+use crate::lod::verify::{Blocks, SIZES, frame, random_instances};
+use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
+use crate::shared::lod::view::POSITION_SLACK;
+
+/// How far rounding may move a level or an allowed displacement beyond what it does to positions: kernel and reference
+/// round some 40 times each, by at most 2⁻²³.
+const FORMULA: f32 = 1e-5;
+
+/// The largest error of a row's component: 18 · 2⁻²⁴ of the scale.
+const AXES_BOUND: f32 = 1.1e-6;
+
+/// The largest error of a position: 4 · 2⁻²⁴ of the lengths that are added.
+const POSITION_BOUND: f32 = 2.4e-7;
+
+/// The fraction of instances for which rounding may decide either way.
+const MAY_TOUCH: f64 = 1.0 / 200.0;
+
+/// The cases cover one object and several, one without instances and one that is not shown, blocks of no object and blocks
+/// beyond the view's, and the four views of a frame one after another. Where rounding may decide either way, both
+/// decisions are accepted and counted.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for (case, sizes) in (0..).zip(SIZES) {
+        let scene = Scene::new(case, sizes);
+        let outputs = Outputs::new(cases.gpu, scene.instances.len())?;
+        let mut state = vec![State::Untouched; scene.instances.len()];
+        for (name, view) in frame()? {
+            // The last block is the scene's but not the view's, except in the smallest scene.
+            let all = scene.blocks.block_objects.len() as u32;
+            let view = SelectView { blocks: all - u32::from(all > 2), ..view };
+            let (ends, found) = outputs.run(cases.gpu, &scene, &view)?;
+            let comparisons = found.compared(&scene, &view, &mut state);
+            let name = format!("{} blocks, {name}", view.blocks);
+            ends.into_iter().for_each(|(output, end)| cases.add(format!("{name}: the end of {output}"), end));
+            comparisons
+                .into_iter()
+                .for_each(|(what, comparison)| cases.add(format!("{name}: {what}"), comparison));
+        }
+    }
+    Ok(())
+}
+
+/// Objects and instances.
+struct Scene {
+    blocks: Blocks,
+    instances: Vec<SceneInstance>,
+}
+
+impl Scene {
+    fn new(case: u32, sizes: &[u32]) -> Self {
+        let blocks = Blocks::new(case, sizes);
+        let instances = random_instances(case, BLOCK as usize * blocks.block_objects.len());
+        Self { blocks, instances }
+    }
+
+    /// The object of an instance, if its block is one of the view's.
+    fn object_of(&self, view: &SelectView, instance: usize) -> Option<&LodObject> {
+        self.blocks.object_of(instance).filter(|_| instance < (BLOCK * view.blocks) as usize)
+    }
+}
+
+/// The outputs on the device.
+struct Outputs {
+    allowed: Poisoned<f32>,
+    decisions: Poisoned<u32>,
+    rows: Poisoned<[f32; 4]>,
+    counts: Poisoned<u32>,
+}
+
+/// What the kernel wrote.
+#[derive(Clone, PartialEq)]
+struct Found {
+    allowed: Vec<f32>,
+    decisions: Vec<u32>,
+    rows: Vec<[f32; 4]>,
+    counts: Vec<u32>,
+}
+
+/// Whether an output's end is untouched, by its name.
+type Ends = Vec<(&'static str, Comparison)>;
+
+impl Outputs {
+    fn new(gpu: &Gpu, instances: usize) -> Result<Self, GpuError> {
+        Ok(Self {
+            allowed: Poisoned::new(gpu, instances)?,
+            decisions: Poisoned::new(gpu, instances)?,
+            rows: Poisoned::new(gpu, 3 * instances)?,
+            counts: Poisoned::new(gpu, instances / (BLOCK / OBJECT_LISTS) as usize)?,
+        })
+    }
+
+    /// Runs the kernel, with the allowed displacements of the views before.
+    fn run(&self, gpu: &Gpu, scene: &Scene, view: &SelectView) -> Result<(Ends, Found), Error> {
+        self.decisions.poison(gpu)?;
+        self.rows.poison(gpu)?;
+        self.counts.poison(gpu)?;
+        let buffers = SelectBuffers {
+            view: &Uniform::new(gpu, "view", view)?,
+            objects: &Buffer::from_slice(gpu, "objects", &scene.blocks.objects)?,
+            block_objects: &Buffer::from_slice(gpu, "block_objects", &scene.blocks.block_objects)?,
+            instances: &Buffer::from_slice(gpu, "instances", &scene.instances)?,
+            allowed: &self.allowed.buffer,
+            decisions: &self.decisions.buffer,
+            rows: &self.rows.buffer,
+            counts: &self.counts.buffer,
+        };
+        let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let mut found = Found { allowed: vec![], decisions: vec![], rows: vec![], counts: vec![] };
+        let ends = vec![
+            ("allowed", read(gpu, &self.allowed, &mut found.allowed)?),
+            ("decisions", read(gpu, &self.decisions, &mut found.decisions)?),
+            ("rows", read(gpu, &self.rows, &mut found.rows)?),
+            ("counts", read(gpu, &self.counts, &mut found.counts)?),
+        ];
+        Ok((ends, found))
+    }
+}
+
+/// Reads an output, and compares nothing but its end.
+fn read<T: bytemuck::Pod>(gpu: &Gpu, output: &Poisoned<T>, to: &mut Vec<T>) -> Result<Comparison, GpuError> {
+    output.check(gpu, |values| {
+        to.extend_from_slice(values);
+        compare::exact(&[0], &[0])
+    })
+}
+
+/// What is known of an instance's allowed displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum State {
+    /// It was never written.
+    Untouched,
+    /// No view has seen the instance.
+    Unseen,
+    /// It lies between these.
+    Within(f32, f32),
+}
+
+/// What may be decided for an instance, whichever way rounding goes.
+struct Range {
+    may_be_unseen: bool,
+    may_be_seen: bool,
+    levels: [u32; 2],
+    allowed: [f32; 2],
+}
+
+impl Range {
+    /// The displacement that a camera allows, and how far a sphere reaches into the view volume, change with the sphere's
+    /// radius at least as much as with the rounding of its centre; so two radii bound what rounding may decide.
+    fn of(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Self {
+        let (center, radius) = placed_sphere(instance, view.cell);
+        let scale = instance.largest_scale();
+        let farthest = view.cameras().iter().map(|camera| camera.eye.length()).fold(0.0, f32::max);
+        let farthest = view.planes.iter().map(|plane| plane.w.abs()).fold(farthest, f32::max);
+        let lengths = 2.0 * (instance.position(view.cell).length() + center.length() + radius + farthest);
+        let slack = 2.0 * POSITION_SLACK * lengths;
+        let [less, more] =
+            [radius + slack, radius - slack].map(|radius| view_allows(view, center, radius, scale));
+        let allowed = [less * (1.0 - FORMULA), more * (1.0 + FORMULA)];
+        let level =
+            |allowed: f32| level_within(object.levels, &object.errors, object.mesh_fraction * allowed);
+        let is_shown = is_shown(view, object, instance);
+        Self {
+            may_be_seen: is_shown && depth_inside(view, center, radius + slack) >= 0.0,
+            may_be_unseen: !is_shown || depth_inside(view, center, radius - slack) < 0.0,
+            levels: allowed.map(level),
+            allowed,
+        }
+    }
+
+    /// Whether rounding may decide either way.
+    fn touches(&self) -> bool {
+        self.may_be_seen && (self.may_be_unseen || self.levels[0] != self.levels[1])
+    }
+
+    /// Whether a decision is one of those that are right.
+    fn permits(&self, decision: u32, instance: &SceneInstance) -> bool {
+        let Some(list) = decision.checked_sub(1) else { return self.may_be_unseen };
+        let is_right = list % 2 == u32::from(instance.is_mirrored());
+        self.may_be_seen && is_right && (self.levels[0]..=self.levels[1]).contains(&(list / 2))
+    }
+}
+
+fn judgement(is_right: bool, touches: bool) -> Judgement {
+    Judgement {
+        ratio: if is_right { 0.0 } else { f64::INFINITY },
+        error: f64::from(u8::from(!is_right)),
+        touches,
+    }
+}
+
+impl Found {
+    /// Compares the outputs after a view. `state` is what is known after the views before, and becomes that after this one.
+    fn compared(
+        &self,
+        scene: &Scene,
+        view: &SelectView,
+        state: &mut [State],
+    ) -> [(&'static str, Comparison); 4] {
+        [
+            ("decisions", self.compared_decisions(scene, view)),
+            ("counts", self.compared_counts(scene, view)),
+            ("rows", self.compared_rows(scene, view)),
+            ("allowed", self.compared_allowed(scene, view, state)),
+        ]
+    }
+
+    fn compared_decisions(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let judge = |(index, decision): (usize, &u32)| match scene.object_of(view, index) {
+            None => judgement(*decision == POISON, false),
+            Some(object) => {
+                let instance = &scene.instances[index];
+                let range = Range::of(view, object, instance);
+                judgement(range.permits(*decision, instance), range.touches())
+            }
+        };
+        let judgements: Vec<Judgement> = self.decisions.iter().enumerate().map(judge).collect();
+        each(&judgements, "wrong decisions", MAY_TOUCH, |index| {
+            let expected =
+                scene.object_of(view, index).map(|object| select(view, object, &scene.instances[index]));
+            format!("{:#x} instead of {expected:?}", self.decisions[index])
+        })
+    }
+
+    fn compared_counts(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let mut expected = Vec::with_capacity(self.counts.len());
+        for (block, decisions) in self.decisions.chunks(BLOCK as usize).enumerate() {
+            match scene.object_of(view, block * BLOCK as usize) {
+                Some(_) if decisions.iter().all(|decision| *decision <= OBJECT_LISTS) => {
+                    expected.extend(counts(decisions))
+                }
+                _ => expected.extend([POISON; OBJECT_LISTS as usize]),
+            }
+        }
+        compare::exact(&self.counts, &expected)
+    }
+
+    fn compared_rows(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let mut judgements = Vec::with_capacity(4 * self.rows.len());
+        for (index, rows) in self.rows.chunks(3).enumerate() {
+            let instance = &scene.instances[index];
+            let is_seen = self.decisions[index] != 0 && scene.object_of(view, index).is_some();
+            if !is_seen {
+                let values = rows.iter().flatten().map(|value| judgement(value.to_bits() == POISON, false));
+                judgements.extend(values);
+                continue;
+            }
+            let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
+            let lengths = 256.0 + at.abs().max_element();
+            for (axis, row) in rows.iter().enumerate() {
+                let columns = [x, y, z].into_iter().zip(instance.scale);
+                let parts = columns.map(|(column, scale)| (column[axis], AXES_BOUND * scale.abs()));
+                let parts = parts.chain([(at[axis], POSITION_BOUND * lengths)]);
+                judgements.extend(parts.zip(row).map(|((expected, bound), value)| {
+                    let error = f64::from((value - expected).abs());
+                    Judgement { ratio: error / f64::from(bound), error, touches: false }
+                }));
+            }
+        }
+        each(&judgements, "units", MAY_TOUCH, |at| format!("{:?} of instance {}", self.rows[at / 4], at / 12))
+    }
+
+    fn compared_allowed(&self, scene: &Scene, view: &SelectView, state: &mut [State]) -> Comparison {
+        let mut judgements = Vec::with_capacity(self.allowed.len());
+        for (index, allowed) in self.allowed.iter().enumerate() {
+            if let Some(object) = scene.object_of(view, index) {
+                let range = Range::of(view, object, &scene.instances[index]).allowed;
+                let before = if view.is_first == 0 { state[index] } else { State::Unseen };
+                state[index] = match (before, self.decisions[index]) {
+                    (before, 0) => before,
+                    (State::Within(low, high), _) => State::Within(low.min(range[0]), high.min(range[1])),
+                    _ => State::Within(range[0], range[1]),
+                };
+            }
+            judgements.push(match state[index] {
+                State::Untouched => judgement(allowed.to_bits() == POISON, false),
+                State::Unseen => judgement(*allowed == UNSEEN_ALLOWED, false),
+                State::Within(low, high) => judgement((low..=high).contains(allowed), high > 1.01 * low),
+            });
+        }
+        each(&judgements, "wrong displacements", 4.0 * MAY_TOUCH, |at| {
+            format!("{} instead of {:?} of instance {at}", self.allowed[at], state[at])
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lod::select::reference::merged;
+
+    /// What the reference writes.
+    fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
+        let count = scene.instances.len();
+        let poison = f32::from_bits(POISON);
+        let mut found = Found {
+            allowed: allowed.to_vec(),
+            decisions: vec![POISON; count],
+            rows: vec![[poison; 4]; 3 * count],
+            counts: vec![POISON; count / 4],
+        };
+        for index in 0..count {
+            let Some(object) = scene.object_of(view, index) else { continue };
+            let selected = select(view, object, &scene.instances[index]);
+            let before = (view.is_first == 0).then(|| allowed[index]);
+            found.allowed[index] = merged(before, selected.as_ref());
+            found.decisions[index] = selected.map_or(0, |selected| selected.decision);
+            if let Some(selected) = selected {
+                found.rows[3 * index..][..3].copy_from_slice(&selected.rows);
+            }
+        }
+        for block in 0..count / 64 {
+            if scene.object_of(view, 64 * block).is_some() {
+                found.counts[16 * block..][..16]
+                    .copy_from_slice(&counts(&found.decisions[64 * block..][..64]));
+            }
+        }
+        found
+    }
+
+    fn scene_and_view() -> (Scene, SelectView) {
+        let [(_, view), ..] = frame().expect("valid");
+        (Scene::new(7, &[3, 2]), SelectView { blocks: 7, ..view })
+    }
+
+    /// Which comparisons fail.
+    fn faults(scene: &Scene, view: &SelectView, found: &Found) -> Vec<&'static str> {
+        let mut state = vec![State::Untouched; scene.instances.len()];
+        let compared = found.compared(scene, view, &mut state);
+        compared.into_iter().filter(|(_, comparison)| !comparison.holds).map(|(what, _)| what).collect()
+    }
+
+    #[test]
+    fn what_is_wrong_of_one_instance_is_seen() {
+        let (scene, view) = scene_and_view();
+        let count = scene.instances.len();
+        let right = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
+        assert_eq!(faults(&scene, &view, &right), Vec::<&str>::new());
+        let seen = right.decisions.iter().position(|decision| (1..=16).contains(decision)).expect("some");
+        let unseen = right.decisions.iter().position(|decision| *decision == 0).expect("some");
+        let foreign = right.decisions.iter().position(|decision| *decision == POISON).expect("some");
+        let with = |change: &dyn Fn(&mut Found)| {
+            let mut found = right.clone();
+            change(&mut found);
+            faults(&scene, &view, &found)
+        };
+        assert_eq!(with(&|found| found.decisions[seen] ^= 3)[0], "decisions");
+        assert_eq!(with(&|found| found.decisions[unseen] = 1)[0], "decisions");
+        assert_eq!(with(&|found| found.decisions[foreign] = 0), ["decisions"]);
+        assert_eq!(with(&|found| found.counts[seen / 4] += 1), ["counts"]);
+        assert_eq!(with(&|found| found.counts[foreign / 64 * 16] = 0), ["counts"]);
+        assert_eq!(with(&|found| found.rows[3 * seen + 1][3] += 1e-3), ["rows"]);
+        assert_eq!(with(&|found| found.rows[3 * seen][0] = f32::NAN), ["rows"]);
+        assert_eq!(with(&|found| found.rows[3 * unseen][0] = 0.0), ["rows"]);
+        assert_eq!(with(&|found| found.allowed[seen] *= 1.02), ["allowed"]);
+        assert_eq!(with(&|found| found.allowed[unseen] = 0.0), ["allowed"]);
+        assert_eq!(with(&|found| found.allowed[foreign] = -1.0), ["allowed"]);
+    }
+
+    /// A second view must keep what the first one allows where that is less, and where it does not see the instance.
+    #[test]
+    fn a_view_that_forgets_the_one_before_is_seen() {
+        let (scene, first) = scene_and_view();
+        let mut second = SelectView { is_first: 0, ..first };
+        // It allows more, and its planes let fewer through.
+        second.cameras[0].pixels *= 3.0;
+        second.planes[1].w -= 40.0;
+        let count = scene.instances.len();
+        let poison = vec![f32::from_bits(POISON); count];
+        let before = right(&scene, &first, &poison);
+        let compared = |found: &Found| {
+            let mut state = vec![State::Untouched; count];
+            before.compared(&scene, &first, &mut state);
+            found.compared(&scene, &second, &mut state).map(|(_, comparison)| comparison.holds)
+        };
+        assert_eq!(compared(&right(&scene, &second, &before.allowed)), [true; 4]);
+        let forgetful = right(&scene, &SelectView { is_first: 1, ..second }, &before.allowed);
+        assert_eq!(compared(&forgetful), [true, true, true, false]);
+    }
+
+    /// An instance whose sphere touches a plane may be seen or not; only few may.
+    #[test]
+    fn one_at_an_edge_may_go_either_way_and_few_may_be() {
+        let (mut scene, view) = scene_and_view();
+        let own: Vec<usize> =
+            (0..scene.instances.len()).filter(|index| scene.object_of(&view, *index).is_some()).collect();
+        let side = view.planes[0];
+        let edge = |instance: &mut SceneInstance| {
+            let at = glam::Vec3::new(120.0, 25.0, 120.0);
+            // As far outside as its radius, up to rounding.
+            let at = at - side.truncate() * (side.truncate().dot(at) + side.w + 1.0);
+            let rounding = POSITION_SLACK * (2.0 * at.length() + side.w.abs() + 1.0);
+            let at = at - side.truncate() * rounding;
+            *instance = SceneInstance {
+                cell: view.cell.to_array(),
+                offset: at.to_array(),
+                ..SceneInstance::new([0.0, 0.0, 0.0, 1.0])
+            };
+        };
+        edge(&mut scene.instances[own[0]]);
+        let poison = vec![f32::from_bits(POISON); scene.instances.len()];
+        let one = right(&scene, &view, &poison);
+        let touching = one.compared_decisions(&scene, &view).spread.expect("given").touching;
+        assert_eq!(touching, 1);
+        let mut other = one.clone();
+        other.decisions[own[0]] = if one.decisions[own[0]] == 0 { 1 } else { 0 };
+        assert!(other.compared_decisions(&scene, &view).holds);
+        own[..9].iter().for_each(|index| edge(&mut scene.instances[*index]));
+        let nine = right(&scene, &view, &poison).compared_decisions(&scene, &view);
+        assert!(!nine.holds && nine.fault.expect("a fault").contains("9 of 448 touch"));
+    }
+}

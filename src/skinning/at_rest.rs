@@ -1,0 +1,56 @@
+//! A model that does not move: its meshes at rest, baked into the model's space, so that drawing them needs no
+//! skinning.
+
+use super::pose::{Moment, Pose};
+use super::posed::check_range;
+use crate::InputError;
+use crate::asset::skeleton::Bone;
+use crate::asset::{Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
+
+/// The model at rest: the positions, normals and tangents of all meshes are what skinning makes of them without a
+/// clip, with the morph weights that they have then. Its only bone and its only skin change nothing, so that skinning
+/// gives the same positions again. Triangles keep their order, since they are counter-clockwise once bones have
+/// transformed them ([`Mesh::indices`]), and so do vertices. There are no clips, morph targets or levels of detail;
+/// materials and images are those of the model.
+///
+/// # Errors
+/// [`InputError`] for a mesh or a skin that does not match the model, and for vertices outside the range of
+/// coordinates, as large scales produce.
+pub fn at_rest(model: &Model) -> Result<Model, InputError> {
+    let bone = Bone { name: "model".to_owned(), parent: None, rest: Transform::IDENTITY };
+    let identity = glam::Mat4::IDENTITY.to_cols_array();
+    Ok(Model {
+        skeleton: Skeleton::of_joints(vec![bone])?,
+        skins: vec![Skin { name: "model".to_owned(), bones: vec![0], inverse_binds: vec![identity] }],
+        clips: Vec::new(),
+        meshes: (0..model.meshes.len()).map(|mesh| baked(model, mesh)).collect::<Result<_, _>>()?,
+        skinned: 0,
+        materials: model.materials.clone(),
+        images: model.images.clone(),
+    })
+}
+
+fn baked(model: &Model, index: usize) -> Result<Mesh, InputError> {
+    let mesh = &model.meshes[index];
+    mesh.validate(&model.skins)?;
+    model.skins[mesh.skin].validate(&model.skeleton)?;
+    let vertices = Pose::new(model, mesh, Moment::Rest).vertices(mesh);
+    check_range(index, &vertices)?;
+    let one = || vec![Influence { bone: 0, weight: 1.0 }];
+    Ok(Mesh {
+        name: mesh.name.clone(),
+        skin: 0,
+        positions: vertices.iter().map(|vertex| vertex.position).collect(),
+        normals: vertices.iter().map(|vertex| vertex.normal).collect(),
+        tangents: vertices.iter().map(|vertex| vertex.tangent).collect(),
+        uv: mesh.uv.clone(),
+        indices: mesh.indices.clone(),
+        double_sided: mesh.double_sided,
+        material: mesh.material,
+        influences: Influences::new("influences", 1, vertices.iter().map(|_| one()))?,
+        targets: Vec::new(),
+        weights: Vec::new(),
+        weight_keys: Vec::new(),
+        levels: Vec::new(),
+    })
+}

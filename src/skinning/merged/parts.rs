@@ -1,0 +1,102 @@
+//! Parts: sets of meshes that one pipeline draws.
+
+use crate::InputError;
+use crate::asset::material::{Alpha, Sampling};
+use crate::asset::{Material, Mesh, Model};
+
+/// The largest number of parts of an object, unless morphed meshes make it larger.
+pub const MAX_PARTS: usize = 4;
+
+/// What the meshes of a part have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PartKey {
+    /// Whether alpha leaves out pixels: [`Alpha::Mask`] or [`Alpha::Dithered`].
+    pub cut_out: bool,
+    /// Whether triangles are also visible from inside.
+    pub double_sided: bool,
+    /// How textures are sampled: as the texture of the base colour says, or without one the normal map's. `None` if
+    /// there are no textures.
+    pub sampling: Option<Sampling>,
+}
+
+impl PartKey {
+    /// The key of one of a model's meshes.
+    ///
+    /// # Errors
+    /// As [`Model::material`].
+    pub fn of(model: &Model, mesh: &Mesh) -> Result<Self, InputError> {
+        let material = model.material(mesh)?;
+        let texture = material.and_then(|material| material.texture);
+        Ok(Self {
+            cut_out: material.is_some_and(|Material { alpha, .. }| *alpha != Alpha::Opaque),
+            double_sided: mesh.double_sided,
+            sampling: texture.map(|texture| texture.sampling),
+        })
+    }
+}
+
+/// The meshes of a part.
+pub(super) struct Sorted {
+    /// Index of the group of meshes that become one.
+    pub group: usize,
+    pub key: PartKey,
+    /// Indices of the meshes in the model, ascending; there is at least one.
+    pub meshes: Vec<usize>,
+}
+
+impl Sorted {
+    fn triangles(&self, model: &Model) -> usize {
+        self.meshes.iter().map(|mesh| model.meshes[*mesh].indices.len()).sum()
+    }
+
+    fn is_beside(&self, other: &Self) -> bool {
+        let pair = |part: &Self| (part.group, part.key.cut_out, part.key.double_sided);
+        pair(self) == pair(other)
+    }
+}
+
+/// The parts of all groups, those of each group together. `keys` has the key of every mesh of the model.
+pub(super) fn parts(model: &Model, groups: &[Vec<usize>], keys: &[PartKey]) -> Vec<Sorted> {
+    let mut parts: Vec<Sorted> = Vec::new();
+    for (group, meshes) in groups.iter().enumerate() {
+        for mesh in meshes {
+            let key = keys[*mesh];
+            match parts.iter_mut().find(|part| part.group == group && part.key == key) {
+                Some(part) => part.meshes.push(*mesh),
+                None => parts.push(Sorted { group, key, meshes: vec![*mesh] }),
+            }
+        }
+    }
+    while let Some(least) =
+        (0..parts.len()).find(|at| parts[*at].key.sampling.is_none() && has_other(&parts, *at))
+    {
+        give_up(model, &mut parts, least);
+    }
+    while parts.len() > MAX_PARTS {
+        let others = (0..parts.len()).filter(|at| has_other(&parts, *at));
+        let Some(least) = others.min_by_key(|at| parts[*at].triangles(model)) else { break };
+        give_up(model, &mut parts, least);
+    }
+    parts
+}
+
+/// Whether another part differs in nothing but its sampling.
+fn has_other(parts: &[Sorted], at: usize) -> bool {
+    parts.iter().enumerate().any(|(other, part)| other != at && part.is_beside(&parts[at]))
+}
+
+/// Adds the meshes of a part to the part with the most triangles among those that differ in nothing but their
+/// sampling; of several, to the first.
+fn give_up(model: &Model, parts: &mut Vec<Sorted>, at: usize) {
+    let given = parts.remove(at);
+    let mut most: Option<&mut Sorted> = None;
+    for part in parts.iter_mut().filter(|part| part.is_beside(&given)) {
+        if most.as_ref().is_none_or(|most| part.triangles(model) > most.triangles(model)) {
+            most = Some(part);
+        }
+    }
+    if let Some(most) = most {
+        most.meshes.extend(given.meshes);
+        most.meshes.sort_unstable();
+    }
+}
