@@ -1,9 +1,9 @@
-//! Materials: the base colours of glTF, their textures, and the use of alpha.
+//! Materials: the base colours of glTF, their textures, normal maps, and the use of alpha.
 
 /// The longest edge of an image in texels: WebGPU's default limit.
 pub const MAX_TEXELS: u32 = 8192;
 
-/// The base colour of a surface.
+/// The base colour and the normal map of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The material's name in the file.
@@ -12,6 +12,13 @@ pub struct Material {
     pub color: [f32; 4],
     /// The texture of sRGB colour and linear alpha.
     pub texture: Option<Texture>,
+    /// The normal map, if there is one: linear red, green and blue from 0 to 1 stand for −1 to 1 along the tangent,
+    /// against the bitangent and along the normal. Green therefore points up in the image, as in glTF, and the
+    /// bitangent of [`Mesh::tangents`](crate::asset::Mesh::tangents) points down. It is read at the same texture
+    /// coordinates as the texture.
+    pub normal: Option<Texture>,
+    /// The factor of what the normal map says along the tangent and against the bitangent; the result is normalized.
+    pub normal_scale: f32,
     /// How alpha is used.
     pub alpha: Alpha,
 }

@@ -22,7 +22,7 @@ pub struct Model {
     pub skinned: usize,
     /// The materials of the meshes.
     pub materials: Vec<Material>,
-    /// The images of textures: sRGB with linear alpha, the top row first.
+    /// The images of textures, the top row first: sRGB with linear alpha, and those of normal maps linear.
     pub images: Vec<image::RgbaImage>,
 }
 
@@ -30,15 +30,17 @@ impl Model {
     /// The material of a mesh, if it has one.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model does not have, and for an image without texels.
+    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a
+    /// scale of the normal map that is not finite.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
         let Some(material) = self.materials.get(index) else {
             let bound = format!("must be below {}", self.materials.len());
             return Err(InputError::new("mesh.material", index, bound));
         };
-        if let Some(texture) = material.texture {
-            let path = format!("materials[{index}].texture.image");
+        for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
+            let Some(texture) = texture else { continue };
+            let path = format!("materials[{index}].{field}.image");
             match self.images.get(texture.image) {
                 None => {
                     let bound = format!("must be below {}", self.images.len());
@@ -49,6 +51,10 @@ impl Model {
                 }
                 Some(_) => {}
             }
+        }
+        if !material.normal_scale.is_finite() {
+            let path = format!("materials[{index}].normal_scale");
+            return Err(InputError::new(path, material.normal_scale, "must be finite"));
         }
         Ok(Some(material))
     }

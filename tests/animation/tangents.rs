@@ -162,7 +162,7 @@ fn tangents_go_along_the_normal_texture() {
     surface.attribute("TEXCOORD_1", "VEC2", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0]);
     surface.primitive()["material"] = json!(0);
     surface.scene.json["images"] = json!([{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=="}]);
-    surface.scene.json["textures"] = json!([{"source": 0}, {}]);
+    surface.scene.json["textures"] = json!([{"source": 0}, {"source": 0}]);
     surface.scene.json["materials"] = json!([{"normalTexture": {"index": 1, "texCoord": 1}}]);
     assert_eq!(tangent(&surface), [0.0, 1.0, 0.0, -1.0]);
     let turned = json!({"index": 0, "extensions": {"KHR_texture_transform": {"rotation": 1.5707964}}});
@@ -172,8 +172,10 @@ fn tangents_go_along_the_normal_texture() {
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
     surface.scene.json["materials"][0].as_object_mut().expect("an object").remove("normalTexture");
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
-    // The normal texture names a set of coordinates that does not exist.
-    surface.scene.json["materials"] = json!([{"normalTexture": {"index": 1, "texCoord": 5}}]);
+    // The normal texture, which is left out beside a base colour at other coordinates, names a set that does not exist.
+    let of_color = json!({"baseColorTexture": {"index": 0}});
+    surface.scene.json["materials"] =
+        json!([{"pbrMetallicRoughness": of_color, "normalTexture": {"index": 1, "texCoord": 5}}]);
     assert_eq!(tangent(&surface), [1.0, 0.0, 0.0, -1.0]);
 }
 

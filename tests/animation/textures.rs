@@ -67,6 +67,8 @@ fn a_material_is_read() {
         name: "fur".to_owned(),
         color: [1.0, 0.5, 0.25, 1.0],
         texture: Some(Texture { image: 0, sampling }),
+        normal: None,
+        normal_scale: 1.0,
         alpha: Alpha::Mask(0.25),
     };
     assert_eq!((model.meshes[0].material, &model.materials[..]), (Some(0), &[expected][..]));
@@ -189,6 +191,123 @@ fn texture_coordinates_are_those_of_the_texture() {
         json!({"index": 0, "extensions": {"KHR_texture_transform": {"scale": [1e30, 1.0]}}}),
     );
     skinned.refused("meshes[0].primitives[0].attributes.TEXCOORD_0[1][0]", "within");
+}
+
+/// A second texture, with an image and a sampler of its own, as the normal map of the material.
+fn add_normals(skinned: &mut Skinned) -> RgbaImage {
+    let normals = RgbaImage::from_fn(2, 2, |x, y| Rgba([128 + 90 * x as u8, 128 + 60 * y as u8, 220, 255]));
+    let view = skinned.0.view(&encoded(&normals, ImageFormat::Png));
+    let list = |skinned: &mut Skinned, name: &str, value: serde_json::Value| {
+        skinned.0.json[name].as_array_mut().expect("a list").push(value);
+    };
+    list(skinned, "images", json!({"bufferView": view, "mimeType": "image/png"}));
+    list(skinned, "samplers", json!({"magFilter": 9728}));
+    list(skinned, "textures", json!({"source": 1, "sampler": 1}));
+    skinned.0.json["materials"][0]["normalTexture"] = json!({"index": 1, "scale": 0.75});
+    normals
+}
+
+#[test]
+fn normal_maps_are_read_with_their_scale() {
+    let mut skinned = textured();
+    let normals = add_normals(&mut skinned);
+    let found = model(&skinned);
+    let material = &found.materials[0];
+    let sampling = Sampling { magnified: Filter::Nearest, ..Sampling::default() };
+    assert_eq!(material.texture.map(|texture| texture.image), Some(0));
+    assert_eq!((material.normal, material.normal_scale), (Some(Texture { image: 1, sampling }), 0.75));
+    assert_eq!(found.images, [picture(), normals.clone()]);
+    // Without a scale it is 1, and one image serves both.
+    skinned.0.json["materials"][0]["normalTexture"] = json!({"index": 0});
+    let found = model(&skinned);
+    let material = &found.materials[0];
+    assert_eq!((material.normal, material.normal_scale, found.images.len()), (material.texture, 1.0, 1));
+    // Without a texture of the base colour, the normal map decides about texture coordinates.
+    let second = skinned.0.floats("VEC2", &[0.5, 0.25, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    skinned.attribute("TEXCOORD_1", second);
+    let transform = json!({"KHR_texture_transform": {"scale": [2.0, 4.0], "texCoord": 1}});
+    skinned.0.json["materials"] =
+        json!([{"normalTexture": {"index": 1, "scale": -2, "extensions": transform}}]);
+    let found = model(&skinned);
+    assert_eq!(
+        (found.materials[0].normal, found.materials[0].normal_scale),
+        (Some(Texture { image: 0, sampling }), -2.0)
+    );
+    assert_eq!((found.meshes[0].uv[0], &found.images[..]), ([1.0, 1.0], &[normals][..]));
+    // Materials and images may be left out.
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("bare.gltf");
+    std::fs::write(&file, skinned.0.gltf()).expect("written");
+    let bare = Model::from_file_bare(&file).expect("valid");
+    assert_eq!((bare.materials.len(), bare.images.len(), bare.meshes[0].uv[0]), (0, 0, [0.0, 1.0]));
+}
+
+/// A mesh has one set of texture coordinates, so the normal map must be read there too.
+#[test]
+fn normal_maps_that_lie_elsewhere_are_left_out() {
+    let mut skinned = textured();
+    add_normals(&mut skinned);
+    let second = skinned.0.floats("VEC2", &[0.5, 0.25, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    skinned.attribute("TEXCOORD_1", second);
+    let moved = |value: serde_json::Value| json!({"KHR_texture_transform": value});
+    let same = json!({"scale": [2.0, 1.0], "offset": [0.5, 0.0]});
+    let mut found = |of_color: serde_json::Value, of_normals: serde_json::Value| {
+        let material = &mut skinned.0.json["materials"][0];
+        material["pbrMetallicRoughness"]["baseColorTexture"] = of_color;
+        material["normalTexture"] = of_normals;
+        let model = model(&skinned);
+        (model.materials[0].normal.is_some(), model.images.len())
+    };
+    let with = |index: u32, set: u32, transform: &serde_json::Value| json!({"index": index, "texCoord": set, "extensions": moved(transform.clone())});
+    assert_eq!(found(json!({"index": 0}), json!({"index": 1})), (true, 2));
+    assert_eq!(found(json!({"index": 0}), json!({"index": 1, "texCoord": 1})), (false, 1));
+    assert_eq!(found(json!({"index": 0, "texCoord": 1}), json!({"index": 1, "texCoord": 1})), (true, 2));
+    assert_eq!(found(json!({"index": 0}), with(1, 0, &same)), (false, 1));
+    assert_eq!(found(with(0, 0, &same), with(1, 0, &same)), (true, 2));
+    assert_eq!(found(with(0, 0, &same), json!({"index": 1})), (false, 1));
+    assert_eq!(found(json!({"index": 0}), with(1, 0, &json!({"rotation": 0.0}))), (true, 2));
+    assert_eq!(found(json!({"index": 0, "texCoord": 1}), with(1, 0, &json!({"texCoord": 1}))), (true, 2));
+}
+
+#[test]
+fn what_is_no_normal_map_is_refused() {
+    let wrong = |field: &str, words: &str, change: &dyn Fn(&mut Skinned)| {
+        let mut skinned = textured();
+        add_normals(&mut skinned);
+        change(&mut skinned);
+        skinned.refused(field, words);
+    };
+    wrong("materials[0].normalTexture.index", "must lie in", &|skinned| {
+        skinned.0.json["materials"][0]["normalTexture"]["index"] = json!(2);
+    });
+    wrong("materials[0].normalTexture.scale", "must be finite", &|skinned| {
+        skinned.0.json["materials"][0]["normalTexture"]["scale"] = json!(1e300);
+    });
+    wrong("textures[1].source", "must be given", &|skinned| skinned.0.json["textures"][1] = json!({}));
+    wrong("images[1]", "bufferView or a uri", &|skinned| skinned.0.json["images"][1] = json!({}));
+    wrong("samplers[1].wrapS", "must be one of", &|skinned| {
+        skinned.0.json["samplers"][1] = json!({"wrapS": 1});
+    });
+    wrong("materials[0].normalTexture.extensions.KHR_texture_transform", "invalid type", &|skinned| {
+        skinned.0.json["materials"][0]["normalTexture"]["extensions"] =
+            json!({"KHR_texture_transform": {"scale": 2}});
+    });
+    let lacking = "meshes[0].primitives[0].attributes.TEXCOORD_3";
+    wrong(lacking, "must be given", &|skinned| {
+        skinned.0.json["materials"][0] = json!({"normalTexture": {"index": 1, "texCoord": 3}});
+    });
+    // In models that were not imported.
+    let mut skinned = textured();
+    add_normals(&mut skinned);
+    let refused = |change: &dyn Fn(&mut Model)| {
+        let mut model = model(&skinned);
+        change(&mut model);
+        model.material(&model.meshes[0]).expect_err("refused").path
+    };
+    let image = |model: &mut Model, image| model.materials[0].normal.as_mut().expect("there").image = image;
+    assert_eq!(refused(&|model| image(model, 2)), "materials[0].normal.image");
+    assert_eq!(refused(&|model| model.images[1] = RgbaImage::new(0, 0)), "materials[0].normal.image");
+    assert_eq!(refused(&|model| model.materials[0].normal_scale = f32::NAN), "materials[0].normal_scale");
 }
 
 #[test]

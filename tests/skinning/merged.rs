@@ -115,7 +115,14 @@ fn materials(samplings: usize) -> Vec<Material> {
         let texture =
             (number / 3).checked_sub(1).map(|number| Texture { image: 0, sampling: sampling(number) });
         let alpha = [Alpha::Opaque, Alpha::Mask(0.5), Alpha::Dithered][number % 3];
-        Material { name: format!("{number}"), color: [1.0; 4], texture, alpha }
+        Material {
+            name: format!("{number}"),
+            color: [1.0; 4],
+            texture,
+            normal: None,
+            normal_scale: 1.0,
+            alpha,
+        }
     };
     (0..3 * (samplings + 1)).map(material).collect()
 }

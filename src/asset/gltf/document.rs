@@ -6,9 +6,11 @@ use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
 use base64::Engine as _;
+use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::mesh::Semantic;
 use gltf_json::validation::{Checked, Error as Fault, Validate};
 use gltf_json::{Index, Root, buffer};
+use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::budget::Budget;
@@ -20,6 +22,8 @@ pub struct Document<'a> {
     pub root: Root,
     /// Whether some meshes are compressed with Draco and have no uncompressed form.
     pub is_draco: bool,
+    /// For each material, the `KHR_texture_transform` of its normal texture, which gltf-json does not read.
+    pub normal_transforms: Vec<Option<TextureTransform>>,
     /// What the document may allocate.
     pub budget: Budget,
     binary: Option<&'a [u8]>,
@@ -69,6 +73,7 @@ impl<'a> Document<'a> {
         leave_out_channels_without_node(&mut value);
         leave_out_own_attributes(&mut value);
         add_nodes_of_scenes(&mut value);
+        let normal_transforms = normal_transforms(&value)?;
         let root: Root = serde_path_to_error::deserialize(value).map_err(|error| {
             let path = error.path().to_string();
             let field = if path == "." { "glTF".to_owned() } else { path };
@@ -79,7 +84,16 @@ impl<'a> Document<'a> {
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();
         let budget = Budget::default();
         budget.add_bytes(bytes.len());
-        Ok(Self { root, is_draco, budget, binary, folder, buffers, files: RefCell::default() })
+        Ok(Self {
+            root,
+            is_draco,
+            normal_transforms,
+            budget,
+            binary,
+            folder,
+            buffers,
+            files: RefCell::default(),
+        })
     }
 
     /// The bytes of a buffer view, and its stride.
@@ -191,6 +205,21 @@ fn check_required(value: &Value, is_bare: bool) -> Result<(), InputError> {
 fn required_names(value: &Value) -> impl Iterator<Item = &str> {
     let required = value.pointer("/extensionsRequired").and_then(Value::as_array);
     required.into_iter().flatten().filter_map(Value::as_str)
+}
+
+/// For each material, the `KHR_texture_transform` of its normal texture.
+fn normal_transforms(value: &Value) -> Result<Vec<Option<TextureTransform>>, InputError> {
+    let materials = value.get("materials").and_then(Value::as_array);
+    let transform = |(at, material): (usize, &Value)| {
+        let Some(given) = material.pointer("/normalTexture/extensions/KHR_texture_transform") else {
+            return Ok(None);
+        };
+        TextureTransform::deserialize(given).map(Some).map_err(|error| {
+            let path = format!("materials[{at}].normalTexture.extensions.KHR_texture_transform");
+            InputError::new(path, "unreadable", error.to_string())
+        })
+    };
+    materials.into_iter().flatten().enumerate().map(transform).collect()
 }
 
 /// Removes application-specific attributes, which glTF permits and gltf-json rejects.

@@ -1,11 +1,11 @@
-//! Reads the materials that meshes use: base colour, its texture, and alpha; decodes PNG and JPEG images.
+//! Reads the materials that meshes use: base colour, its texture, normal map, and alpha; decodes PNG and JPEG images.
 
 use std::collections::HashMap;
 use std::io::Cursor;
 
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::{AlphaMode, Material as GltfMaterial};
-use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, WrappingMode};
+use gltf_json::texture::{MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
 use gltf_json::validation::Checked;
 use gltf_json::{Image, Index};
 use image::{ImageFormat, ImageReader, RgbaImage};
@@ -48,18 +48,47 @@ impl Materials {
             return Err(InputError::new(field, color[channel], "must be in 0..=1"));
         }
         let texture = match &base.base_color_texture {
-            Some(info) => Some(self.texture(document, &format!("{of_color}.baseColorTexture"), info)?),
+            Some(info) => {
+                Some(self.texture(document, &format!("{of_color}.baseColorTexture"), info.index)?)
+            }
             None => None,
         };
+        let (normal, normal_scale) = self.normal(document, &path, index)?;
         let alpha = alpha(&path, material)?;
         let name = material.name.clone().unwrap_or_else(|| format!("material_{at}"));
-        self.materials.push(Material { name, color, texture, alpha });
+        self.materials.push(Material { name, color, texture, normal, normal_scale, alpha });
         self.of_materials.insert(at, self.materials.len() - 1);
         Ok(self.materials.len() - 1)
     }
 
-    fn texture(&mut self, document: &Document<'_>, path: &str, info: &Info) -> Result<Texture, InputError> {
-        let at = info.index.value();
+    /// The normal map, and its scale. A map that is not read at the same coordinates as the texture is left out.
+    fn normal(
+        &mut self,
+        document: &Document<'_>,
+        path: &str,
+        index: Index<GltfMaterial>,
+    ) -> Result<(Option<Texture>, f32), InputError> {
+        let material = &document.root.materials[index.value()];
+        let coordinates = [Coordinates::of_color(material), Coordinates::of_normals(document, index)];
+        let info = match (&material.normal_texture, coordinates) {
+            (Some(info), [None, _]) => info,
+            (Some(info), [Some(of_color), Some(of_normals)]) if of_color.are_same(&of_normals) => info,
+            _ => return Ok((None, 1.0)),
+        };
+        let path = format!("{path}.normalTexture");
+        if !info.scale.is_finite() {
+            return Err(InputError::new(format!("{path}.scale"), info.scale, "must be finite"));
+        }
+        Ok((Some(self.texture(document, &path, info.index)?), info.scale))
+    }
+
+    fn texture(
+        &mut self,
+        document: &Document<'_>,
+        path: &str,
+        index: Index<GltfTexture>,
+    ) -> Result<Texture, InputError> {
+        let at = index.value();
         let Some(texture) = document.root.textures.get(at) else {
             return Err(InputError::new(format!("{path}.index"), at, "must exist"));
         };
@@ -164,8 +193,7 @@ fn sampling(path: &str, sampler: &Sampler) -> Result<Sampling, InputError> {
     Ok(Sampling { wrap, magnified, minified, mips })
 }
 
-/// The texture coordinates of a material's base colour, and their transform; `None` if the material has no
-/// texture.
+/// The texture coordinates at which a texture of a material is read, and their transform.
 pub struct Coordinates<'a> {
     /// n of `TEXCOORD_n`.
     pub set: u32,
@@ -174,16 +202,38 @@ pub struct Coordinates<'a> {
 }
 
 impl<'a> Coordinates<'a> {
-    pub fn of(material: &'a GltfMaterial) -> Option<Self> {
+    /// Those of the base colour; `None` if it has no texture.
+    pub fn of_color(material: &'a GltfMaterial) -> Option<Self> {
         let info = material.pbr_metallic_roughness.base_color_texture.as_ref()?;
         let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
-        let set = transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord);
-        Some(Self { set, transform })
+        Some(Self::new(info.tex_coord, transform))
+    }
+
+    /// Those of the normal map; `None` if there is none.
+    pub fn of_normals(document: &'a Document<'_>, index: Index<GltfMaterial>) -> Option<Self> {
+        let info = document.root.materials[index.value()].normal_texture.as_ref()?;
+        let transform = document.normal_transforms.get(index.value()).and_then(Option::as_ref);
+        Some(Self::new(info.tex_coord, transform))
+    }
+
+    /// A transform may name another set.
+    fn new(set: u32, transform: Option<&'a TextureTransform>) -> Self {
+        Self { set: transform.and_then(|transform| transform.tex_coord).unwrap_or(set), transform }
     }
 
     /// Whether there is a transform.
     pub fn is_moved(&self) -> bool {
         self.transform.is_some()
+    }
+
+    /// Whether two textures are read at the same coordinates.
+    fn are_same(&self, other: &Self) -> bool {
+        let key = |coordinates: &Self| {
+            let TextureTransform { offset, rotation, scale, .. } =
+                coordinates.transform.cloned().unwrap_or_default();
+            (coordinates.set, offset.0, rotation.0, scale.0)
+        };
+        key(self) == key(other)
     }
 
     /// Applies the transform: scale, rotation, translation, in this order.

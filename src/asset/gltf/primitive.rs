@@ -119,10 +119,10 @@ impl Reader<'_, '_> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// The coordinates of the base colour's texture, which must exist; without a texture the first set, if
-    /// there is one.
+    /// The coordinates of the base colour's texture, which must exist, or of the normal map if there is no such
+    /// texture; without either the first set, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
-        let Some(texture) = self.material().filter(|_| !self.is_bare).and_then(Coordinates::of) else {
+        let Some(texture) = self.coordinates_of_material() else {
             return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
         };
         let name = format!("TEXCOORD_{}", texture.set);
@@ -135,13 +135,20 @@ impl Reader<'_, '_> {
         Ok(Some(uv))
     }
 
+    /// Where the material's textures are read.
+    fn coordinates_of_material(&self) -> Option<Coordinates<'_>> {
+        let index = self.primitive.material.filter(|_| !self.is_bare)?;
+        let of_color = Coordinates::of_color(&self.document.root.materials[index.value()]);
+        of_color.or_else(|| Coordinates::of_normals(self.document, index))
+    }
+
     /// The coordinates along which tangents run, untransformed, if they differ from the mesh's: those of the
     /// normal texture, or those of the base colour's texture if that has a transform.
     fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
-        let Some(material) = self.material().filter(|_| !self.is_bare) else { return Ok(None) };
-        let base = Coordinates::of(material);
-        let (own, is_moved) = base.map_or((0, false), |base| (base.set, base.is_moved()));
-        let of_normals = material.normal_texture.as_ref().map(|texture| texture.tex_coord);
+        let Some(index) = self.primitive.material.filter(|_| !self.is_bare) else { return Ok(None) };
+        let of_mesh = self.coordinates_of_material();
+        let (own, is_moved) = of_mesh.map_or((0, false), |of_mesh| (of_mesh.set, of_mesh.is_moved()));
+        let of_normals = Coordinates::of_normals(self.document, index).map(|texture| texture.set);
         let is_there = |set: &u32| self.accessor(&Semantic::TexCoords(*set)).is_some();
         let set = of_normals.filter(is_there).unwrap_or(own);
         if set == own && !is_moved {

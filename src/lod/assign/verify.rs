@@ -5,6 +5,7 @@ use glam::Vec4;
 use super::AssignParams;
 use crate::Error;
 use crate::animation::Lod;
+use crate::animation::lod::PackedLod;
 use crate::animation::verify::Draw;
 use crate::gpu::{Buffer, Uniform};
 use crate::harness::Cases;
@@ -32,8 +33,10 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         for levels in [1, 2, 5, 8] {
             let params = params(64 * case, instances, levels);
             let allowed = random_allowed(case, (64 * case + instances) as usize + 64);
-            let (lods, instance_lods) =
-                (Poisoned::<Lod>::new(gpu, instances as usize)?, Poisoned::new(gpu, instances as usize)?);
+            let (lods, instance_lods) = (
+                Poisoned::<PackedLod>::new(gpu, instances as usize)?,
+                Poisoned::new(gpu, instances as usize)?,
+            );
             let buffers = AssignBuffers {
                 params: &Uniform::new(gpu, "params", &params)?,
                 allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
@@ -89,17 +92,17 @@ fn around(params: &AssignParams, allowed: f32) -> [(Lod, InstanceLod); 3] {
 }
 
 /// Units must lie between those of the least and the largest displacement; everything else must be equal.
-fn compared_lods(params: &AssignParams, allowed: &[f32], found: &[Lod]) -> Comparison {
-    let judge = |(found, allowed): (&Lod, &f32)| {
+fn compared_lods(params: &AssignParams, allowed: &[f32], found: &[PackedLod]) -> Comparison {
+    let judge = |(found, allowed): (&PackedLod, &f32)| {
         let [(right, _), (least, _), (largest, _)] = around(params, *allowed);
         let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
-            && Lod { allowed: right.allowed, ..*found } == right;
+            && PackedLod { allowed: right.allowed, ..*found } == right.packed();
         let error = f64::from(found.allowed.abs_diff(right.allowed));
         Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: false }
     };
     let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
     each(&judgements, "units", MAY_TOUCH, |at| {
-        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).0)
+        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).0.packed())
     })
 }
 
@@ -124,24 +127,27 @@ fn compared_instance_lods(params: &AssignParams, allowed: &[f32], found: &[Insta
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shared::animation::gate_state::LOD_HIDDEN;
 
     #[test]
     fn what_is_wrong_of_one_instance_is_seen() {
         let params = params(0, 200, 5);
         let allowed = random_allowed(5, 200);
-        let (lods, instance_lods): (Vec<Lod>, Vec<InstanceLod>) =
-            allowed.iter().map(|allowed| assign(&params, *allowed)).unzip();
+        let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) = (allowed.iter())
+            .map(|allowed| assign(&params, *allowed))
+            .map(|(lod, instance_lod)| (lod.packed(), instance_lod))
+            .unzip();
         assert!(compared_lods(&params, &allowed, &lods).holds);
         assert!(compared_instance_lods(&params, &allowed, &instance_lods).holds);
         let unseen = allowed.iter().position(|allowed| *allowed < 0.0).expect("some");
         let faded =
             instance_lods.iter().position(|lod| (0.1..0.9).contains(&lod.influence_fade)).expect("some");
-        let gate = |at: usize, change: fn(&mut Lod)| {
+        let gate = |at: usize, change: fn(&mut PackedLod)| {
             let mut found = lods.clone();
             change(&mut found[at]);
             compared_lods(&params, &allowed, &found).holds
         };
-        assert!(!gate(unseen, |lod| lod.flags = 0) && !gate(faded, |lod| lod.flags = Lod::HIDDEN));
+        assert!(!gate(unseen, |lod| lod.flags = 0) && !gate(faded, |lod| lod.flags = LOD_HIDDEN));
         assert!(!gate(faded, |lod| lod.allowed += lod.allowed / 1000));
         assert!(!gate(faded, |lod| lod.omega = 0) && !gate(faded, |lod| lod.weight -= 1));
         let skin = |at: usize, change: fn(&mut InstanceLod)| {

@@ -26,7 +26,7 @@ impl PartKey {
     /// As [`Model::material`].
     pub fn of(model: &Model, mesh: &Mesh) -> Result<Self, InputError> {
         let material = model.material(mesh)?;
-        let texture = material.and_then(|material| material.texture);
+        let texture = material.and_then(|material| material.texture.or(material.normal));
         Ok(Self {
             cut_out: material.is_some_and(|Material { alpha, .. }| *alpha != Alpha::Opaque),
             double_sided: mesh.double_sided,
