@@ -1,4 +1,4 @@
-//! Composes every shader of `kernels/` and `wgsl/render/` with WESL and validates the flat result with naga.
+//! Composes every shader of `kernels/` and `wgsl/render/` (but for modules) with WESL and validates the flat result with naga.
 //! Writes it to `OUT_DIR`, with a manifest of entry points, bindings, override constants and structs, and the
 //! modules for shaders outside the crate. An unknown import, an unused binding or an invalid shader fails the
 //! build with file and line.
@@ -40,17 +40,16 @@ mod shaders {
         let mut all = Vec::new();
         for (folder, prefix) in [("kernels", ""), ("wgsl/render", "render/")] {
             for file in shader_files(&root.join(folder)) {
+                if folder != "kernels" && is_module(&file) {
+                    continue;
+                }
                 let stem = file.strip_prefix(root.join(folder)).expect("found below it").with_extension("");
                 let name = format!("{prefix}{}", stem.display());
                 let shader = Shader::compose(&root, &file, name, Keep::Entries);
                 let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
                 std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
                 shader.describe(&mut manifest, &path);
-                if folder == "kernels" {
-                    bindings.add(&root, &file, &shader);
-                } else {
-                    bindings.add_drawing(&root, &file, &shader);
-                }
+                bindings.add(&root, &file, &shader);
                 all.push(shader);
             }
         }
@@ -90,6 +89,14 @@ mod shaders {
             all.join(", ")
         )
         .expect("a string");
+    }
+
+    /// Whether a file of WGSL has no entry point, and is there to be imported.
+    fn is_module(file: &Path) -> bool {
+        let text = std::fs::read_to_string(file).unwrap_or_default();
+        !text
+            .lines()
+            .any(|line| ["@vertex", "@fragment", "@compute"].iter().any(|stage| line.starts_with(stage)))
     }
 
     fn shader_files(folder: &Path) -> Vec<PathBuf> {

@@ -1,8 +1,8 @@
-//! Generates the Rust that kernels and host share from the composed WGSL: structs and constants, and for every
-//! kernel its override constants and the resources of each bind group, by name and type.
+//! Generates the Rust that shaders and host share from the composed WGSL: structs and constants, and for every
+//! shader its override constants and the resources of each bind group, by name and type.
 //!
 //! `shared.rs` needs no graphics library. It has one module per WGSL file, with the constants of that file and
-//! its structs that lie in buffers. `bindings.rs` needs the feature `gpu` and has one module per kernel.
+//! its structs that lie in buffers. `bindings.rs` needs the feature `gpu` and has one module per shader.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -22,36 +22,24 @@ pub type Items = BTreeMap<String, String>;
 #[derive(Default)]
 pub struct Bindings {
     shared: BTreeMap<String, Items>,
-    kernels: BTreeMap<String, String>,
+    shaders: BTreeMap<String, String>,
 }
 
 impl Bindings {
-    /// Adds the items that a kernel shares with the host.
+    /// Adds the items that a shader shares with the host.
     pub fn add(&mut self, root: &Path, file: &Path, shader: &Shader) {
         let sources = Sources::of(root, file);
-        let kernel = ShaderBindings { root, file, shader, sources: &sources };
-        kernel.constants(&mut self.shared);
-        let text = kernel.module(&mut self.shared);
-        self.kernels.insert(shader.name.clone(), text);
-    }
-
-    /// Adds the structs and constants that a drawing pass shares with the host.
-    pub fn add_drawing(&mut self, root: &Path, file: &Path, shader: &Shader) {
-        let sources = Sources::of(root, file);
-        let drawing = ShaderBindings { root, file, shader, sources: &sources };
-        drawing.constants(&mut self.shared);
-        for (_, variable) in shader.module.global_variables.iter() {
-            if variable.binding.is_some() {
-                drawing.bound(variable, &mut self.shared);
-            }
-        }
+        let bindings = ShaderBindings { root, file, shader, sources: &sources };
+        bindings.constants(&mut self.shared);
+        let text = bindings.module(&mut self.shared);
+        self.shaders.insert(shader.name.clone(), text);
     }
 
     /// Writes `shared.rs` and `bindings.rs`.
     pub fn write(&self, out: &Path) {
         let shared = nested(&self.shared.iter().map(|(path, items)| (path.clone(), joined(items))).collect());
         std::fs::write(out.join("shared.rs"), shared).expect("OUT_DIR is writable");
-        std::fs::write(out.join("bindings.rs"), nested(&self.kernels)).expect("OUT_DIR is writable");
+        std::fs::write(out.join("bindings.rs"), nested(&self.shaders)).expect("OUT_DIR is writable");
     }
 }
 
@@ -113,7 +101,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// The kernel's module of `bindings.rs`.
+    /// The shader's module of `bindings.rs`.
     fn module(&self, shared: &mut BTreeMap<String, Items>) -> String {
         let mut text = String::from("use crate::gpu::bind::prelude::*;\n\n");
         text += &self.overrides();
@@ -144,7 +132,7 @@ impl ShaderBindings<'_> {
             };
             let comment =
                 self.sources.declaring("override", &name).map(|found| found.comment).unwrap_or_default();
-            fields += &doc("    ", &comment, &format!("`{name}` of the kernel."));
+            fields += &doc("    ", &comment, &format!("`{name}` of the shader."));
             writeln!(fields, "    pub {field}: {ty},").expect("a string");
             let init = constant.init.map(|init| &shader.module.global_expressions[init]);
             let Some(naga::Expression::Literal(literal)) = init else {
@@ -158,21 +146,33 @@ impl ShaderBindings<'_> {
         }
         let constant = shader.constant();
         let name = &shader.name;
-        if fields.is_empty() {
+        let (constants, argument, list) = if fields.is_empty() {
+            (String::new(), "", "&[]")
+        } else {
+            let text = format!(
+                "/// Override constants of `{name}`.\n#[derive(Debug, Clone, Copy, PartialEq)]\npub struct Constants {{\n{fields}}}\n\n\
+                 impl Default for Constants {{\n    fn default() -> Self {{\n        Self {{\n{defaults}        }}\n    }}\n}}\n\n\
+                 impl Constants {{\n    /// Name and value of each.\n    pub fn list(&self) -> Vec<(&'static str, f64)> {{\n        vec![\n{list}        ]\n    }}\n}}\n\n"
+            );
+            (text, ", constants: &Constants", "&constants.list()")
+        };
+        if !self.is_kernel() {
             return format!(
-                "/// The kernel `{name}`.\n///\n/// # Errors\n/// What the driver's compiler reports.\n\
-                 pub fn kernel(gpu: &Gpu) -> Result<Kernel, GpuError> {{\n    \
-                 Kernel::new(gpu, &shaders::{constant}, &[])\n}}\n\n"
+                "{constants}/// The layouts of the bind groups of `{name}`.\n///\n/// # Errors\n/// [`GpuError::Validation`] where the device's limits do not permit them.\n\
+                 pub fn layouts(gpu: &Gpu) -> Result<Layouts, GpuError> {{\n    \
+                 Layouts::new(gpu, &shaders::{constant})\n}}\n\n"
             );
         }
         format!(
-            "/// Override constants of `{name}`.\n#[derive(Debug, Clone, Copy, PartialEq)]\npub struct Constants {{\n{fields}}}\n\n\
-             impl Default for Constants {{\n    fn default() -> Self {{\n        Self {{\n{defaults}        }}\n    }}\n}}\n\n\
-             /// The kernel `{name}` with these constants.\n///\n/// # Errors\n/// What the driver's compiler reports.\n\
-             pub fn kernel(gpu: &Gpu, constants: &Constants) -> Result<Kernel, GpuError> {{\n    \
-             Kernel::new(gpu, &shaders::{constant}, &constants.list())\n}}\n\n\
-             impl Constants {{\n    fn list(&self) -> Vec<(&'static str, f64)> {{\n        vec![\n{list}        ]\n    }}\n}}\n\n"
+            "{constants}/// The kernel `{name}`, compiled.\n///\n/// # Errors\n/// What the driver's compiler reports.\n\
+             pub fn kernel(gpu: &Gpu{argument}) -> Result<Kernel, GpuError> {{\n    \
+             Kernel::new(gpu, &shaders::{constant}, {list})\n}}\n\n"
         )
+    }
+
+    /// Whether it computes, and does not draw.
+    fn is_kernel(&self) -> bool {
+        self.shader.module.entry_points.iter().any(|entry| entry.stage == naga::ShaderStage::Compute)
     }
 
     fn group(
@@ -189,17 +189,19 @@ impl ShaderBindings<'_> {
             let name = variable.name.clone().unwrap_or_default();
             let (ty, resource) = self.bound(variable, shared);
             let comment = self.sources.binding_comment(&name);
-            fields += &doc("    ", &comment, &format!("`{name}` of the kernel."));
+            fields += &doc("    ", &comment, &format!("`{name}` of the shader."));
             writeln!(fields, "    pub {name}: {ty},").expect("a string");
             writeln!(resources, "            ({binding}, {resource}),").expect("a string");
         }
         let of = if group == 0 { "Group".to_owned() } else { format!("Group{group}") };
         let (name, constant) = (&shader.name, shader.constant());
+        let target = if self.is_kernel() { "kernel: &Kernel" } else { "layouts: &Layouts" };
+        let binds = target.split(':').next().unwrap_or_default();
         format!(
             "/// Resources of bind group {group} of `{name}`.\n#[derive(Debug, Clone, Copy)]\npub struct {of}<'a> {{\n{fields}}}\n\n\
              impl {of}<'_> {{\n    /// Binds them.\n    ///\n    /// # Errors\n    /// [`GpuError::Validation`] where the device refuses one.\n    \
-             pub fn bind(&self, gpu: &Gpu, kernel: &Kernel) -> Result<BindGroup, GpuError> {{\n        \
-             kernel.bind_group(gpu, &shaders::{constant}, {group}, &[\n{resources}        ])\n    }}\n}}\n\n"
+             pub fn bind(&self, gpu: &Gpu, {target}) -> Result<BindGroup, GpuError> {{\n        \
+             {binds}.bind_group(gpu, &shaders::{constant}, {group}, &[\n{resources}        ])\n    }}\n}}\n\n"
         )
     }
 

@@ -12,6 +12,7 @@ const FLOORS: &[&[&str]] = &[
     &["animation", "surface", "terrain"],
     &["baseline", "skinning"],
     &["lod"],
+    &["scene"],
     &["render"],
     &["samples"],
     &["bench", "measure", "verify"],

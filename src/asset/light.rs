@@ -9,13 +9,15 @@ use crate::InputError;
 pub struct Light {
     /// The direction towards the light, of any length but 0.
     pub direction: Vec3,
+    /// Its colour, linear, at least 0: the factor of all that surfaces send back, of the ambient part too.
+    pub color: Vec3,
     /// Light that surfaces facing away still receive, 0 to 1.
     pub ambient: f32,
 }
 
 impl Default for Light {
     fn default() -> Self {
-        Self { direction: Vec3::new(-0.4, 0.8, 0.6), ambient: 0.12 }
+        Self { direction: Vec3::new(-0.4, 0.8, 0.6), color: Vec3::ONE, ambient: 0.12 }
     }
 }
 
@@ -28,6 +30,10 @@ impl Light {
         if self.direction.try_normalize().is_none() {
             let value = self.direction.to_string();
             return Err(InputError::new("light.direction", value, "must be finite and not 0"));
+        }
+        if !self.color.to_array().iter().all(|channel| (0.0..f32::INFINITY).contains(channel)) {
+            let value = self.color.to_string();
+            return Err(InputError::new("light.color", value, "must be finite and at least 0"));
         }
         if !(0.0..=1.0).contains(&self.ambient) {
             return Err(InputError::new("light.ambient", self.ambient, "must be in 0..=1"));

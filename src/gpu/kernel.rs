@@ -8,7 +8,7 @@ use super::{Gpu, GpuError, Program};
 pub struct Kernel {
     shader: &'static Shader,
     pub(super) pipeline: wgpu::ComputePipeline,
-    layouts: Vec<wgpu::BindGroupLayout>,
+    layouts: Layouts,
 }
 
 /// A bind group of a kernel.
@@ -33,11 +33,11 @@ impl Kernel {
         shader: &'static Shader,
         constants: &[(&'static str, f64)],
     ) -> Result<Self, GpuError> {
-        let layouts = layouts(gpu, shader)?;
+        let layouts = Layouts::new(gpu, shader)?;
         let pipeline = gpu.scoped(|| {
             gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(shader.name),
-                layout: Some(&pipeline_layout(gpu, shader, &layouts)),
+                layout: Some(&pipeline_layout(gpu, shader, &layouts.groups)),
                 module: &module(gpu, shader),
                 entry_point: None,
                 compilation_options: wgpu::PipelineCompilationOptions {
@@ -54,8 +54,7 @@ impl Kernel {
     /// Binds the resources of one group by their binding numbers, as `gpu::bindings` lists them.
     ///
     /// # Errors
-    /// [`GpuError::Validation`] when the kernel belongs to another shader, and when the resources do not match
-    /// the shader.
+    /// As [`Layouts::bind_group`].
     pub(crate) fn bind_group(
         &self,
         gpu: &Gpu,
@@ -63,21 +62,7 @@ impl Kernel {
         group: u32,
         resources: &[(u32, wgpu::BindingResource<'_>)],
     ) -> Result<Group, GpuError> {
-        if self.shader.name != shader.name {
-            let reason = format!("resources of {} for the kernel {}", shader.name, self.shader.name);
-            return Err(GpuError::Internal { reason });
-        }
-        let entries: Vec<_> = resources
-            .iter()
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
-            .collect();
-        gpu.scoped(|| {
-            gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(shader.name),
-                layout: &self.layouts[group as usize],
-                entries: &entries,
-            })
-        })
+        self.layouts.bind_group(gpu, shader, group, resources)
     }
 
     /// Workgroups for `invocations` in one row, spread over x and y if they exceed the limit of one dimension.
@@ -93,6 +78,49 @@ impl Kernel {
     /// Workgroups for `invocations` along x.
     pub(crate) fn groups_for(&self, invocations: u32) -> u32 {
         invocations.div_ceil(self.workgroup_size()[0].max(1))
+    }
+}
+
+/// The bind group layouts of a shader, one for every group up to the last that it uses.
+#[derive(Debug, Clone)]
+pub(crate) struct Layouts {
+    shader: &'static Shader,
+    pub(crate) groups: Vec<wgpu::BindGroupLayout>,
+}
+
+impl Layouts {
+    /// As [`layouts`].
+    pub(crate) fn new(gpu: &Gpu, shader: &'static Shader) -> Result<Self, GpuError> {
+        Ok(Self { shader, groups: layouts(gpu, shader)? })
+    }
+
+    /// Binds the resources of one group by their binding numbers, as `gpu::bindings` lists them.
+    ///
+    /// # Errors
+    /// [`GpuError::Internal`] when the layouts are of another shader, [`GpuError::Validation`] when the resources do not
+    /// match it.
+    pub(crate) fn bind_group(
+        &self,
+        gpu: &Gpu,
+        shader: &'static Shader,
+        group: u32,
+        resources: &[(u32, wgpu::BindingResource<'_>)],
+    ) -> Result<Group, GpuError> {
+        if self.shader.name != shader.name {
+            let reason = format!("resources of {} for {}", shader.name, self.shader.name);
+            return Err(GpuError::Internal { reason });
+        }
+        let entries: Vec<_> = resources
+            .iter()
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .collect();
+        gpu.scoped(|| {
+            gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(shader.name),
+                layout: &self.groups[group as usize],
+                entries: &entries,
+            })
+        })
     }
 }
 

@@ -26,7 +26,7 @@ pub use buffer::{Buffer, Uniform};
 pub(crate) use job::Step;
 pub use job::{IndirectJob, Job, compute_pass};
 pub use kernel::{Group, Kernel};
-pub(crate) use kernel::{layouts, module, pipeline_layout, rows_of_workgroups};
+pub(crate) use kernel::{Layouts, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};
 pub(crate) use tuning::Tuning;

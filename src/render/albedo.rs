@@ -6,7 +6,7 @@ use crate::Error;
 use crate::asset::Model;
 use crate::asset::material::{Alpha, Material, Texture};
 use crate::gpu::{Gpu, GpuError};
-use crate::render::color::ColorTexture;
+use crate::surface::color::ColorTexture;
 use crate::surface::mips::Mips;
 
 /// The base colour of a surface.

@@ -2,12 +2,15 @@
 
 mod albedo;
 mod camera;
-mod color;
 mod crowd;
+#[allow(dead_code, reason = "scenes that use it are being built")]
+mod format;
 pub mod picture;
 mod pipeline;
 pub mod posed;
 pub mod relief;
+#[allow(dead_code, reason = "scenes that use it are being built")]
+mod renderer;
 pub mod skinned;
 mod square;
 pub mod target;
@@ -15,11 +18,14 @@ pub mod terrain;
 
 pub use albedo::Albedo;
 pub use camera::Camera;
-pub use color::ColorTexture;
 pub use crowd::{Character, CrowdScene};
+pub use format::{DepthFormat, TargetFormat};
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
+pub use renderer::{Layer, Renderer, ScenePass};
 pub use skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 pub use square::SquarePicture;
 pub use target::Target;
 pub use terrain::{FieldsId, Materials, Style, TerrainRenderer, TerrainScene};
+
+pub use crate::surface::ColorTexture;

@@ -2,52 +2,16 @@
 
 use glam::{Mat4, Vec4};
 
+use crate::gpu::bindings::render::relief::Constants;
 use crate::gpu::{Gpu, GpuError, Group, Uniform, shaders};
-use crate::render::color::ColorTexture;
 use crate::render::pipeline::{Draws, bind};
 use crate::shared::render::relief::ReliefView;
 use crate::shared::surface::ray::SurfaceMarch;
 use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
-use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::relief::{March, Method};
-use crate::surface::{Green, Material, Shadow};
+use crate::surface::relief::March;
+use crate::surface::{Green, Material};
+pub use crate::surface::{ReliefMaps, ReliefOptions};
 use crate::{Error, InputError};
-
-/// Options that are fixed when a pipeline is compiled. [`Material`] has the parameters that may change without
-/// a new pipeline.
-///
-/// The default uses [`Method::Quadtree`], without shadow, with normals from the heights, without silhouette,
-/// with the polygon's depth, and with mip level 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ReliefOptions {
-    /// The method that finds the surface; the [`SurfaceTextures`] must be made for it.
-    pub method: Method,
-    /// Self-shadow.
-    pub shadow: Shadow,
-    /// If set, normals come from a normal map whose green channel points in this direction; otherwise they
-    /// follow from the heights.
-    pub normal_map: Option<Green>,
-    /// Whether to discard points outside the mesh's range of uv, so that silhouettes follow the relief.
-    pub silhouette: bool,
-    /// Whether to write the depth of the relief and not that of the polygon. This disables early depth tests.
-    pub depth: bool,
-    /// Whether to choose the mip level of the heights from the size of a pixel. Acceleration maps belong to
-    /// level 0, so that `cone` and `quadtree` always march there.
-    pub mip: bool,
-}
-
-impl Default for ReliefOptions {
-    fn default() -> Self {
-        Self {
-            method: Method::Quadtree,
-            shadow: Shadow::None,
-            normal_map: None,
-            silhouette: false,
-            depth: false,
-            mip: false,
-        }
-    }
-}
 
 /// Draws meshes with relief on targets of one format.
 #[derive(Debug, Clone)]
@@ -66,15 +30,16 @@ pub struct ReliefCamera {
     pub eye: Vec4,
 }
 
-/// The maps of a material.
-#[derive(Debug, Clone, Copy)]
-pub struct ReliefMaps<'a> {
-    /// Heights and their acceleration map.
-    pub textures: &'a SurfaceTextures,
-    /// Colour, sRGB.
-    pub albedo: &'a ColorTexture,
-    /// Tangent-space normals: required if [`ReliefOptions::normal_map`] is set, else ignored.
-    pub normals: Option<&'a ColorTexture>,
+/// The override constants of options.
+fn constants(options: &ReliefOptions) -> Constants {
+    Constants {
+        method: options.method.code(),
+        shadow: options.shadow as u32,
+        normal_map: options.normal_map.is_some(),
+        green_up: options.normal_map == Some(Green::Up),
+        silhouette: options.silhouette,
+        choose_mip: options.chooses_mip(),
+    }
 }
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
@@ -87,20 +52,10 @@ impl ReliefRenderer {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, options: ReliefOptions) -> Result<Self, GpuError> {
-        let accelerated = matches!(options.method, Method::Cone | Method::Quadtree);
-        let flag = |on: bool| f64::from(u8::from(on));
-        let constants = [
-            ("METHOD", f64::from(options.method.code())),
-            ("SHADOW", f64::from(options.shadow as u32)),
-            ("NORMAL_MAP", flag(options.normal_map.is_some())),
-            ("GREEN_UP", flag(options.normal_map == Some(Green::Up))),
-            ("SILHOUETTE", flag(options.silhouette)),
-            ("CHOOSE_MIP", flag(options.mip && !accelerated)),
-        ];
         let draws = Draws {
             shader: &shaders::RENDER_RELIEF,
             fragment: if options.depth { "fragment_depth" } else { "fragment" },
-            constants: &constants,
+            constants: &constants(&options).list(),
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: None,
             vertices: &[Some(wgpu::VertexBufferLayout {

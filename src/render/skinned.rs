@@ -2,7 +2,7 @@
 //! two indirect draws, the second for those that are mirrored. A mesh has one material: a model with several is
 //! drawn mesh by mesh.
 
-use glam::Mat4;
+use glam::{Mat4, Vec4};
 
 use crate::asset::Light;
 use crate::asset::material::Alpha;
@@ -97,7 +97,7 @@ impl SkinnedRenderer {
         let view = SkinnedView {
             clip_from_world: Mat4::IDENTITY,
             light: light.direction.normalize().extend(light.ambient),
-            color: albedo.factor.into(),
+            color: Vec4::from(albedo.factor) * light.color.extend(1.0),
             vertices: vertices as u32,
             cutoff: if let Alpha::Mask(cutoff) = albedo.alpha { cutoff } else { 0.0 },
             side: 1.0,

@@ -4,9 +4,9 @@ use glam::{DVec3, Mat4, Vec4};
 
 use crate::Error;
 use crate::gpu::Gpu;
-use crate::render::color::ColorTexture;
 use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer};
 use crate::render::target::{LINEAR_FORMAT, Target};
+use crate::surface::color::ColorTexture;
 use crate::surface::linear_image::LinearImage;
 use crate::surface::map::Address;
 use crate::surface::mesh::SurfaceMesh;

@@ -4,7 +4,7 @@ use crate::InputError;
 use crate::surface::relief::MAX_SCALE;
 
 /// How the surface shades itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Shadow {
     /// The surface casts no shadow on itself.
@@ -17,7 +17,7 @@ pub enum Shadow {
 }
 
 /// The direction to which the green channel of a normal map points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Green {
     /// Up the image, against v, as in glTF and OpenGL.

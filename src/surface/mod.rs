@@ -3,6 +3,8 @@
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+pub(crate) mod color;
 pub mod cone_map;
 pub mod exact;
 #[cfg(feature = "gpu")]
@@ -14,6 +16,7 @@ mod material;
 mod measure;
 pub mod mesh;
 pub mod mips;
+mod options;
 pub mod picture;
 pub mod relief;
 pub mod shade;
@@ -23,6 +26,8 @@ pub mod verify;
 pub mod view;
 
 #[cfg(feature = "gpu")]
+pub use color::ColorTexture;
+#[cfg(feature = "gpu")]
 pub use height_batch::HeightBatch;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
@@ -30,6 +35,9 @@ pub use material::{Green, Material, Shadow};
 pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
+#[cfg(feature = "gpu")]
+pub use options::ReliefMaps;
+pub use options::ReliefOptions;
 #[cfg(feature = "gpu")]
 pub use relief::textures::SurfaceTextures;
 pub use relief::{Hit, March, Method, Outcome, Ray};

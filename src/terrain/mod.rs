@@ -18,6 +18,8 @@ pub mod generator;
 pub mod grid;
 pub mod ground;
 pub mod height;
+#[cfg(feature = "gpu")]
+pub mod materials;
 pub mod mesh;
 pub mod morph;
 pub mod normals;

@@ -13,6 +13,8 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("render/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
+    ("render/scene_relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+    ("render/scene_relief", "SHADOW", &[0.0, 1.0, 2.0]),
     ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("surface/shade", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("terrain/despike", "FEATURES", &[0.0, 1.0]),
@@ -96,7 +98,10 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
     for vertex in of_stage("vertex") {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
         all.extend(of_stage("fragment").into_iter().map(|fragment| {
+            // Entries of that name write no colour.
+            let is_deep = name_of(fragment).starts_with("depth_");
             let render = json!({
+                "writeMask": if is_deep { 0 } else { 15 },
                 "vertex": vertex["name"],
                 "fragment": fragment["name"],
                 "topology": strip,
@@ -114,6 +119,7 @@ fn buffers(vertex: &Value) -> Value {
     let attributes: Vec<_> = (all(vertex, "inputs").iter())
         .map(|input| {
             let (format, bytes) = match input["type"].as_str() {
+                Some("u32") => ("uint32", 4),
                 Some("vec2<f32>") => ("float32x2", 8),
                 Some("vec3<f32>") => ("float32x3", 12),
                 Some("vec4<f32>") => ("float32x4", 16),

@@ -1,11 +1,11 @@
 // Draws meshes with relief (B section 3.1, tables 4.1 to 4.4) by any method, with self-shadow, silhouettes and
 // the depth of the relief. The method and the options are override constants; everything else is a uniform.
 import package::wgsl::light::lambert;
-import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
+import package::wgsl::surface::ray::{SurfaceMarch, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
 import package::wgsl::surface::shade::{surface_depth, surface_distance, surface_normal, surface_towards};
-import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surface_soft_shadow};
+import package::wgsl::surface::sunlit::{SurfaceShadow, surface_mapped_normal, surface_sunlit};
 
 // A method of wgsl/surface/trace.wgsl.
 override METHOD: u32 = 3u;
@@ -91,31 +91,17 @@ fn shaded(in: Vertex) -> Shaded {
     let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb;
     var facing = surface_normal(heights, hit.uv, view.scale, settings);
     if NORMAL_MAP {
-        let texel = textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy).xy * 2.0 - 1.0;
-        let along_v = select(texel.y, -texel.y, GREEN_UP);
-        facing = vec3<f32>(texel.x, along_v, sqrt(max(1.0 - dot(texel, texel), 0.0)));
+        facing = surface_mapped_normal(textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy), GREEN_UP);
     }
     let light = vec3<f32>(dot(tangent, view.light.xyz), dot(bitangent, view.light.xyz), dot(normal, view.light.xyz));
-    let direct = max(dot(facing, light), 0.0) * sunlit(hit, light, settings);
+    let direct = max(dot(facing, light), 0.0) * surface_sunlit(
+        METHOD, SHADOW, heights, acceleration, hit, light,
+        SurfaceShadow(view.scale, view.shadow_steps, view.softness), settings);
     let lit = lambert(color, view.light.w, direct);
     let distance = surface_distance(ray, hit, view.scale) * view.world;
     let depth = surface_depth(view.clip_from_world, in.world, towards, distance);
     let is_outside = SILHOUETTE && !surface_inside(hit.uv, view.range.xy, view.range.zw);
     return Shaded(vec4<f32>(lit, 1.0), depth, is_outside);
-}
-
-// The fraction of the light that reaches a hit.
-fn sunlit(hit: SurfaceHit, light: vec3<f32>, settings: SurfaceMarch) -> f32 {
-    if SHADOW == 0u || !(light.z > 0.0) {
-        return 1.0;
-    }
-    if SHADOW == 2u {
-        return surface_soft_shadow(
-            heights, hit, light, view.scale, settings, view.shadow_steps, view.softness);
-    }
-    let ray = surface_light_ray(hit, light, view.scale);
-    let first = surface_trace(METHOD, heights, acceleration, ray, settings);
-    return select(1.0, 0.0, surface_shaded(first, hit));
 }
 
 @fragment

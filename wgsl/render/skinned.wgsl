@@ -1,6 +1,7 @@
 // Draws skinned instances of a mesh, textured and lit, each at its own placement. Surfaces are opaque, cut out,
 // or drawn through a screen-door pattern.
 import package::wgsl::light::lambert;
+import package::wgsl::render::dither::screen;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
@@ -60,14 +61,6 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) index: u3
     let facing = placed_normal(rows, vertex_normal(middle, skinned[at + 2u]));
     let outwards = select(facing, -facing, !DOUBLE_SIDED && determinant < 0.0);
     return Vertex(view.clip_from_world * vec4<f32>(world, 1.0), outwards, texture_coordinates[vertex]);
-}
-
-// The rank of a pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973), between 0 and 1.
-fn screen(place: vec2<u32>) -> f32 {
-    let fine = place & vec2<u32>(1u);
-    let coarse = (place >> vec2<u32>(1u)) & vec2<u32>(1u);
-    let rank = 8u * (fine.x ^ fine.y) + 4u * fine.y + 2u * (coarse.x ^ coarse.y) + coarse.y;
-    return (f32(rank) + 0.5) / 16.0;
 }
 
 fn colored(in: Vertex) -> vec4<f32> {

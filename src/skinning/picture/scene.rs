@@ -145,9 +145,10 @@ impl Canvas<'_> {
         let weights = triangle.weights(x, y).to_array();
         let normals = triangle.corners.iter().zip(weights).map(|(corner, weight)| weight * corner.normal);
         let side = if triangle.is_front { 1.0 } else { -1.0 };
-        let Light { direction, ambient } = self.scene.light;
+        let Light { direction, color, ambient } = self.scene.light;
         let facing = side * normals.sum::<Vec3>().normalize_or_zero().dot(direction.normalize());
-        self.pixels[index] = [r, g, b].map(|color| color * lambert(ambient, facing.max(0.0)));
+        let lit = Vec3::new(r, g, b) * color * lambert(ambient, facing.max(0.0));
+        self.pixels[index] = lit.to_array();
     }
 }
 

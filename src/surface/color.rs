@@ -52,32 +52,40 @@ impl ColorTexture {
     /// # Errors
     /// [`GpuError`].
     pub fn with_sampling(self, gpu: &Gpu, sampling: &Sampling) -> Result<Self, GpuError> {
-        let address = |wrapping: Wrapping| match wrapping {
-            Wrapping::Repeat => wgpu::AddressMode::Repeat,
-            Wrapping::Mirror => wgpu::AddressMode::MirrorRepeat,
-            Wrapping::Clamp => wgpu::AddressMode::ClampToEdge,
-        };
-        let filter = |filter: Filter| match filter {
-            Filter::Nearest => wgpu::FilterMode::Nearest,
-            Filter::Linear => wgpu::FilterMode::Linear,
-        };
-        let [u, v] = sampling.wrap.map(address);
-        let sampler = gpu.scoped(|| {
-            gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("texture"),
-                address_mode_u: u,
-                address_mode_v: v,
-                mag_filter: filter(sampling.magnified),
-                min_filter: filter(sampling.minified),
-                mipmap_filter: match sampling.mips {
-                    Some(Filter::Linear) => wgpu::MipmapFilterMode::Linear,
-                    _ => wgpu::MipmapFilterMode::Nearest,
-                },
-                ..Default::default()
-            })
-        })?;
+        let sampler = sampler_of(gpu, sampling)?;
         Ok(Self { sampler, ..self })
     }
+}
+
+/// A sampler.
+///
+/// # Errors
+/// [`GpuError`].
+pub(crate) fn sampler_of(gpu: &Gpu, sampling: &Sampling) -> Result<wgpu::Sampler, GpuError> {
+    let address = |wrapping: Wrapping| match wrapping {
+        Wrapping::Repeat => wgpu::AddressMode::Repeat,
+        Wrapping::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrapping::Clamp => wgpu::AddressMode::ClampToEdge,
+    };
+    let filter = |filter: Filter| match filter {
+        Filter::Nearest => wgpu::FilterMode::Nearest,
+        Filter::Linear => wgpu::FilterMode::Linear,
+    };
+    let [u, v] = sampling.wrap.map(address);
+    gpu.scoped(|| {
+        gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("texture"),
+            address_mode_u: u,
+            address_mode_v: v,
+            mag_filter: filter(sampling.magnified),
+            min_filter: filter(sampling.minified),
+            mipmap_filter: match sampling.mips {
+                Some(Filter::Linear) => wgpu::MipmapFilterMode::Linear,
+                _ => wgpu::MipmapFilterMode::Nearest,
+            },
+            ..Default::default()
+        })
+    })
 }
 
 fn upload(

@@ -1,0 +1,199 @@
+//! The targets into which a scene is drawn: what they are, and nothing of what is drawn.
+
+use crate::InputError;
+
+/// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.
+///
+/// The crate's shading writes the first colour attachment. Others may belong to the caller's own draws: what a
+/// renderer draws leaves them as they are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TargetFormat {
+    /// Colour attachments, at most 8, with holes as in the pass. The first is written as it says, in linear light; its
+    /// format must hold floats.
+    pub color: Vec<Option<wgpu::ColorTargetState>>,
+    /// The depth attachment. Without one, what is drawn last covers the rest.
+    pub depth: Option<DepthFormat>,
+    /// Samples per pixel: 1 or 4.
+    pub samples: u32,
+}
+
+/// A depth attachment, and the direction of its values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct DepthFormat {
+    /// A format with depth. Its stencil, if it has one, stays as it is.
+    pub format: wgpu::TextureFormat,
+    /// Whether depth falls with distance, from 1 at the near plane, as it does for cameras with reversed depth. Clear the
+    /// attachment to 0 then, else to 1.
+    pub reversed: bool,
+}
+
+impl TargetFormat {
+    /// One colour attachment without blending, `Depth32Float` that grows with distance, and one sample.
+    pub fn new(color: wgpu::TextureFormat) -> Self {
+        Self { color: vec![Some(color.into())], ..Self::depth_only(wgpu::TextureFormat::Depth32Float) }
+    }
+
+    /// No colour, for shadow maps and prepasses of their own: depth that grows with distance, and one sample.
+    pub fn depth_only(format: wgpu::TextureFormat) -> Self {
+        Self { color: Vec::new(), depth: Some(DepthFormat { format, reversed: false }), samples: 1 }
+    }
+
+    /// The same with one more colour attachment.
+    #[must_use]
+    pub fn with_color(mut self, color: Option<wgpu::ColorTargetState>) -> Self {
+        self.color.push(color);
+        self
+    }
+
+    /// The same with another depth attachment, or with none.
+    #[must_use]
+    pub fn with_depth(self, depth: Option<DepthFormat>) -> Self {
+        Self { depth, ..self }
+    }
+
+    /// The same with depth that falls with distance.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let depth = self.depth.map(|depth| DepthFormat { reversed: true, ..depth });
+        Self { depth, ..self }
+    }
+
+    /// The same with so many samples per pixel.
+    #[must_use]
+    pub fn with_samples(self, samples: u32) -> Self {
+        Self { samples, ..self }
+    }
+
+    /// Checks what the library needs of the attachments. What the device allows is checked when pipelines are compiled.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour of integers, a colour or
+    /// a depth of a format that is none, and other numbers of samples than 1 and 4.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if self.color.len() > MAX_COLORS {
+            let bound = format!("must be at most {MAX_COLORS}");
+            return Err(InputError::new("format.color.len", self.color.len(), bound));
+        }
+        if self.depth.is_none() && self.color.iter().all(Option::is_none) {
+            return Err(InputError::new("format", "no attachment", "must have a colour or a depth"));
+        }
+        for (at, color) in self.color.iter().enumerate() {
+            let Some(color) = color else { continue };
+            let is_float =
+                matches!(color.format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
+            if !color.format.has_color_aspect() || at == 0 && !is_float {
+                let bound = if at == 0 { "must be a colour of floats" } else { "must be a colour" };
+                let value = format!("{:?}", color.format);
+                return Err(InputError::new(format!("format.color[{at}].format"), value, bound));
+            }
+        }
+        if let Some(DepthFormat { format, .. }) = self.depth.filter(|depth| !depth.format.has_depth_aspect())
+        {
+            return Err(InputError::new("format.depth.format", format!("{format:?}"), "must have depth"));
+        }
+        if ![1, 4].contains(&self.samples) {
+            return Err(InputError::new("format.samples", self.samples, "must be 1 or 4"));
+        }
+        Ok(())
+    }
+
+    /// Whether there is a colour for the crate's shading.
+    pub(super) fn is_colored(&self) -> bool {
+        self.color.first().is_some_and(Option::is_some)
+    }
+
+    /// Whether depth falls with distance.
+    pub(super) fn is_reversed(&self) -> bool {
+        self.depth.is_some_and(|depth| depth.reversed)
+    }
+
+    /// The colour attachments as a pipeline sees them that writes the first, or none.
+    pub(super) fn targets(&self, writes: bool) -> Vec<Option<wgpu::ColorTargetState>> {
+        let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
+            color.clone().map(|color| match writes && at == 0 {
+                true => color,
+                false => wgpu::ColorTargetState {
+                    format: color.format,
+                    blend: None,
+                    write_mask: wgpu::ColorWrites::empty(),
+                },
+            })
+        };
+        self.color.iter().enumerate().map(masked).collect()
+    }
+
+    /// The depth test: nearer, or as near.
+    pub(super) fn depth_state(&self) -> Option<wgpu::DepthStencilState> {
+        let DepthFormat { format, reversed } = self.depth?;
+        let compare = match reversed {
+            true => wgpu::CompareFunction::GreaterEqual,
+            false => wgpu::CompareFunction::LessEqual,
+        };
+        Some(wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(compare),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        })
+    }
+}
+
+/// The most colour attachments: WebGPU's default limit.
+const MAX_COLORS: usize = 8;
+
+#[cfg(test)]
+mod tests {
+    use wgpu::TextureFormat as Format;
+
+    use super::*;
+
+    #[test]
+    fn formats_that_no_pass_has_are_refused_by_field() {
+        let good = || TargetFormat::new(Format::Rgba8UnormSrgb);
+        let with = |color: Vec<Option<wgpu::ColorTargetState>>| TargetFormat { color, ..good() };
+        let depth = |format| Some(DepthFormat { format, reversed: true });
+        for (format, path) in [
+            (good().with_samples(2), "format.samples"),
+            (good().with_depth(depth(Format::Stencil8)), "format.depth.format"),
+            (with(vec![Some(Format::R32Uint.into())]), "format.color[0].format"),
+            (with(vec![Some(Format::Depth32Float.into())]), "format.color[0].format"),
+            (good().with_color(Some(Format::Depth24Plus.into())), "format.color[1].format"),
+            (with(vec![None; 9]), "format.color.len"),
+            (with(vec![None]).with_depth(None), "format"),
+        ] {
+            assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
+        }
+        for format in [
+            good().with_samples(4).reversed(),
+            good().with_color(None).with_color(Some(Format::R32Uint.into())).with_depth(None),
+            TargetFormat::depth_only(Format::Depth24PlusStencil8),
+            with(vec![None, Some(Format::Rgba16Float.into())]),
+        ] {
+            assert_eq!(format.validate(), Ok(()), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn only_the_first_color_is_written_and_only_in_color() {
+        let blended = wgpu::ColorTargetState {
+            format: Format::Rgba8Unorm,
+            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::COLOR,
+        };
+        let format = TargetFormat {
+            color: vec![Some(blended.clone()), None, Some(blended.clone())],
+            ..TargetFormat::new(Format::R8Unorm)
+        };
+        let masks = |writes| {
+            let targets = format.targets(writes);
+            targets
+                .into_iter()
+                .map(|target| target.map(|target| (target.write_mask, target.blend)))
+                .collect::<Vec<_>>()
+        };
+        let left = Some((wgpu::ColorWrites::empty(), None));
+        assert_eq!(masks(true), [Some((blended.write_mask, blended.blend)), None, left]);
+        assert_eq!(masks(false), [left, None, left]);
+    }
+}

@@ -1,0 +1,193 @@
+//! Draws a scene through a view into the caller's render pass or render bundle.
+
+mod pass;
+mod pipelines;
+#[cfg(all(test, feature = "samples"))]
+mod tests;
+
+use std::collections::HashMap;
+
+use super::format::TargetFormat;
+use crate::gpu::Gpu;
+use crate::lod::{OBJECT_LISTS, SceneDraw};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
+use crate::scene::layouts::SceneLayouts;
+use crate::{Error, InputError};
+pub use pass::ScenePass;
+use pipelines::{Kind, PipelineKey};
+
+/// What of a scene is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Layer {
+    /// The colour of opaque and cut-out surfaces, with their depth.
+    Color,
+    /// Depth alone: for a prepass, in front of [`Layer::Color`] on the same target, and for shadow maps. Reliefs write
+    /// their own depth.
+    Depth,
+}
+
+/// Draws scenes on targets of one format.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    format: TargetFormat,
+    layouts: SceneLayouts,
+    pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
+}
+
+impl Renderer {
+    /// A renderer for targets of this format. It compiles nothing yet.
+    ///
+    /// # Errors
+    /// [`InputError`] for a format that the library cannot draw into; [`crate::gpu::GpuError`].
+    pub fn new(gpu: &Gpu, format: &TargetFormat) -> Result<Self, Error> {
+        format.validate()?;
+        let layouts = SceneLayouts::new(gpu)?;
+        Ok(Self { gpu: gpu.clone(), format: format.clone(), layouts, pipelines: HashMap::new() })
+    }
+
+    /// The format of its targets.
+    pub fn format(&self) -> &TargetFormat {
+        &self.format
+    }
+
+    /// The layers that its targets can hold.
+    fn layers(&self) -> impl Iterator<Item = Layer> {
+        let color = self.format.is_colored().then_some(Layer::Color);
+        color.into_iter().chain(self.format.depth.map(|_| Layer::Depth))
+    }
+
+    /// Compiles the pipelines that these objects need and that are not there yet.
+    pub(crate) fn prepare_objects<'a>(
+        &mut self,
+        objects: impl Iterator<Item = &'a Drawable>,
+    ) -> Result<(), Error> {
+        let kinds: Vec<Kind> = objects.flat_map(kinds_of).collect();
+        let layers: Vec<Layer> = self.layers().collect();
+        for layer in layers {
+            for kind in &kinds {
+                for is_flipped in [false, true] {
+                    self.compile(PipelineKey::new(layer, *kind, is_flipped))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {
+        if !self.pipelines.contains_key(&key) {
+            let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts)?;
+            self.pipelines.insert(key, pipeline);
+        }
+        Ok(())
+    }
+
+    /// Draws objects; where something is missing, nothing.
+    ///
+    /// # Errors
+    /// [`InputError`] for a layer that the format does not have, a view with the other direction of depth, and objects for
+    /// which no pipelines were compiled.
+    pub(crate) fn draw_objects<'a>(
+        &'a self,
+        pass: &mut impl ScenePass<'a>,
+        view: &DrawnView<'a>,
+        objects: impl Iterator<Item = DrawnObject<'a>> + Clone,
+        layer: Layer,
+    ) -> Result<(), InputError> {
+        self.check(view, layer)?;
+        for (at, object) in objects.clone().enumerate() {
+            let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
+            if !kinds_of(object.drawable).all(is_ready) {
+                let bound = "must be prepared for this renderer after the object was added";
+                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
+            }
+        }
+        pass.set_bind_group(0, view.group);
+        for object in objects.filter(|object| object.lod.instances > 0) {
+            match object.drawable {
+                Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
+                Drawable::Terrain(terrain) => {
+                    let (Some(ground), Some(pipeline)) =
+                        (object.ground, self.pipeline(layer, Kind::Terrain, false))
+                    else {
+                        continue;
+                    };
+                    pass.set_pipeline(pipeline);
+                    pass.set_bind_group(1, ground);
+                    pass.set_bind_group(2, &terrain.group);
+                    pass.set_index_buffer(terrain.geometry.indices.raw().slice(..));
+                    draw_lists(pass, view, &object, 0, false);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check(&self, view: &DrawnView<'_>, layer: Layer) -> Result<(), InputError> {
+        if !self.layers().any(|known| known == layer) {
+            let bound = "must be a layer for which the renderer's format has an attachment";
+            return Err(InputError::new("layer", format!("{layer:?}"), bound));
+        }
+        if self.format.depth.is_some() && view.reversed != self.format.is_reversed() {
+            let direction = |reversed| if reversed { "reversed" } else { "forward" };
+            let bound =
+                format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
+            return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
+        }
+        Ok(())
+    }
+
+    fn pipeline(&self, layer: Layer, kind: Kind, is_flipped: bool) -> Option<&wgpu::RenderPipeline> {
+        self.pipelines.get(&PipelineKey::new(layer, kind, is_flipped))
+    }
+
+    fn draw_mesh<'a>(
+        &'a self,
+        pass: &mut impl ScenePass<'a>,
+        view: &DrawnView<'a>,
+        object: &DrawnObject<'a>,
+        mesh: &'a MeshDrawable,
+        layer: Layer,
+    ) {
+        pass.set_bind_group(1, &mesh.group);
+        pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
+        for (index, part) in (0..).zip(&mesh.parts) {
+            pass.set_bind_group(2, part.materials.group());
+            for is_mirrored in [false, true] {
+                let is_flipped = is_mirrored != view.mirrors;
+                let pipeline = self.pipeline(layer, Kind::of(part), is_flipped);
+                let Some(pipeline) = pipeline.filter(|_| object.mirrors || !is_mirrored) else { continue };
+                pass.set_pipeline(pipeline);
+                draw_lists(pass, view, object, index, is_mirrored);
+            }
+        }
+    }
+}
+
+/// The kinds of pipelines that an object needs.
+fn kinds_of(drawable: &Drawable) -> impl Iterator<Item = Kind> {
+    let (parts, terrain) = match drawable {
+        Drawable::Mesh(mesh) => (mesh.parts.as_slice(), None),
+        Drawable::Terrain(_) => (&[][..], Some(Kind::Terrain)),
+    };
+    parts.iter().map(Kind::of).chain(terrain)
+}
+
+/// Draws a part of all instances that are mirrored, or of all others: list 2 · level + mirrored has a draw for each part.
+fn draw_lists<'a>(
+    pass: &mut impl ScenePass<'a>,
+    view: &DrawnView<'a>,
+    object: &DrawnObject<'a>,
+    part: u32,
+    is_mirrored: bool,
+) {
+    let lod = object.lod;
+    for list in (0..lod.levels).map(|level| 2 * level + u32::from(is_mirrored)) {
+        let first = u64::from(lod.first_list) + u64::from(list) * u64::from(lod.instances);
+        let bytes = [first, first + u64::from(lod.instances)].map(|word| word * size_of::<u32>() as u64);
+        pass.set_vertex_buffer(0, view.lists.raw().slice(bytes[0]..bytes[1]));
+        let draw = u64::from(lod.first_draw) + u64::from(OBJECT_LISTS * part + list);
+        pass.draw_indexed_indirect(view.arguments.raw(), size_of::<SceneDraw>() as u64 * draw);
+    }
+}

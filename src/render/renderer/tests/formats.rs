@@ -1,0 +1,153 @@
+//! Every kind of pipeline compiles for every kind of target, and draws into passes and bundles of it.
+
+use glam::Vec3;
+use wgpu::TextureFormat as Format;
+
+use super::mesh::{mesh, painted, placements};
+use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, renderer, view};
+use crate::Error;
+use crate::asset::material::Alpha;
+use crate::gpu::GpuError;
+use crate::render::renderer::pipelines::{Kind, PipelineKey};
+use crate::render::renderer::{Layer, Renderer};
+use crate::render::{DepthFormat, TargetFormat};
+use crate::scene::drawable::SurfaceKind;
+use crate::scene::layouts::SceneLayouts;
+use crate::surface::{Green, Method, ReliefOptions, Shadow};
+
+/// Kinds that take every entry point and both values of every flag.
+fn kinds() -> Vec<Kind> {
+    let flags = || [false, true].into_iter();
+    let surfaces =
+        flags().flat_map(|cut_out| flags().map(move |double_sided| SurfaceKind { cut_out, double_sided }));
+    let meshes = surfaces.map(|surface| Kind::Mesh { surface, normal_mapped: surface.cut_out });
+    let reliefs = Method::ALL.into_iter().flat_map(|method| {
+        [
+            (Shadow::None, None, false),
+            (Shadow::Hard, Some(Green::Up), true),
+            (Shadow::Soft, Some(Green::Down), true),
+        ]
+        .map(|(shadow, normal_map, set)| Kind::Relief {
+            double_sided: set,
+            options: ReliefOptions { method, shadow, normal_map, silhouette: set, depth: set, mip: set },
+        })
+    });
+    meshes.chain(reliefs).chain([Kind::Terrain]).collect()
+}
+
+fn formats() -> Vec<TargetFormat> {
+    let depth = |format, reversed| Some(DepthFormat { format, reversed });
+    let blended = wgpu::ColorTargetState {
+        format: Format::Bgra8Unorm,
+        blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+        write_mask: wgpu::ColorWrites::COLOR,
+    };
+    vec![
+        TargetFormat::new(FORMAT).with_samples(4).reversed(),
+        TargetFormat::new(Format::Rgba16Float)
+            .with_color(None)
+            .with_color(Some(Format::Rg16Uint.into()))
+            .with_depth(depth(Format::Depth24PlusStencil8, true)),
+        TargetFormat { color: vec![Some(blended)], ..TargetFormat::new(FORMAT) }
+            .with_depth(depth(Format::Depth24Plus, false))
+            .with_samples(4),
+        TargetFormat::new(Format::Rgba32Float).with_depth(None),
+        TargetFormat::new(Format::R8Unorm).with_depth(depth(Format::Depth16Unorm, false)),
+        TargetFormat::depth_only(Format::Depth32Float),
+        TargetFormat::depth_only(Format::Depth16Unorm).with_samples(4).reversed(),
+    ]
+}
+
+#[test]
+fn every_kind_of_pipeline_compiles_for_every_format() {
+    let gpu = gpu();
+    for format in formats() {
+        let renderer = Renderer::new(&gpu, &format).expect("a format");
+        for layer in renderer.layers() {
+            // All methods on one format are enough.
+            let kinds = kinds().into_iter().filter(|kind| match kind {
+                Kind::Relief { options, .. } => format.samples == 4 || options.method == Method::Quadtree,
+                _ => true,
+            });
+            for kind in kinds {
+                let key = PipelineKey::new(layer, kind, true);
+                let pipeline = key.pipeline(&gpu, &format, &renderer.layouts);
+                assert!(pipeline.is_ok(), "{format:?} {layer:?} {kind:?}: {:?}", pipeline.err());
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_device_does_not_allow_of_a_format_is_an_error() {
+    let gpu = gpu();
+    // Integers cannot be blended.
+    let blended = wgpu::ColorTargetState {
+        format: Format::Rgba32Float,
+        blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+        write_mask: wgpu::ColorWrites::ALL,
+    };
+    let format = TargetFormat { color: vec![Some(blended)], ..TargetFormat::new(FORMAT) }.with_samples(4);
+    let renderer = Renderer::new(&gpu, &format).expect("a format");
+    let key = PipelineKey::new(Layer::Color, Kind::Terrain, false);
+    let error = key.pipeline(&gpu, &format, &renderer.layouts).expect_err("refused");
+    assert!(matches!(error, GpuError::Validation { .. }), "{error}");
+}
+
+#[test]
+fn a_bundle_draws_what_a_pass_draws_and_other_colors_stay() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let (drawable, indices) = mesh(&gpu, &layouts, &painted(Alpha::Mask(0.5), false), 3);
+    let seen = view(Vec3::new(0.4, 0.8, 4.5), true);
+    let stage = Stage::new(&gpu, &layouts, seen, &placements(), &[[0, indices]]);
+    let format = TargetFormat::new(FORMAT)
+        .with_color(Some(Format::Rgba8Unorm.into()))
+        .with_depth(Some(DepthFormat { format: Format::Depth24PlusStencil8, reversed: true }));
+    let expected =
+        drawn(&gpu, &TargetFormat::new(FORMAT).reversed(), &drawable, &stage, None, &[Layer::Color]);
+    let found = drawn(&gpu, &format, &drawable, &stage, None, &[Layer::Depth, Layer::Color]);
+    assert_eq!(differing(&found, &expected, 1), 0);
+    let renderer = renderer(&gpu, &format, &drawable);
+    let mut bundle = gpu.device().create_render_bundle_encoder(&wgpu::RenderBundleEncoderDescriptor {
+        label: None,
+        color_formats: &[Some(FORMAT), Some(Format::Rgba8Unorm)],
+        depth_stencil: Some(wgpu::RenderBundleDepthStencil {
+            format: Format::Depth24PlusStencil8,
+            depth_read_only: false,
+            stencil_read_only: false,
+        }),
+        sample_count: 1,
+        multiview: None,
+    });
+    let (view, object) = (stage.seen(), stage.object(&drawable, None));
+    renderer.draw_objects(&mut bundle, &view, [object].into_iter(), Layer::Color).expect("prepared");
+    let bundle = bundle.finish(&wgpu::RenderBundleDescriptor::default());
+    let found = Canvas::new(&gpu, &format).draw(&gpu, |pass| pass.execute_bundles([&bundle]));
+    assert_eq!(differing(&found, &expected, 0), 0);
+    assert_eq!(found.len(), (SIZE[0] * SIZE[1]) as usize);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_told_by_its_path() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let (drawable, indices) = mesh(&gpu, &layouts, &painted(Alpha::Opaque, false), 3);
+    let stage = Stage::new(&gpu, &layouts, view(Vec3::Z, false), &placements(), &[[0, indices]]);
+    let refused = |renderer: &Renderer, layer| {
+        let mut error = None;
+        Canvas::new(&gpu, renderer.format()).draw(&gpu, |pass| {
+            let objects = [stage.object(&drawable, None)].into_iter();
+            error = renderer.draw_objects(pass, &stage.seen(), objects, layer).err();
+        });
+        error.expect("refused").path
+    };
+    let with = |format: TargetFormat| renderer(&gpu, &format, &drawable);
+    let good = TargetFormat::new(FORMAT);
+    assert_eq!(refused(&with(TargetFormat::depth_only(Format::Depth32Float)), Layer::Color), "layer");
+    assert_eq!(refused(&with(good.clone().with_depth(None)), Layer::Depth), "layer");
+    assert_eq!(refused(&with(good.clone().reversed()), Layer::Color), "view.camera.depth");
+    assert_eq!(refused(&Renderer::new(&gpu, &good).expect("a format"), Layer::Color), "scene.objects[0]");
+    let wrong = Renderer::new(&gpu, &good.with_samples(3)).expect_err("refused");
+    assert!(matches!(wrong, Error::Input(error) if error.path == "format.samples"));
+}

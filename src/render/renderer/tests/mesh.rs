@@ -1,0 +1,130 @@
+//! Meshes look as the renderer of skinned meshes draws them: textured, cut out, mirrored, from both sides.
+
+use glam::{Mat4, Vec3};
+use image::{Rgba, RgbaImage};
+
+use super::stage::{FORMAT, Stage, differing, drawn, gpu, through, view};
+use crate::asset::material::{Alpha, Material, Sampling, Texture};
+use crate::asset::transform::{Affine, rows};
+use crate::asset::{Light, Model};
+use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::render::renderer::Layer;
+use crate::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, TargetFormat};
+use crate::samples::creature::creature;
+use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::PartMaterials;
+use crate::shared::render::scene_vertex::MeshParams;
+use crate::skinning::buffers::MeshBuffers;
+use crate::surface::mips::Mips;
+
+/// The creature with a texture of colours and of every alpha.
+pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
+    let mut model = creature().expect("valid");
+    let color = |x: u32, y: u32| {
+        Rgba([(16 * x) as u8, (255 - 16 * y) as u8, ((x ^ y) << 4) as u8, (17 * (x + y) % 256) as u8])
+    };
+    model.images.push(RgbaImage::from_fn(16, 16, color));
+    model.materials.push(Material {
+        name: "paint".to_owned(),
+        color: [0.9, 1.0, 0.8, 0.9],
+        texture: Some(Texture { image: 0, sampling: Sampling::default() }),
+        normal: None,
+        normal_scale: 1.0,
+        alpha,
+    });
+    model.meshes[0].material = Some(0);
+    model.meshes[0].double_sided = double_sided;
+    // A quarter of the triangles is left away, so that the inside shows.
+    let indices = &mut model.meshes[0].indices;
+    let quarter = indices.len() / 12 * 3;
+    indices.truncate(indices.len() - quarter);
+    model.meshes[0].levels.clear();
+    model
+}
+
+/// The model's first mesh, whose instances have vertices of their own.
+pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (Drawable, u32) {
+    let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
+    let material = &model.materials[0];
+    let params = MeshParams { first_instance: 64, stride: clusters.vertices.len() as u32 };
+    let geometry = MeshGeometry {
+        params: Uniform::new(gpu, "mesh", &params).expect("uploaded"),
+        vertices: Buffer::from_slice(gpu, "vertices", &clusters.vertices.repeat(instances))
+            .expect("uploaded"),
+        uv: buffers.uv.clone(),
+        material_of: Buffer::from_slice(gpu, "material of", &vec![1; clusters.vertices.len()])
+            .expect("uploaded"),
+        indices: buffers.indices.clone(),
+    };
+    let table =
+        PartMaterials::new(gpu, layouts, model, &[None, Some(0)], &Sampling::default()).expect("uploaded");
+    let cut_out = material.alpha != Alpha::Opaque;
+    let part = MeshPart {
+        surface: SurfaceKind { cut_out, double_sided: model.meshes[0].double_sided },
+        materials: MeshMaterials::Plain(table),
+    };
+    let drawable = MeshDrawable::new(gpu, layouts, geometry, vec![part]).expect("bound");
+    (Drawable::Mesh(drawable), buffers.level(0).indices)
+}
+
+/// Placements that are plain, mirrored, and mirrored with an uneven scale.
+pub fn placements() -> [Affine; 3] {
+    let at = |x: f32, scale: Vec3| {
+        let place = Mat4::from_translation(Vec3::new(x, -1.0, 0.0)) * Mat4::from_rotation_y(0.6);
+        rows(&(place * Mat4::from_scale(scale)).to_cols_array())
+    };
+    [at(-1.2, Vec3::ONE), at(0.0, Vec3::new(1.0, 1.0, -1.0)), at(1.2, Vec3::new(-0.8, 1.1, 1.0))]
+}
+
+/// The picture of the renderer of skinned meshes.
+fn expected(gpu: &Gpu, model: &Model, clip_from_world: Mat4) -> Vec<[u8; 4]> {
+    let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
+    let white = Mips::of_color(RgbaImage::from_pixel(1, 1, Rgba([255; 4])));
+    let white = ColorTexture::new(gpu, &white, true).expect("uploaded").into();
+    let albedos = Albedo::of_meshes(gpu, model, &white, ColorTexture::new).expect("uploaded");
+    let instances = SkinnedInstances {
+        mesh: &buffers,
+        skinned: &Buffer::from_slice(gpu, "skinned", &clusters.vertices.repeat(3)).expect("uploaded"),
+        placements: &Buffer::from_slice(gpu, "placements", &placements()).expect("uploaded"),
+        drawn: &Buffer::from_slice(gpu, "drawn", &[0, 1, 2]).expect("uploaded"),
+        albedo: &albedos[0],
+        light: Light::default(),
+    };
+    let renderer = SkinnedRenderer::new(gpu, FORMAT).expect("compiled");
+    let mut scene = renderer.scene(gpu, &instances).expect("bound");
+    scene.set_camera(gpu, clip_from_world).expect("set");
+    super::stage::Canvas::new(gpu, &TargetFormat::new(FORMAT)).draw(gpu, |pass| scene.draw(pass))
+}
+
+#[test]
+fn meshes_look_as_the_renderer_of_skinned_meshes_draws_them() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let seen = view(Vec3::new(0.4, 0.8, 4.5), false);
+    let mirror = through(Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * seen.clip_from_world, seen.eye);
+    let cases =
+        [(Alpha::Opaque, false), (Alpha::Opaque, true), (Alpha::Mask(0.5), false), (Alpha::Dithered, true)];
+    for (alpha, double_sided) in cases {
+        let model = painted(alpha, double_sided);
+        let (drawable, indices) = mesh(&gpu, &layouts, &model, 3);
+        for view in [seen, mirror] {
+            let expected = expected(&gpu, &model, view.clip_from_world);
+            let stage = Stage::new(&gpu, &layouts, view, &placements(), &[[0, indices]]);
+            let found = drawn(&gpu, &TargetFormat::new(FORMAT), &drawable, &stage, None, &[Layer::Color]);
+            assert_eq!(differing(&found, &expected, 1), 0, "{alpha:?} {double_sided} {}", view.side);
+            let covered = found.iter().filter(|pixel| **pixel != [0; 4]).count();
+            assert!(covered > 1000, "{covered} pixels");
+            // A view that keeps the side of the other mirrors the wrong instances.
+            let wrong = Stage::new(
+                &gpu,
+                &layouts,
+                crate::shared::render::scene_view::SceneView { side: -view.side, ..view },
+                &placements(),
+                &[[0, indices]],
+            );
+            let wrong = drawn(&gpu, &TargetFormat::new(FORMAT), &drawable, &wrong, None, &[Layer::Color]);
+            assert!(differing(&wrong, &expected, 1) > 100, "{alpha:?} {double_sided} {}", view.side);
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Pixels of a renderer without a scene: lists, rows and draws are made here as kernels would make them.
+
+mod formats;
+mod layers;
+mod mesh;
+mod relief;
+mod stage;
+mod terrain;

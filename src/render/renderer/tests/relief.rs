@@ -1,0 +1,164 @@
+//! Reliefs look as the renderer of reliefs draws them, at any scale of the instance.
+
+use glam::{Mat4, Vec3};
+
+use super::stage::{Canvas, FORMAT, Stage, differing, drawn, gpu, through, view};
+use crate::asset::Light;
+use crate::asset::transform::rows;
+use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::render::renderer::Layer;
+use crate::render::{ColorTexture, ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, TargetFormat};
+use crate::samples::maps::BuiltInMap;
+use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::{ReliefLook, ReliefMaterial};
+use crate::shared::render::scene_vertex::MeshParams;
+use crate::shared::render::scene_view::SceneView;
+use crate::skinning::vertex::Vertex;
+use crate::surface::mips::Mips;
+use crate::surface::{Address, March, Material, Method, Shadow, SurfaceMesh, SurfaceTextures};
+
+const TILES: f32 = 2.0;
+
+/// The maps of a relief.
+pub struct Maps {
+    textures: SurfaceTextures,
+    albedo: ColorTexture,
+}
+
+impl Maps {
+    pub fn new(gpu: &Gpu, method: Method) -> Self {
+        let height = BuiltInMap::Cobbles.height_map(64).expect("a map");
+        let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(64).expect("a map"));
+        Self {
+            textures: SurfaceTextures::new(gpu, &height, method, Address::Wrap).expect("uploaded"),
+            albedo: ColorTexture::new(gpu, &albedo, true).expect("uploaded"),
+        }
+    }
+
+    fn maps(&self) -> ReliefMaps<'_> {
+        ReliefMaps { textures: &self.textures, albedo: &self.albedo, normals: None }
+    }
+}
+
+/// The default light in a relief's terms.
+fn material(plane: f32) -> Material {
+    let light = Light::default();
+    Material {
+        light: light.direction.normalize().into(),
+        ambient: light.ambient,
+        plane,
+        ..Material::default()
+    }
+}
+
+/// A square of relief as an object.
+pub fn square(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    maps: &Maps,
+    options: ReliefOptions,
+    plane: f32,
+) -> Drawable {
+    let square = SurfaceMesh::square(TILES);
+    let vertex = |vertex: &crate::surface::SurfaceVertex| Vertex {
+        position: vertex.position,
+        normal: vertex.normal,
+        tangent: vertex.tangent,
+    };
+    let look = ReliefLook {
+        material: material(plane),
+        march: March::default(),
+        range: [[0.0; 2], [TILES; 2]],
+        world: 1.0 / TILES,
+        color: [1.0; 3],
+    };
+    let up = "uploaded";
+    let params = MeshParams { first_instance: 64, stride: 0 };
+    let uv: Vec<_> = square.vertices.iter().map(|vertex| vertex.uv).collect();
+    let vertices: Vec<_> = square.vertices.iter().map(vertex).collect();
+    let geometry = MeshGeometry {
+        params: Uniform::new(gpu, "mesh", &params).expect(up),
+        vertices: Buffer::from_slice(gpu, "vertices", &vertices).expect(up),
+        uv: Buffer::from_slice(gpu, "uv", &uv).expect(up),
+        material_of: Buffer::from_slice(gpu, "material of", &[0; 4]).expect(up),
+        indices: Buffer::from_slice(gpu, "indices", &square.indices).expect(up),
+    };
+    let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
+    let part = MeshPart {
+        surface: SurfaceKind { cut_out: false, double_sided: true },
+        materials: MeshMaterials::Relief(relief),
+    };
+    Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, vec![part]).expect("bound"))
+}
+
+/// Where the square stands.
+pub fn place(scale: Vec3) -> Mat4 {
+    Mat4::from_rotation_x(-0.7) * Mat4::from_scale(scale)
+}
+
+/// The picture of the renderer of reliefs, whose world is the square's own space.
+fn expected(gpu: &Gpu, maps: &Maps, options: ReliefOptions, view: &SceneView, scale: f32) -> Vec<[u8; 4]> {
+    let into = place(Vec3::ONE);
+    let mut mesh = SurfaceMesh::square(TILES);
+    for vertex in &mut mesh.vertices {
+        let [tangent, normal] = [Vec3::from_slice(&vertex.tangent), Vec3::from(vertex.normal)];
+        vertex.position = into.transform_point3(scale * Vec3::from(vertex.position)).into();
+        vertex.normal = into.transform_vector3(normal).into();
+        vertex.tangent = into.transform_vector3(tangent).extend(vertex.tangent[3]).into();
+    }
+    let renderer = ReliefRenderer::new(gpu, FORMAT, options).expect("compiled");
+    let (material, march) = (material(1.0), March::default());
+    let mut scene = renderer.scene(gpu, &mesh, maps.maps(), &material, &march, scale / TILES).expect("bound");
+    let camera = ReliefCamera { clip_from_world: view.clip_from_world, eye: view.eye };
+    scene.set_camera(gpu, camera).expect("set");
+    Canvas::new(gpu, &TargetFormat::new(FORMAT)).draw(gpu, |pass| scene.draw(pass))
+}
+
+#[test]
+fn reliefs_look_as_the_renderer_of_reliefs_draws_them() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let format = TargetFormat::new(FORMAT);
+    for (method, shadow, depth, scale) in [
+        (Method::Quadtree, Shadow::Hard, false, 1.0),
+        (Method::Relief, Shadow::Soft, true, 1.7),
+        (Method::Parallax, Shadow::None, true, 0.8),
+    ] {
+        let maps = Maps::new(&gpu, method);
+        let options = ReliefOptions { method, shadow, silhouette: depth, depth, ..ReliefOptions::default() };
+        let seen = view(Vec3::new(0.3, 0.9, 1.6), false);
+        let expected = expected(&gpu, &maps, options, &seen, scale);
+        let square = square(&gpu, &layouts, &maps, options, 1.0);
+        let drawn = |scale: Vec3| {
+            let placement = rows(&place(scale).to_cols_array());
+            let stage = Stage::new(&gpu, &layouts, seen, &[placement], &[[0, 6]]);
+            drawn(&gpu, &format, &square, &stage, None, &[Layer::Color])
+        };
+        let found = drawn(Vec3::splat(scale));
+        let wrong = differing(&found, &expected, 2);
+        // A ray that passes an edge of a stone may round to either side of it.
+        assert!(wrong <= 20, "{method:?}: {wrong} pixels");
+        assert!(differing(&drawn(Vec3::splat(1.1 * scale)), &expected, 2) > 1000);
+    }
+}
+
+#[test]
+fn a_mirrored_relief_is_the_mirror_image() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let maps = Maps::new(&gpu, Method::Quadtree);
+    let options = ReliefOptions { shadow: Shadow::Hard, depth: true, ..ReliefOptions::default() };
+    let square = square(&gpu, &layouts, &maps, options, 1.0);
+    let format = TargetFormat::new(FORMAT);
+    // Mirrored in the plane x = 0: the placement, the eye, the light, and the picture.
+    let mirror = Vec3::new(-1.0, 1.0, 1.0);
+    let seen = view(Vec3::new(0.3, 0.9, 1.6), false);
+    let plain = Stage::new(&gpu, &layouts, seen, &[rows(&place(Vec3::ONE).to_cols_array())], &[[0, 6]]);
+    let eye = seen.eye * mirror.extend(1.0);
+    let light = seen.light * mirror.extend(1.0);
+    let other = SceneView { light, ..through(seen.clip_from_world * Mat4::from_scale(mirror), eye) };
+    let mirrored = Stage::new(&gpu, &layouts, other, &[rows(&place(mirror).to_cols_array())], &[[0, 6]]);
+    let [a, b] = [&plain, &mirrored].map(|stage| drawn(&gpu, &format, &square, stage, None, &[Layer::Color]));
+    assert!(differing(&a, &b, 2) <= 20, "{} pixels", differing(&a, &b, 2));
+}

@@ -1,0 +1,251 @@
+//! A scene of one object and one view, and a canvas.
+
+use glam::{Mat4, Vec3, Vec4, camera};
+
+use super::super::{Layer, Renderer};
+use crate::asset::Light;
+use crate::asset::transform::Affine;
+use crate::gpu::{Buffer, Gpu, Group, Options, Uniform};
+use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw, SceneInstance};
+use crate::render::{DepthFormat, TargetFormat};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::layouts::SceneLayouts;
+use crate::shared::render::scene_view::SceneView;
+use crate::skinning::picture::is_mirrored;
+
+/// Pixels along the edges of a canvas. The bytes of a row are a multiple of 256, as copies demand.
+pub const SIZE: [u32; 2] = [192, 128];
+
+pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+pub fn gpu() -> Gpu {
+    Gpu::headless(&Options::default()).expect("the suite needs an adapter")
+}
+
+/// A perspective view of the origin.
+pub fn view(eye: Vec3, reversed: bool) -> SceneView {
+    let look = camera::rh::view::look_at_mat4(eye, Vec3::ZERO, Vec3::Y);
+    let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+    let projection = match reversed {
+        true => camera::rh::proj::directx::perspective_infinite_reverse(0.7, aspect, 0.5),
+        false => camera::rh::proj::directx::perspective(0.7, aspect, 0.5, 50.0),
+    };
+    through(projection * look, eye.extend(1.0))
+}
+
+/// A view with this matrix, lit by default.
+pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
+    let light = Light::default();
+    SceneView {
+        clip_from_world,
+        eye,
+        light: light.direction.normalize().extend(light.ambient),
+        light_color: light.color,
+        side: if is_mirrored(&clip_from_world) { -1.0 } else { 1.0 },
+    }
+}
+
+/// What kernels would have written for a view of one object, whose instances are the scene's second block.
+pub struct Stage {
+    view: SceneView,
+    group: Group,
+    lists: Buffer<u32>,
+    arguments: Buffer<SceneDraw>,
+    lod: LodObject,
+    reversed: bool,
+}
+
+impl Stage {
+    /// Shows instances at `placements`, at most a block of them, at level 0. Each of `parts` is a range of indices: the
+    /// first, and their number.
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        view: SceneView,
+        placements: &[Affine],
+        parts: &[[u32; 2]],
+    ) -> Self {
+        let lod = LodObject {
+            first: BLOCK,
+            instances: BLOCK,
+            first_list: 2 * BLOCK,
+            first_draw: 3,
+            parts: parts.len() as u32,
+            shown: 1,
+            ..LodObject::NONE
+        };
+        let mirrored = |placement: &Affine| {
+            let [x, y, z] = placement.map(|row| Vec3::from_slice(&row));
+            x.dot(y.cross(z)) < 0.0
+        };
+        let list = |wanted: bool| -> Vec<u32> {
+            let all = (0..).zip(placements).filter(|(_, placement)| mirrored(placement) == wanted);
+            all.map(|(index, _)| index).collect()
+        };
+        let all = [list(false), list(true)];
+        // Words of other lists would be found out.
+        let mut lists = vec![u32::MAX; (4 * BLOCK) as usize];
+        let mut draws = vec![[0; 5]; 3];
+        for (at, list) in all.iter().enumerate() {
+            let first = lod.first_list as usize + at * BLOCK as usize;
+            lists[first..first + list.len()].copy_from_slice(list);
+        }
+        for [first, indices] in parts {
+            let count = |list: usize| all.get(list).map_or(0, |list| list.len() as u32);
+            draws.extend((0..OBJECT_LISTS as usize).map(|list| [*indices, count(list), *first, 0, 0]));
+        }
+        let draws: Vec<SceneDraw> = draws.into_iter().map(bytemuck::cast).collect();
+        let nowhere = vec![[f32::NAN; 4]; 3 * BLOCK as usize];
+        let rows: Vec<[f32; 4]> = nowhere.into_iter().chain(placements.iter().flatten().copied()).collect();
+        let instances = vec![SceneInstance::new([0.0; 4]); BLOCK as usize + placements.len()];
+        let up = "uploaded";
+        let group = layouts.view(
+            gpu,
+            &Uniform::new(gpu, "view", &view).expect(up),
+            &Buffer::from_slice(gpu, "rows", &rows).expect(up),
+            &Buffer::from_slice(gpu, "instances", &instances).expect(up),
+        );
+        let z = view.clip_from_world.row(2);
+        Self {
+            view,
+            group: group.expect("bound"),
+            lists: Buffer::from_slice(gpu, "lists", &lists).expect(up),
+            arguments: Buffer::from_slice(gpu, "draws", &draws).expect(up),
+            lod,
+            // An infinite far plane lies at depth 0, where only the near plane is left of the row.
+            reversed: z.truncate() == Vec3::ZERO,
+        }
+    }
+
+    pub fn seen(&self) -> DrawnView<'_> {
+        DrawnView {
+            group: &self.group,
+            lists: &self.lists,
+            arguments: &self.arguments,
+            mirrors: self.view.side < 0.0,
+            reversed: self.reversed,
+        }
+    }
+
+    pub fn object<'a>(&'a self, drawable: &'a Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
+        DrawnObject { drawable, lod: &self.lod, mirrors: true, ground }
+    }
+}
+
+/// A renderer with the pipelines of one object.
+pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &Drawable) -> Renderer {
+    let mut renderer = Renderer::new(gpu, format).expect("a format");
+    renderer.prepare_objects([drawable].into_iter()).expect("compiled");
+    renderer
+}
+
+/// Draws these layers of an object in one pass, after another, and reads the colours.
+pub fn drawn(
+    gpu: &Gpu,
+    format: &TargetFormat,
+    drawable: &Drawable,
+    stage: &Stage,
+    ground: Option<&Group>,
+    layers: &[Layer],
+) -> Vec<[u8; 4]> {
+    let renderer = renderer(gpu, format, drawable);
+    let object = stage.object(drawable, ground);
+    Canvas::new(gpu, format).draw(gpu, |pass| {
+        for layer in layers {
+            renderer.draw_objects(pass, &stage.seen(), [object].into_iter(), *layer).expect("prepared");
+        }
+    })
+}
+
+/// The number of pixels that differ by more than `levels`.
+pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
+    assert_eq!(a.len(), b.len());
+    let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > levels);
+    a.iter().zip(b).filter(|pair| far(*pair)).count()
+}
+
+/// Attachments of a format.
+pub struct Canvas {
+    colors: Vec<Option<wgpu::Texture>>,
+    resolved: wgpu::Texture,
+    depth: Option<(wgpu::Texture, DepthFormat)>,
+}
+
+impl Canvas {
+    pub fn new(gpu: &Gpu, format: &TargetFormat) -> Self {
+        let texture = |format, sample_count, usage| {
+            gpu.device().create_texture(&wgpu::TextureDescriptor {
+                label: Some("canvas"),
+                size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+                view_formats: &[],
+            })
+        };
+        let [none, read] = [wgpu::TextureUsages::empty(), wgpu::TextureUsages::COPY_SRC];
+        let color = |target: &Option<wgpu::ColorTargetState>| {
+            target.as_ref().map(|target| texture(target.format, format.samples, read))
+        };
+        Self {
+            colors: format.color.iter().map(color).collect(),
+            resolved: texture(FORMAT, 1, read),
+            depth: format.depth.map(|depth| (texture(depth.format, format.samples, none), depth)),
+        }
+    }
+
+    /// Clears, draws, and reads the first colour, which has [`FORMAT`]; a depth-only canvas has none but black.
+    pub fn draw(&self, gpu: &Gpu, draw: impl FnOnce(&mut wgpu::RenderPass<'_>)) -> Vec<[u8; 4]> {
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let resolved = view(&self.resolved);
+        let colors: Vec<_> = self.colors.iter().map(|color| color.as_ref().map(view)).collect();
+        let first = self.colors.first().cloned().flatten();
+        let samples = first.as_ref().map_or(1, wgpu::Texture::sample_count);
+        let attachments: Vec<_> = (colors.iter().enumerate())
+            .map(|(at, color)| {
+                color.as_ref().map(|view| wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: (samples > 1 && at == 0).then_some(&resolved),
+                    ops: wgpu::Operations::default(),
+                })
+            })
+            .collect();
+        let depth = self.depth.as_ref().map(|(texture, depth)| (view(texture), depth));
+        let buffer = Buffer::<[u8; 4]>::new(gpu, "pixels", (SIZE[0] * SIZE[1]) as usize).expect("allocated");
+        gpu.run("draw", |encoder| {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &attachments,
+                depth_stencil_attachment: depth.as_ref().map(|(view, depth)| {
+                    let far = if depth.reversed { 0.0 } else { 1.0 };
+                    let has_stencil = depth.format.has_stencil_aspect();
+                    wgpu::RenderPassDepthStencilAttachment {
+                        view,
+                        depth_ops: Some(wgpu::Operations {
+                            load: wgpu::LoadOp::Clear(far),
+                            store: wgpu::StoreOp::Store,
+                        }),
+                        stencil_ops: has_stencil.then(wgpu::Operations::default),
+                    }
+                }),
+                ..Default::default()
+            });
+            draw(&mut pass);
+            drop(pass);
+            let from = if samples > 1 { Some(&self.resolved) } else { first.as_ref() };
+            if let Some(from) = from {
+                let layout = wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(4 * SIZE[0]),
+                    rows_per_image: None,
+                };
+                let to = wgpu::TexelCopyBufferInfo { buffer: buffer.raw(), layout };
+                encoder.copy_texture_to_buffer(from.as_image_copy(), to, from.size());
+            }
+        })
+        .expect("drawn");
+        buffer.read_blocking(gpu).expect("read")
+    }
+}

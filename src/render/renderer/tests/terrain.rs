@@ -1,0 +1,162 @@
+//! Terrain looks as the renderer of terrain draws it, wherever its samples are counted from.
+
+use glam::{IVec2, Mat4, Vec3};
+
+use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, through};
+use crate::asset::transform::AFFINE_IDENTITY;
+use crate::gpu::{Buffer, Gpu, Group, Uniform};
+use crate::render::renderer::Layer;
+use crate::render::{Camera, Materials, Style, TargetFormat, TerrainRenderer};
+use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
+use crate::scene::layouts::SceneLayouts;
+use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch, TerrainView};
+use crate::shared::render::scene_view::SceneView;
+use crate::terrain::blend::Shading;
+use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::fields::Fields;
+use crate::terrain::generator::Generator;
+use crate::terrain::recipe::Recipe;
+use crate::terrain::texture::Texture;
+
+const PATCHES: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+/// Four patches of terrain.
+pub struct Land {
+    pub config: Config,
+    fields: Fields,
+}
+
+impl Land {
+    pub fn new(gpu: &Gpu) -> Self {
+        let text = r#"{"patchSize": 33, "scaleFactor": 40.0, "seed": "a land"}"#;
+        let config = Config::from_json(text).expect("valid");
+        let generator = Generator::new(gpu, Recipe::new(config.clone())).expect("compiled");
+        let mut parts = generator.generate(gpu, &PATCHES, 1, &mut |_| ()).expect("generated");
+        Self { config, fields: parts.remove(0) }
+    }
+
+    fn zones(&self, gpu: &Gpu) -> Materials {
+        let textures = Texture::of_zones(&self.config.zones).expect("built in");
+        Materials::new(gpu, &self.config.zones, &textures).expect("uploaded")
+    }
+
+    /// The terrain as an object.
+    pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts) -> (Drawable, u32) {
+        let Config { patch_size: size, terrain_scale, .. } = self.config;
+        let tiles = self.config.tiles_per_patch();
+        let zones = self.zones(gpu);
+        let params = TerrainParams {
+            in_width: self.fields.width,
+            size,
+            spacing: terrain_scale as f32,
+            run: (2.0 * terrain_scale * HEIGHT_ONE) as f32,
+            tiling: (tiles / f64::from(size - 1)) as f32,
+            zone_count: zones.zone_count,
+            additive: Shading::default().weights.code(),
+        };
+        let patch = |(window, patch): (u32, [i32; 2])| TerrainPatch {
+            origin: patch.map(|at| at * (size as i32 - 1)),
+            uv: patch.map(|at| (f64::from(at) * tiles).rem_euclid(1.0) as f32),
+            window,
+            unused: 0,
+        };
+        let patches: Vec<_> = (0..).zip(PATCHES).map(patch).collect();
+        let indices = patch_indices(size);
+        let geometry = TerrainGeometry {
+            params: Uniform::new(gpu, "terrain", &params).expect("uploaded"),
+            heights: self.fields.heights.clone(),
+            patches: Buffer::from_slice(gpu, "patches", &patches).expect("uploaded"),
+            indices: Buffer::from_slice(gpu, "indices", &indices).expect("uploaded"),
+            zones,
+        };
+        let terrain = TerrainDrawable::new(gpu, layouts, geometry).expect("bound");
+        (Drawable::Terrain(terrain), indices.len() as u32)
+    }
+
+    /// The samples counted from `base`, in a view whose cell's corner is the first sample.
+    pub fn ground(&self, gpu: &Gpu, layouts: &SceneLayouts, base: [i32; 2]) -> Group {
+        let rest = base.map(|at| (f64::from(at) * self.config.terrain_scale) as f32);
+        let ground = TerrainView { base: IVec2::from(base), rest: Vec3::new(rest[0], 0.0, rest[1]) };
+        layouts.ground(gpu, &Uniform::new(gpu, "ground", &ground).expect("uploaded")).expect("bound")
+    }
+
+    pub fn camera(&self) -> Camera {
+        let edge = (2.0 * f64::from(self.config.patch_size - 1) * self.config.terrain_scale) as f32;
+        Camera::framing(Vec3::ZERO, Vec3::new(edge, 0.2 * edge, edge))
+    }
+
+    /// The view of that camera, in the light of terrain.
+    pub fn view(&self) -> SceneView {
+        let camera = self.camera();
+        let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+        let shading = Shading::default();
+        let light = Vec3::from(shading.light).extend(shading.ambient);
+        SceneView { light, ..through(camera.clip_from_world(aspect).expect("valid"), camera.eye.extend(1.0)) }
+    }
+
+    pub fn stage(&self, gpu: &Gpu, layouts: &SceneLayouts, indices: u32) -> Stage {
+        Stage::new(gpu, layouts, self.view(), &[AFFINE_IDENTITY; 4], &[[0, indices]])
+    }
+}
+
+#[test]
+fn terrain_looks_as_the_renderer_of_terrain_draws_it() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let land = Land::new(&gpu);
+    let renderer = TerrainRenderer::new(&gpu, FORMAT, Style::Textured).expect("compiled");
+    let mut scene = renderer.scene(&gpu, &land.zones(&gpu), &Shading::default()).expect("bound");
+    scene.add(&gpu, &land.config, &land.fields, &PATCHES, [0, 0]).expect("added");
+    scene.set_camera(&gpu, &land.camera(), SIZE[0] as f32 / SIZE[1] as f32).expect("set");
+    let format = TargetFormat::new(FORMAT);
+    let expected = Canvas::new(&gpu, &format).draw(&gpu, |pass| scene.draw(pass));
+    let (drawable, indices) = land.drawable(&gpu, &layouts);
+    let stage = land.stage(&gpu, &layouts, indices);
+    let from = |base| {
+        let ground = land.ground(&gpu, &layouts, base);
+        drawn(&gpu, &format, &drawable, &stage, Some(&ground), &[Layer::Color])
+    };
+    assert_eq!(differing(&from([0, 0]), &expected, 1), 0);
+    // Rounding moves edges by a fraction of a pixel.
+    let elsewhere = from([13, -7]);
+    assert!(differing(&elsewhere, &expected, 2) < 40, "{}", differing(&elsewhere, &expected, 2));
+    let covered = expected.iter().filter(|pixel| **pixel != [0; 4]).count();
+    assert!(covered > 5000, "{covered} pixels");
+    // The other diagonal is told from this one.
+    let Drawable::Terrain(mut turned) = drawable else { panic!("a terrain") };
+    let size = land.config.patch_size;
+    let cells = patch_indices(size);
+    let other = cells.chunks(6).flat_map(|cell| {
+        let [a, b, c, d] = [cell[0], cell[1], cell[2], cell[5]];
+        [a, b, d, a, d, c]
+    });
+    turned.geometry.indices =
+        Buffer::from_slice(&gpu, "indices", &other.collect::<Vec<_>>()).expect("uploaded");
+    let ground = land.ground(&gpu, &layouts, [0, 0]);
+    let turned = Drawable::Terrain(turned);
+    let wrong = drawn(&gpu, &format, &turned, &stage, Some(&ground), &[Layer::Color]);
+    assert!(differing(&wrong, &expected, 1) > 200, "{}", differing(&wrong, &expected, 1));
+}
+
+/// A wide view of a plane from below the ground sees sky through every crack between patches.
+#[test]
+fn no_crack_opens_between_patches_far_from_the_origin() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let land = Land::new(&gpu);
+    let (drawable, indices) = land.drawable(&gpu, &layouts);
+    let edge = (2.0 * f64::from(land.config.patch_size - 1) * land.config.terrain_scale) as f32;
+    // Straight down on the middle, where four patches meet, at a place that f32 cannot hold exactly.
+    let eye = Vec3::new(0.5 * edge, 0.6 * edge, 0.5 * edge);
+    let look = glam::camera::rh::view::look_at_mat4(eye, eye - Vec3::Y, Vec3::NEG_Z);
+    let clip = glam::camera::rh::proj::directx::perspective(0.8, 1.5, 1.0, 10.0 * edge) * look;
+    let seen = through(clip * Mat4::from_translation(Vec3::new(0.1, 0.0, 0.3)), eye.extend(1.0));
+    let stage = Stage::new(&gpu, &layouts, seen, &[AFFINE_IDENTITY; 4], &[[0, indices]]);
+    let format = TargetFormat::new(FORMAT);
+    for base in [[0, 0], [7, 11], [-4097, 8191]] {
+        let ground = land.ground(&gpu, &layouts, base);
+        let found = drawn(&gpu, &format, &drawable, &stage, Some(&ground), &[Layer::Color]);
+        let sky = found.iter().filter(|pixel| **pixel == [0; 4]).count();
+        assert_eq!(sky, 0, "{base:?}");
+    }
+}

@@ -1,0 +1,218 @@
+//! What a renderer needs of the objects of a scene, and of a view.
+
+use crate::gpu::bindings::render::{scene_mesh, scene_terrain};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Uniform};
+use crate::lod::{LodObject, SceneDraw};
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::{PartMaterials, ReliefMaterial};
+use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
+use crate::shared::render::scene_vertex::MeshParams;
+use crate::skinning::vertex::Vertex;
+use crate::terrain::materials::Materials;
+
+/// How an object is drawn.
+#[derive(Debug, Clone)]
+pub(crate) enum Drawable {
+    /// Triangles of a mesh, static or skinned.
+    Mesh(MeshDrawable),
+    /// Patches of terrain.
+    Terrain(TerrainDrawable),
+}
+
+/// The buffers of a mesh.
+#[derive(Debug, Clone)]
+pub(crate) struct MeshGeometry {
+    /// Index of its first instance in the scene, and where its vertices lie.
+    pub params: Uniform<MeshParams>,
+    /// Vertices in the model's space: of the mesh, or of each instance.
+    pub vertices: Buffer<Vertex>,
+    /// Texture coordinates, one pair per vertex of the mesh.
+    pub uv: Buffer<[f32; 2]>,
+    /// For each vertex of the mesh, the index of its material in its part's table.
+    pub material_of: Buffer<u32>,
+    /// Triangles, level by level, and in each level part by part.
+    pub indices: Buffer<u32>,
+}
+
+/// A mesh on the device, in parts that share a pipeline.
+#[derive(Debug, Clone)]
+pub(crate) struct MeshDrawable {
+    /// Its buffers.
+    pub geometry: MeshGeometry,
+    /// Its parts, in the order of their draws.
+    pub parts: Vec<MeshPart>,
+    /// Bind group 1.
+    pub group: Group,
+}
+
+impl MeshDrawable {
+    /// Binds buffers. When one of them is replaced, bind all anew.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        geometry: MeshGeometry,
+        parts: Vec<MeshPart>,
+    ) -> Result<Self, GpuError> {
+        let group = scene_mesh::Group1 {
+            mesh: &geometry.params,
+            vertices: geometry.vertices.slice().cast(),
+            texture_coordinates: geometry.uv.slice(),
+            material_of: geometry.material_of.slice(),
+        };
+        Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, parts })
+    }
+}
+
+/// The triangles of a mesh that share a pipeline, textures and a sampler.
+#[derive(Debug, Clone)]
+pub(crate) struct MeshPart {
+    /// What tells its pipelines from those of other parts.
+    pub surface: SurfaceKind,
+    /// What it looks like.
+    pub materials: MeshMaterials,
+}
+
+/// What a part of a mesh looks like.
+#[derive(Debug, Clone)]
+pub(crate) enum MeshMaterials {
+    /// Colours, textures and normal maps.
+    Plain(PartMaterials),
+    /// A relief, on a static mesh.
+    Relief(ReliefMaterial),
+}
+
+impl MeshMaterials {
+    /// Bind group 2.
+    pub fn group(&self) -> &Group {
+        match self {
+            Self::Plain(materials) => &materials.group,
+            Self::Relief(relief) => &relief.group,
+        }
+    }
+}
+
+/// What tells pipelines apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct SurfaceKind {
+    /// Whether alpha decides which pixels are drawn (masked or dithered). A relief ignores alpha.
+    pub cut_out: bool,
+    /// Whether both sides of triangles are seen.
+    pub double_sided: bool,
+}
+
+/// The buffers of a terrain.
+#[derive(Debug, Clone)]
+pub(crate) struct TerrainGeometry {
+    /// What patches have in common.
+    pub params: Uniform<TerrainParams>,
+    /// Windows of heights in 1/65536 units.
+    pub heights: Buffer<i32>,
+    /// One per instance.
+    pub patches: Buffer<TerrainPatch>,
+    /// The triangles of a patch: [`patch_indices`].
+    pub indices: Buffer<u32>,
+    /// Zones and their textures.
+    pub zones: Materials,
+}
+
+/// Patches of terrain on the device.
+#[derive(Debug, Clone)]
+pub(crate) struct TerrainDrawable {
+    /// Its buffers.
+    pub geometry: TerrainGeometry,
+    /// Bind group 2; bind group 1 belongs to the view ([`SceneLayouts::ground`]).
+    pub group: Group,
+}
+
+impl TerrainDrawable {
+    /// Binds buffers. When one of them is replaced, bind all anew.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, layouts: &SceneLayouts, geometry: TerrainGeometry) -> Result<Self, GpuError> {
+        let group = scene_terrain::Group2 {
+            terrain: &geometry.params,
+            heights: geometry.heights.slice(),
+            patches: geometry.patches.slice(),
+            zones: geometry.zones.zones.slice(),
+            textures: &geometry.zones.view(),
+            texture_sampler: &geometry.zones.sampler,
+        };
+        Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry })
+    }
+}
+
+/// The triangles of a patch of `size` × `size` vertices, row by row, counter-clockwise seen from above. The diagonal of
+/// each cell runs from its south-west to its north-east.
+pub(crate) fn patch_indices(size: u32) -> Vec<u32> {
+    let cells = || 0..size.saturating_sub(1);
+    let corners = |x: u32, y: u32| {
+        let north = y * size + x;
+        let south = north + size;
+        [north, south, north + 1, north + 1, south, south + 1]
+    };
+    cells().flat_map(|y| cells().flat_map(move |x| corners(x, y))).collect()
+}
+
+/// An object as a view draws it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DrawnObject<'a> {
+    /// How it is drawn.
+    pub drawable: &'a Drawable,
+    /// Where its lists and draws lie, and its number of levels.
+    pub lod: &'a LodObject,
+    /// Whether an instance may be mirrored; if none is, the lists of mirrored ones are not drawn.
+    pub mirrors: bool,
+    /// Bind group 1 of terrain: [`SceneLayouts::ground`]. Meshes have none.
+    pub ground: Option<&'a Group>,
+}
+
+/// A view as a renderer needs it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DrawnView<'a> {
+    /// Bind group 0: [`SceneLayouts::view`].
+    pub group: &'a Group,
+    /// The instances of each list, by their index in the object.
+    pub lists: &'a Buffer<u32>,
+    /// The draws.
+    pub arguments: &'a Buffer<SceneDraw>,
+    /// Whether the picture is a mirror image, as `SceneView::side` says.
+    pub mirrors: bool,
+    /// Whether depth falls with distance.
+    pub reversed: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_patch_has_the_diagonals_of_its_strips() {
+        assert_eq!(patch_indices(2), [0, 2, 1, 1, 2, 3]);
+        let size = 5;
+        // A strip for each row of cells, as `wgsl/render/terrain.wgsl` draws it.
+        let strip = |row: u32| {
+            let corner = move |index: u32| (row + (index & 1)) * size + (index >> 1);
+            (0..2 * size - 2).map(move |at| [0, 1, 2].map(|next| corner(at + next)))
+        };
+        let sorted = |mut triangle: [u32; 3]| {
+            triangle.sort_unstable();
+            triangle
+        };
+        let expected: Vec<_> = (0..size - 1).flat_map(strip).map(sorted).collect();
+        let indices = patch_indices(size);
+        let found: Vec<_> =
+            indices.chunks(3).map(|corners| sorted([corners[0], corners[1], corners[2]])).collect();
+        assert_eq!(found, expected);
+        // Seen from above, where y runs down the page, counter-clockwise triangles have a positive product here.
+        let place = |vertex: u32| [vertex % size, vertex / size].map(|at| at as i32);
+        for corners in indices.chunks(3) {
+            let [a, b, c] = [0, 1, 2].map(|at| place(corners[at]));
+            let [u, v] = [b, c].map(|to| [to[0] - a[0], to[1] - a[1]]);
+            assert!(u[1] * v[0] - u[0] * v[1] > 0, "{corners:?}");
+        }
+    }
+}

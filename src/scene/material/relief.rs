@@ -1,0 +1,92 @@
+//! The relief of a part of a static mesh, on the device.
+
+use crate::gpu::bindings::render::scene_relief::Group2;
+use crate::gpu::{Gpu, Group, Uniform};
+use crate::scene::layouts::SceneLayouts;
+use crate::shared::render::scene_relief::ReliefParams;
+use crate::shared::surface::ray::SurfaceMarch;
+use crate::surface::relief::March;
+use crate::surface::{Material, ReliefMaps, ReliefOptions};
+use crate::{Error, InputError};
+
+/// A relief that replaces the materials of a part.
+#[derive(Debug, Clone)]
+pub(crate) struct ReliefMaterial {
+    /// Bind group 2 of `render/scene_relief`.
+    pub group: Group,
+    /// What pipelines are compiled for.
+    pub options: ReliefOptions,
+}
+
+/// The parameters of a relief, besides its maps and options.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ReliefLook {
+    /// Depth, plane and the width of shadows; the light is the scene's.
+    pub material: Material,
+    /// How rays are marched.
+    pub march: March,
+    /// The mesh's range of uv: lower and upper end.
+    pub range: [[f32; 2]; 2],
+    /// The length of a uv unit in the model's units, > 0.
+    pub world: f32,
+    /// The factor of the albedo: linear red, green and blue.
+    pub color: [f32; 3],
+}
+
+impl ReliefMaterial {
+    /// Binds the maps of a relief. The albedo's sampler filters the normals too.
+    ///
+    /// # Errors
+    /// [`InputError`] for arguments out of range or that do not match each other; [`crate::gpu::GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        maps: ReliefMaps<'_>,
+        options: ReliefOptions,
+        look: &ReliefLook,
+    ) -> Result<Self, Error> {
+        look.validate()?;
+        maps.textures.check(options.method, &look.march)?;
+        if options.normal_map.is_some() && maps.normals.is_none() {
+            let bound = "must be a normal map, which the options ask for";
+            return Err(InputError::new("maps.normals", "nothing", bound).into());
+        }
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let [heights, acceleration] = &maps.textures.views();
+        let group = Group2 {
+            relief: &Uniform::new(gpu, "scene relief", &look.params())?,
+            march: &Uniform::new(gpu, "scene relief march", &SurfaceMarch::from(look.march))?,
+            heights,
+            acceleration,
+            albedo: &view(&maps.albedo.texture),
+            normals: &view(&maps.normals.unwrap_or(maps.albedo).texture),
+            filtering: &maps.albedo.sampler,
+        };
+        Ok(Self { group: group.bind(gpu, &layouts.relief)?, options })
+    }
+}
+
+impl ReliefLook {
+    fn validate(&self) -> Result<(), InputError> {
+        self.material.validate()?;
+        self.march.validate()?;
+        if !(self.world > 0.0 && self.world.is_finite()) {
+            return Err(InputError::new("world", self.world, "must be finite and above 0"));
+        }
+        Ok(())
+    }
+
+    fn params(&self) -> ReliefParams {
+        let Material { scale, plane, shadow_steps, softness, .. } = self.material;
+        let [[low_u, low_v], [high_u, high_v]] = self.range;
+        ReliefParams {
+            range: glam::Vec4::new(low_u, low_v, high_u, high_v),
+            color: glam::Vec3::from(self.color).extend(1.0),
+            scale,
+            plane,
+            world: self.world,
+            shadow_steps,
+            softness,
+        }
+    }
+}

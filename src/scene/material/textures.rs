@@ -1,0 +1,177 @@
+//! Images of a model as layers of one texture array.
+
+use std::borrow::Cow;
+
+use image::RgbaImage;
+use image::imageops::{FilterType, resize};
+
+use crate::asset::Model;
+use crate::gpu::{Gpu, GpuError};
+use crate::srgb;
+use crate::surface::mips::Mips;
+
+/// The most texels of an array's finest level, 256 MiB: the images of larger ones are halved.
+const MAX_TEXELS: u64 = 1 << 26;
+
+/// What texels are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Texels {
+    /// sRGB colours and linear alpha.
+    Color,
+    /// Normals in tangent space.
+    Normal,
+}
+
+/// Uploads images of a model, a layer each, with mip levels if `has_mips`. Without images there is one layer of one texel,
+/// white or flat.
+///
+/// # Errors
+/// [`GpuError`], also for more images than an array may have layers.
+pub(super) fn texture_array(
+    gpu: &Gpu,
+    model: &Model,
+    images: &[usize],
+    texels: Texels,
+    has_mips: bool,
+) -> Result<wgpu::TextureView, GpuError> {
+    let flat = RgbaImage::from_pixel(1, 1, image::Rgba(texels.flat()));
+    let images: Vec<&RgbaImage> = match images {
+        [] => vec![&flat],
+        images => images.iter().map(|image| &model.images[*image]).collect(),
+    };
+    let limits = gpu.device().limits();
+    if images.len() > limits.max_texture_array_layers as usize {
+        return Err(GpuError::Limit {
+            pass: "scene textures",
+            limit: "maxTextureArrayLayers",
+            needed: images.len() as u64,
+            available: limits.max_texture_array_layers.into(),
+            remedy: "use fewer images, or join some of them to an atlas",
+        });
+    }
+    let size = common_size(&images, limits.max_texture_dimension_2d);
+    let layers: Vec<Mips> =
+        images.iter().map(|image| texels.mips(resized(image, size, texels), has_mips)).collect();
+    let texture = gpu.scoped(|| upload(gpu, &layers, texels))?;
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    }))
+}
+
+impl Texels {
+    /// The texel that changes nothing.
+    fn flat(self) -> [u8; 4] {
+        match self {
+            Self::Color => [255; 4],
+            Self::Normal => [128, 128, 255, 255],
+        }
+    }
+
+    fn mips(self, image: Cow<'_, RgbaImage>, has_mips: bool) -> Mips {
+        let is_srgb = self == Self::Color;
+        match (has_mips, is_srgb) {
+            (false, _) => Mips { levels: vec![image.into_owned()], is_srgb },
+            (true, true) => Mips::of_color(image.into_owned()),
+            (true, false) => Mips::of_data(image.into_owned()),
+        }
+    }
+}
+
+/// The size that all layers get: the largest width and the largest height, halved until they fit the device and
+/// [`MAX_TEXELS`].
+fn common_size(images: &[&RgbaImage], longest: u32) -> [u32; 2] {
+    let largest = |edge: fn(&RgbaImage) -> u32| images.iter().map(|image| edge(image)).max().unwrap_or(1);
+    let mut size = [largest(RgbaImage::width), largest(RgbaImage::height)];
+    let texels = |[width, height]: [u32; 2]| images.len() as u64 * u64::from(width) * u64::from(height);
+    while size.iter().any(|edge| *edge > longest) || texels(size) > MAX_TEXELS {
+        size = size.map(|edge| (edge / 2).max(1));
+    }
+    size
+}
+
+/// The image at another size, filtered in linear light; unchanged if it has that size.
+fn resized(image: &RgbaImage, [width, height]: [u32; 2], texels: Texels) -> Cow<'_, RgbaImage> {
+    if image.dimensions() == (width, height) {
+        return Cow::Borrowed(image);
+    }
+    let is_light = |channel: usize| texels == Texels::Color && channel < 3;
+    let light = image::Rgba32FImage::from_fn(image.width(), image.height(), |x, y| {
+        let texel = image.get_pixel(x, y).0;
+        image::Rgba(std::array::from_fn(|channel| match is_light(channel) {
+            true => srgb::linear(texel[channel]),
+            false => f32::from(texel[channel]) / 255.0,
+        }))
+    });
+    let light = resize(&light, width, height, FilterType::Triangle);
+    Cow::Owned(RgbaImage::from_fn(width, height, |x, y| {
+        let texel = light.get_pixel(x, y).0;
+        image::Rgba(std::array::from_fn(|channel| match is_light(channel) {
+            true => srgb::byte(texel[channel]),
+            false => (texel[channel] * 255.0 + 0.5) as u8,
+        }))
+    }))
+}
+
+fn upload(gpu: &Gpu, layers: &[Mips], texels: Texels) -> wgpu::Texture {
+    let size = |level: &RgbaImage| wgpu::Extent3d {
+        width: level.width(),
+        height: level.height(),
+        depth_or_array_layers: 1,
+    };
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("scene textures"),
+        size: wgpu::Extent3d { depth_or_array_layers: layers.len() as u32, ..size(&layers[0].levels[0]) },
+        mip_level_count: layers[0].levels.len() as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: match texels {
+            Texels::Color => wgpu::TextureFormat::Rgba8UnormSrgb,
+            Texels::Normal => wgpu::TextureFormat::Rgba8Unorm,
+        },
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (z, layer) in (0..).zip(layers) {
+        for (mip_level, level) in (0..).zip(&layer.levels) {
+            let origin = wgpu::Origin3d { z, ..Default::default() };
+            let to = wgpu::TexelCopyTextureInfo { mip_level, origin, ..texture.as_image_copy() };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * level.width()),
+                rows_per_image: None,
+            };
+            gpu.queue().write_texture(to, level.as_raw(), layout, size(level));
+        }
+    }
+    texture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_get_the_largest_edges_and_fit_the_device() {
+        let image = |width, height| RgbaImage::new(width, height);
+        let (wide, high, tiny) = (image(64, 2), image(4, 32), image(1, 1));
+        assert_eq!(common_size(&[&wide, &high, &tiny], 8192), [64, 32]);
+        assert_eq!(common_size(&[&wide, &high], 16), [16, 8]);
+        assert_eq!(common_size(&[&tiny], 8192), [1, 1]);
+        // Nine layers of 64 Mi texels in all have room for 2^22 each, of which 4096 × 4096 are four times too many.
+        let large = image(4096, 4096);
+        assert_eq!(common_size(&[&large; 9], 8192), [2048, 2048]);
+    }
+
+    #[test]
+    fn images_are_enlarged_in_linear_light() {
+        let mut image = RgbaImage::from_pixel(2, 1, image::Rgba([0, 0, 0, 255]));
+        image.put_pixel(1, 0, image::Rgba([255, 255, 255, 255]));
+        assert!(matches!(resized(&image, [2, 1], Texels::Color), Cow::Borrowed(_)));
+        let color = resized(&image, [4, 1], Texels::Color).into_owned();
+        let data = resized(&image, [4, 1], Texels::Normal).into_owned();
+        // A quarter of the light is 137 in sRGB; a quarter of the data is 64.
+        assert_eq!((color.get_pixel(1, 0).0[0], data.get_pixel(1, 0).0[0]), (137, 64));
+        assert_eq!((color.get_pixel(0, 0).0[0], color.get_pixel(3, 0).0[0]), (0, 255));
+    }
+}

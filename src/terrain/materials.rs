@@ -1,0 +1,88 @@
+//! Zones of terrain and their textures on the device.
+
+use crate::gpu::{Buffer, Gpu};
+use crate::shared::terrain::zones;
+use crate::terrain::config::Zone;
+use crate::terrain::texture::{TEXTURE_SIZE, Texture};
+use crate::{Error, InputError};
+
+/// Zone ranges and textures on the device.
+#[derive(Debug, Clone)]
+pub struct Materials {
+    pub(crate) zones: Buffer<zones::Zone>,
+    pub(crate) zone_count: u32,
+    pub(crate) textures: wgpu::Texture,
+    pub(crate) sampler: wgpu::Sampler,
+}
+
+impl Materials {
+    /// Uploads zones and their textures, one texture per zone.
+    ///
+    /// # Errors
+    /// [`InputError`] when their numbers differ; [`GpuError`].
+    pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[Texture]) -> Result<Self, Error> {
+        if zones.is_empty() || zones.len() != textures.len() {
+            let bound = format!("must be one for each of the {} zones", zones.len());
+            return Err(InputError::new("textures.len", textures.len(), bound).into());
+        }
+        let range = |zone: &Zone| zones::Zone { min: zone.min as f32, max: zone.max as f32 };
+        let ranges: Vec<_> = zones.iter().map(range).collect();
+        let zone_buffer = Buffer::from_slice(gpu, "zones", &ranges)?;
+        let (textures, sampler) = gpu.scoped(|| (upload(gpu, textures), sampler(gpu)))?;
+        Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
+    }
+
+    /// A view of the textures, a layer a zone, to bind.
+    pub(crate) fn view(&self) -> wgpu::TextureView {
+        self.textures.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        })
+    }
+}
+
+fn upload(gpu: &Gpu, layers: &[Texture]) -> wgpu::Texture {
+    let size = |level: u32| wgpu::Extent3d {
+        width: TEXTURE_SIZE >> level,
+        height: TEXTURE_SIZE >> level,
+        depth_or_array_layers: 1,
+    };
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("zone textures"),
+        size: wgpu::Extent3d { depth_or_array_layers: layers.len() as u32, ..size(0) },
+        mip_level_count: TEXTURE_SIZE.ilog2() + 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8UnormSrgb,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (layer, image) in layers.iter().enumerate() {
+        for (level, texels) in image.mips.iter().enumerate() {
+            let to = wgpu::TexelCopyTextureInfo {
+                mip_level: level as u32,
+                origin: wgpu::Origin3d { z: layer as u32, ..Default::default() },
+                ..texture.as_image_copy()
+            };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * (TEXTURE_SIZE >> level)),
+                rows_per_image: None,
+            };
+            gpu.queue().write_texture(to, texels, layout, size(level as u32));
+        }
+    }
+    texture
+}
+
+fn sampler(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("zone textures"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}

@@ -1,0 +1,102 @@
+// Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
+// each visible one, zone textures blended by height, a directional light.
+import package::wgsl::render::scene_view::{scene_lit, view};
+import package::wgsl::terrain::slope::slope_normal;
+import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
+
+// Where the samples of a terrain lie in a view. Positions are counted from a sample near the view, so that they are
+// precise far from the terrain's origin, and equal samples give equal bits, whichever patch they belong to.
+struct TerrainView {
+    // The sample from which positions are counted.
+    base: vec2<i32>,
+    // The place of that sample at height 0, relative to the corner of the view's cell.
+    rest: vec3<f32>,
+}
+
+// What the patches of a terrain have in common.
+struct TerrainParams {
+    // Samples along an edge of a window, and along an edge of the patch inside it.
+    in_width: u32,
+    size: u32,
+    // World units between samples, and twice that in 1/65536 units.
+    spacing: f32,
+    run: f32,
+    // Texture tiles per sample.
+    tiling: f32,
+    zone_count: u32,
+    // 1 if zones add their weights as they are, 0 if these are normalized.
+    additive: u32,
+}
+
+// A patch.
+struct TerrainPatch {
+    // Its first sample, in samples from the terrain's origin.
+    origin: vec2<i32>,
+    // Texture coordinates at that sample, without whole tiles.
+    uv: vec2<f32>,
+    // The index of its window among the heights.
+    window: u32,
+    unused: u32,
+}
+
+@group(1) @binding(0) var<uniform> ground: TerrainView;
+@group(2) @binding(0) var<uniform> terrain: TerrainParams;
+// Windows of heights in 1/65536 units, row by row.
+@group(2) @binding(1) var<storage, read> heights: array<i32>;
+// One per instance.
+@group(2) @binding(2) var<storage, read> patches: array<TerrainPatch>;
+@group(2) @binding(3) var<storage, read> zones: array<Zone>;
+// A layer a zone.
+@group(2) @binding(4) var textures: texture_2d_array<f32>;
+@group(2) @binding(5) var texture_sampler: sampler;
+
+struct Vertex {
+    // Equal samples give equal bits, so that patches that share an edge leave no crack.
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) height: f32,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
+    let patch_of = patches[instance];
+    let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
+    let margin = (terrain.in_width - terrain.size) / 2u;
+    let row = patch_of.window * terrain.in_width + at.y + margin;
+    let center = row * terrain.in_width + at.x + margin;
+    let gradient = vec2<i32>(
+        heights[center + 1u] - heights[center - 1u],
+        heights[center + terrain.in_width] - heights[center - terrain.in_width]);
+    let height = f32(heights[center]) / 65536.0;
+    let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
+    let position = ground.rest
+        + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
+    return Vertex(
+        view.clip_from_world * vec4<f32>(position, 1.0),
+        slope_normal(gradient, terrain.run),
+        patch_of.uv + vec2<f32>(at) * terrain.tiling,
+        height);
+}
+
+@fragment
+fn fragment(in: Vertex) -> @location(0) vec4<f32> {
+    // Derivatives need uniform control flow, so they are taken here and not in the loop.
+    let uv_dx = dpdx(in.uv);
+    let uv_dy = dpdy(in.uv);
+    var fold = zone_fold();
+    for (var z = 0u; z < terrain.zone_count; z++) {
+        fold = zone_folded(fold, z, zones[z], in.height);
+    }
+    var albedo = vec3<f32>(0.0);
+    for (var z = 0u; z < terrain.zone_count; z++) {
+        let fraction = zone_fraction(fold, z, zones[z], in.height, terrain.additive != 0u);
+        albedo += fraction * textureSampleGrad(textures, texture_sampler, in.uv, z, uv_dx, uv_dy).rgb;
+    }
+    let direct = max(0.0, dot(normalize(in.normal), view.light.xyz));
+    return vec4<f32>(scene_lit(albedo, direct), 1.0);
+}
+
+// Only depth is written, where a pass has colour attachments as well.
+@fragment
+fn depth_opaque() {}

@@ -1,0 +1,44 @@
+// The light that reaches a point of a relief, by any kind of shadow.
+import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch};
+import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surface_soft_shadow};
+import package::wgsl::surface::trace::surface_trace;
+
+// No shadow.
+const SURFACE_SHADOW_NONE: u32 = 0u;
+// Light or no light: a ray from the light, traced as the eye's ray is.
+const SURFACE_SHADOW_HARD: u32 = 1u;
+// Penumbras.
+const SURFACE_SHADOW_SOFT: u32 = 2u;
+
+// How a relief shades itself.
+struct SurfaceShadow {
+    // Depth of the relief in uv units.
+    scale: f32,
+    // For soft shadow: number of steps, and the ratio of excess height to distance at which shadow is full.
+    steps: u32,
+    softness: f32,
+}
+
+// The fraction of the light that reaches a hit. `light` is the unit vector towards it in tangent space; `shadow` is one of
+// the constants above.
+fn surface_sunlit(
+    method: u32, shadow: u32, heights: texture_2d<f32>, acceleration: texture_2d<f32>,
+    hit: SurfaceHit, light: vec3<f32>, relief: SurfaceShadow, march: SurfaceMarch,
+) -> f32 {
+    if shadow == SURFACE_SHADOW_NONE || !(light.z > 0.0) {
+        return 1.0;
+    }
+    if shadow == SURFACE_SHADOW_SOFT {
+        return surface_soft_shadow(heights, hit, light, relief.scale, march, relief.steps, relief.softness);
+    }
+    let ray = surface_light_ray(hit, light, relief.scale);
+    let first = surface_trace(method, heights, acceleration, ray, march);
+    return select(1.0, 0.0, surface_shaded(first, hit));
+}
+
+// The unit normal of a texel of a normal map, in tangent space. Its green channel points up the image, against v, or down
+// it.
+fn surface_mapped_normal(texel: vec4<f32>, green_up: bool) -> vec3<f32> {
+    let slope = texel.xy * 2.0 - 1.0;
+    return vec3<f32>(slope.x, select(slope.y, -slope.y, green_up), sqrt(max(1.0 - dot(slope, slope), 0.0)));
+}
