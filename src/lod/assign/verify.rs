@@ -4,7 +4,6 @@ use glam::Vec4;
 
 use super::AssignParams;
 use crate::Error;
-use crate::animation::Lod;
 use crate::animation::lod::PackedLod;
 use crate::animation::verify::Draw;
 use crate::gpu::{Buffer, Uniform};
@@ -86,9 +85,15 @@ fn random_allowed(case: u32, count: usize) -> Vec<f32> {
     (0..count).map(&mut random).collect()
 }
 
+/// The right results, as the kernel writes them.
+fn packed(params: &AssignParams, allowed: f32) -> (PackedLod, InstanceLod) {
+    let (lod, instance_lod) = assign(params, allowed);
+    (lod.packed(), instance_lod)
+}
+
 /// The right results for the displacement as it is, and for the least and the largest to which rounding may change it.
-fn around(params: &AssignParams, allowed: f32) -> [(Lod, InstanceLod); 3] {
-    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| assign(params, factor * allowed))
+fn around(params: &AssignParams, allowed: f32) -> [(PackedLod, InstanceLod); 3] {
+    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, factor * allowed))
 }
 
 /// Units must lie between those of the least and the largest displacement; everything else must be equal.
@@ -96,13 +101,13 @@ fn compared_lods(params: &AssignParams, allowed: &[f32], found: &[PackedLod]) ->
     let judge = |(found, allowed): (&PackedLod, &f32)| {
         let [(right, _), (least, _), (largest, _)] = around(params, *allowed);
         let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
-            && PackedLod { allowed: right.allowed, ..*found } == right.packed();
+            && PackedLod { allowed: right.allowed, ..*found } == right;
         let error = f64::from(found.allowed.abs_diff(right.allowed));
         Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: false }
     };
     let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
     each(&judgements, "units", MAY_TOUCH, |at| {
-        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).0.packed())
+        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).0)
     })
 }
 
@@ -133,10 +138,8 @@ mod tests {
     fn what_is_wrong_of_one_instance_is_seen() {
         let params = params(0, 200, 5);
         let allowed = random_allowed(5, 200);
-        let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) = (allowed.iter())
-            .map(|allowed| assign(&params, *allowed))
-            .map(|(lod, instance_lod)| (lod.packed(), instance_lod))
-            .unzip();
+        let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) =
+            allowed.iter().map(|allowed| packed(&params, *allowed)).unzip();
         assert!(compared_lods(&params, &allowed, &lods).holds);
         assert!(compared_instance_lods(&params, &allowed, &instance_lods).holds);
         let unseen = allowed.iter().position(|allowed| *allowed < 0.0).expect("some");
