@@ -18,7 +18,7 @@ pub const MAX_VERTICES: usize = 1 << 24;
 pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
 /// The most levels of detail of a mesh, itself and [`Mesh::levels`] together.
-pub const MAX_LEVELS: usize = 16;
+pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS as usize;
 
 /// A coarser level of a mesh, which uses a subset of its vertices.
 #[derive(Debug, Clone, PartialEq)]

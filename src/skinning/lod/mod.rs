@@ -11,6 +11,7 @@ use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
+use crate::shared::skinning::lod::LEAST_NORMAL;
 use crate::skinning::instance_lod::FadeRange;
 
 #[cfg(feature = "verify")]
@@ -149,7 +150,7 @@ impl LodView {
             None => distance,
             Some(ahead) => {
                 let depth = ahead.dot(towards).max(0.0);
-                depth * (depth / distance.max(f32::MIN_POSITIVE))
+                depth * (depth / distance.max(LEAST_NORMAL))
             }
         }
     }
