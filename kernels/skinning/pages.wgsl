@@ -1,6 +1,6 @@
 // Pages of skinned vertices: an instance that is seen holds a page for each cluster of its level of detail, and gives back
 // what it no longer needs. One workgroup serves all instances, so that the pages that it deals out are the same on every run.
-import package::wgsl::skinning::instance_lod::InstanceLod;
+import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;
 
 const LANES = 64u;
@@ -37,7 +37,7 @@ var<workgroup> short_lanes: array<u32, LANES>;
 // The number of clusters that an instance needs.
 fn needed(instance: u32) -> u32 {
     let lod = instance_lods[instance];
-    let level = min(lod.mesh_lod, 15u);
+    let level = min(lod.mesh_lod, MAX_LEVELS - 1u);
     return select(params.levels[level >> 2u][level & 3u], 0u, lod.max_influences == 0u);
 }
 

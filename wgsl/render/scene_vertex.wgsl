@@ -1,5 +1,6 @@
 // Vertices of the meshes of a scene, static or skinned, at the placement of an instance.
 import package::wgsl::lod::instance::SceneInstance;
+import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};
 
@@ -47,7 +48,7 @@ fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
     if mesh.clusters == 0u {
         return vertex;
     }
-    return 64u * page_table[instance * mesh.clusters + vertex / 64u] + vertex % 64u;
+    return CLUSTER * page_table[instance * mesh.clusters + vertex / CLUSTER] + vertex % CLUSTER;
 }
 
 // A vertex of an instance; `instance` counts those of the object, `vertex` those of the mesh.
