@@ -3,7 +3,8 @@
 /// Number of lanes that are drawn together, so that the compiler can vectorize the loops.
 pub const LANES: usize = 8;
 
-/// Threefry-2x32 with 20 rounds (Salmon et al. 2011, `docs/sources.md`), for eight counters at once.
+/// Threefry-2x32 with 20 rounds (Salmon et al. 2011, `docs/sources.md`), for eight counters at once. Its constants are
+/// written again, and not taken from the shader, because known answers of others check both.
 #[inline(always)]
 pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; LANES], [u32; LANES]) {
     const EVEN: [u32; 4] = [13, 15, 26, 6];

@@ -53,7 +53,7 @@ fn around(instance: u32, first: u32, stride: u32) -> Box {
     return Box(low, high);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(THREADS)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,

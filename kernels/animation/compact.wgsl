@@ -17,7 +17,7 @@ const SCATTER = 2u;
 // One workgroup does everything, for small crowds where a dispatch costs more than further processors gain.
 const ALL = 3u;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WIDTH)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,

@@ -25,7 +25,7 @@ fn decide_instance(instance: u32) -> u32 {
     return so_far.count;
 }
 
-@compute @workgroup_size(8)
+@compute @workgroup_size(LANES)
 fn main(@builtin(local_invocation_index) lane: u32) {
     let own = instances_of(lane, LANES);
     var found = 0u;

@@ -1,6 +1,6 @@
 // What gates and skinning use of the displacement that the views of a frame allow: a thread shares out that of one
 // instance of a character among its bones, its influences and its mesh.
-import package::wgsl::animation::gate_state::{LOD_HIDDEN, Lod, OMEGA_ONE};
+import package::wgsl::animation::gate_state::{FULL_WEIGHT, LOD_HIDDEN, Lod, OMEGA_ONE};
 import package::wgsl::lod::object::OBJECT_LEVELS;
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
@@ -8,8 +8,6 @@ import package::wgsl::skinning::instance_lod::InstanceLod;
 const FADE_STEPS: f32 = 64.0;
 // The largest `Lod::allowed` that an f32 holds exactly and that is less than the motion of a whole clip, 2^30.
 const MAX_UNITS: f32 = 1073741760.0;
-// The weight of every instance against the others.
-const FULL_WEIGHT = 65535u;
 
 struct AssignParams {
     // The index of the object's first instance in `allowed`.

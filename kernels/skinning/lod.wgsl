@@ -1,6 +1,6 @@
 // Culling and level of detail of instances: which are seen, how far their influences fade, and which level of
 // detail each has. A thread decides for one instance.
-import package::wgsl::skinning::instance_lod::InstanceLod;
+import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 
 struct LodParams {
     // Planes of the view volume: unit normals that point inwards, and distances.
@@ -19,7 +19,7 @@ struct LodParams {
     // The largest number of influences.
     max_influences: u32,
     // The distances from which on levels 1, 2 … are used, not descending, and the number of these levels.
-    distances: array<vec4<f32>, 4>,
+    distances: array<vec4<f32>, MAX_LEVELS / 4u>,
     coarser: u32,
     // Words from one level's list of instances to the next.
     stride: u32,
@@ -64,12 +64,15 @@ fn stretch(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> f32 {
 }
 
 // The smallest normal f32, 2^-126, exactly; devices may flush smaller values to zero.
-const LEAST_NORMAL = 1.1754943508222875e-38;
+const LEAST_NORMAL: f32 = 1.1754943508222875e-38;
+
+// The determinant of unit rows below which a matrix is nearly singular.
+const NEARLY_SINGULAR: f32 = 1e-5;
 
 // Whether an instance with these rows may appear mirrored in a view of side 1 or −1. A nearly singular
 // matrix may count as either, and the draw call decides.
 fn may_mirror(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, side: f32) -> bool {
-    return side * dot(x, cross(y, z)) < 1e-5 * (length(x) * length(y) * length(z));
+    return side * dot(x, cross(y, z)) < NEARLY_SINGULAR * (length(x) * length(y) * length(z));
 }
 
 // The distance at which a point counts, given its offset from the eye: its distance if it is straight ahead,

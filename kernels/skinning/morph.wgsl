@@ -1,7 +1,8 @@
 // Morph targets: adds the weighted deltas of the targets to vertices, before skinning. A workgroup morphs a
-// cluster of 64 vertices of one instance that is seen, at its level of detail: every such cluster, or with
+// cluster of vertices of one instance that is seen, at its level of detail: every such cluster, or with
 // COMPACTED those of a list.
-import package::wgsl::skinning::instance_lod::InstanceLod;
+import package::wgsl::skinning::cluster::CLUSTER;
+import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 
 override COMPACTED: bool = false;
 
@@ -12,7 +13,7 @@ struct MorphParams {
     // Number of clusters times number of instances.
     pairs: u32,
     // Number of clusters at each level of detail.
-    levels: array<vec4<u32>, 4>,
+    levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
 @group(0) @binding(0) var<uniform> params: MorphParams;
@@ -32,7 +33,7 @@ struct MorphParams {
 @group(0) @binding(7) var<storage, read> dispatched: vec4<u32>;
 @group(0) @binding(8) var<storage, read_write> morphed: array<vec2<f32>>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CLUSTER)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
@@ -47,11 +48,11 @@ fn main(
     }
     let cluster = pair / params.instances;
     let instance = pair - cluster * params.instances;
-    let vertex = 64u * cluster + lane;
+    let vertex = CLUSTER * cluster + lane;
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let level = min(instance_lods[instance].mesh_lod, 15u);
+    let level = min(instance_lods[instance].mesh_lod, MAX_LEVELS - 1u);
     if instance_lods[instance].max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }

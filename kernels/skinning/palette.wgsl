@@ -2,6 +2,7 @@
 // the model's space. With DUAL the matrix is decomposed into a stretch and a rigid motion after it. A thread
 // computes one bone; instances that are not seen are skipped.
 import package::wgsl::skinning::instance_lod::InstanceLod;
+import package::wgsl::skinning::rows::LEAST_LENGTH;
 
 override DUAL: bool = false;
 
@@ -32,8 +33,7 @@ fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4
 
 fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
-    // Devices may flush values smaller than this to zero.
-    if size < 1e-30 {
+    if size < LEAST_LENGTH {
         return other;
     }
     let scaled = vector / size;

@@ -4,12 +4,13 @@
 // one cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame, and
 // the first thread writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
-import package::wgsl::skinning::instance_lod::InstanceLod;
+import package::wgsl::skinning::cluster::CLUSTER;
+import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 
 override FINISH: bool = false;
 
 // Words per instance in `skinned`, before its weights.
-const SKINNED_WORDS = 4u;
+const SKINNED_WORDS: u32 = 4u;
 
 struct SelectParams {
     instances: u32,
@@ -22,7 +23,7 @@ struct SelectParams {
     // Number of morph targets.
     targets: u32,
     // Number of clusters at each level of detail.
-    levels: array<vec4<u32>, 4>,
+    levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
 // Workgroups of the dispatch, the number of pairs, and the counter of pairs found so far.
@@ -53,7 +54,7 @@ struct Dispatched {
 @group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 
 fn clusters_of(level: u32) -> u32 {
-    let at = min(level, 15u);
+    let at = min(level, MAX_LEVELS - 1u);
     return params.levels[at >> 2u][at & 3u];
 }
 
@@ -81,8 +82,8 @@ fn finish(index: u32) {
 
 // Whether morph targets move a vertex of the cluster and one of the instance's weights has changed.
 fn is_morphed_anew(cluster: u32, instance: u32, last: u32) -> bool {
-    let first = 64u * cluster;
-    if offsets[first] == offsets[min(first + 64u, params.vertices)] {
+    let first = CLUSTER * cluster;
+    if offsets[first] == offsets[min(first + CLUSTER, params.vertices)] {
         return false;
     }
     var found = false;

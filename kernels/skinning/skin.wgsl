@@ -1,9 +1,10 @@
 // Skinning (A section 8.4): transforms vertices by their bones, with as many influences as each instance's
 // InstanceLod leaves. Instances that are not seen, and vertices beyond an instance's level of detail, are
-// skipped. A workgroup skins a cluster of 64 vertices of one instance: every such cluster, or with COMPACTED
+// skipped. A workgroup skins a cluster of vertices of one instance: every such cluster, or with COMPACTED
 // those of a list. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
-import package::wgsl::skinning::instance_lod::InstanceLod;
-import package::wgsl::skinning::rows::{Rows, rows_of_dual};
+import package::wgsl::skinning::cluster::CLUSTER;
+import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
+import package::wgsl::skinning::rows::{LEAST_LENGTH, Rows, rows_of_dual};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
 override COMPACTED: bool = false;
@@ -22,14 +23,14 @@ struct SkinParams {
     instances: u32,
     first_instance: u32,
     // Number of clusters at each level of detail.
-    levels: array<vec4<u32>, 4>,
+    levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
 @group(0) @binding(0) var<uniform> params: SkinParams;
 // Five pairs per vertex: position, normal, tangent and handedness.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
 // Two words per cluster: where its influences begin, and the largest number per vertex. The influences lie
-// there in columns of 64 words: first the bones, two per word, then the weights of all but the strongest, in
+// there in columns of CLUSTER words: first the bones, two per word, then the weights of all but the strongest, in
 // falling order.
 @group(0) @binding(2) var<storage, read> influences: array<u32>;
 // Three rows per bone and instance, or with DUAL four vectors.
@@ -78,22 +79,22 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
     var others = 0.0;
     let most = clamp(instance_lod.max_influences, 1u, slots);
     if most > 1u {
-        let weights = column + 64u * ((slots + 1u) / 2u) - 64u;
+        let weights = column + CLUSTER * ((slots + 1u) / 2u) - CLUSTER;
         var lost = 0.0;
         for (var slot = most; slot < slots; slot++) {
-            lost += bitcast<f32>(influences[weights + 64u * slot]);
+            lost += bitcast<f32>(influences[weights + CLUSTER * slot]);
         }
         let scale = 1.0 / (1.0 - lost);
         var real = vec4<f32>(0.0);
         if DUAL {
             real = palette[strongest];
         }
-        var weight = bitcast<f32>(influences[weights + 64u]);
+        var weight = bitcast<f32>(influences[weights + CLUSTER]);
         let taken = instance_lod.influence_fade * weight;
         var slot = 1u;
         while weight > taken {
             if (slot & 1u) == 0u {
-                bones = influences[column + 32u * slot];
+                bones = influences[column + (CLUSTER / 2u) * slot];
             }
             let at = stride * (first_bone + select(bones & 0xffffu, bones >> 16u, (slot & 1u) == 1u));
             let left = (weight - taken) * scale;
@@ -107,7 +108,7 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
             if slot >= most {
                 break;
             }
-            weight = bitcast<f32>(influences[weights + 64u * slot]);
+            weight = bitcast<f32>(influences[weights + CLUSTER * slot]);
         }
     }
     let left = 1.0 - others;
@@ -116,12 +117,11 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
 
 fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
-    // Devices may flush values smaller than this to zero.
-    let scaled = vector / max(size, 1e-30);
-    return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < 1e-30);
+    let scaled = vector / max(size, LEAST_LENGTH);
+    return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < LEAST_LENGTH);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(CLUSTER)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
@@ -136,13 +136,13 @@ fn main(
     }
     let cluster = pair / params.instances;
     let number = pair - cluster * params.instances;
-    let vertex = 64u * cluster + lane;
+    let vertex = CLUSTER * cluster + lane;
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
     let instance = params.first_instance + number;
     let instance_lod = instance_lods[instance];
-    let level = min(instance_lod.mesh_lod, 15u);
+    let level = min(instance_lod.mesh_lod, MAX_LEVELS - 1u);
     if instance_lod.max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }

@@ -32,6 +32,12 @@ struct ConeParams {
 // Highest corner, and the radius of the cone in cells at height 1 above it.
 @group(0) @binding(3) var<storage, read_write> cones: array<vec2<f32>>;
 
+// The least rise that radii are divided by.
+const LEAST_RISE: f32 = 1e-9;
+// The radius of a cone that nothing narrows.
+const WIDEST: f32 = 1e9;
+// The factor that takes off radii more than the rounding of their quotients can add.
+const NARROWING: f32 = 0.999999;
 // A limit that no search reaches.
 const MAX_VISITS: u32 = 65536u;
 
@@ -66,8 +72,8 @@ fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     let y = select(vec2<f32>(near.y, far.y), vec2<f32>(far.y, near.y), offset.y < 0);
     let distances = vec4<f32>(x.x + y.x, x.y + y.x, x.x + y.y, x.y + y.y);
     let rises = corners - own;
-    let radii = distances / max(rises, vec4<f32>(1e-9));
-    let allowed = select(vec4<f32>(1e9), radii, rises > vec4<f32>(0.0));
+    let radii = distances / max(rises, vec4<f32>(LEAST_RISE));
+    let allowed = select(vec4<f32>(WIDEST), radii, rises > vec4<f32>(0.0));
     return min(min(allowed.x, allowed.y), min(allowed.z, allowed.w));
 }
 
@@ -163,7 +169,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let offset = vec2<i32>(number.x % 3 - 1, number.y / 3 - 1) * vec2<i32>(params.cells);
         radius = narrowed(id.z, cell - offset, own, radius);
     }
-    // Subtracts more than the rounding of the quotients above can add.
-    let cone = vec2<f32>(own, radius * (1.0 - 1e-6));
+    let cone = vec2<f32>(own, radius * NARROWING);
     cones[(id.z * params.cells.y + id.y) * params.cone_pitch + id.x] = cone;
 }

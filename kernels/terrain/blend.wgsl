@@ -1,5 +1,6 @@
 // The top-down colour map of patches: zone weights (B equations 3.6 and 3.7) and hill-shading, one sRGB pixel
 // per sample. The kernel reads windows that extend one sample beyond the patch.
+import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 import package::wgsl::terrain::light::{Light, lit};
@@ -39,7 +40,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let gradient = vec2<i32>(
         windows[center + 1u] - windows[center - 1u],
         windows[center + params.in_width] - windows[center - params.in_width]);
-    let albedo = zone_color(f32(windows[center]) / 65536.0);
+    let albedo = zone_color(f32(windows[center]) / f32(HEIGHT_ONE));
     let color = srgb(lit(params.light, slope_normal(gradient, params.run), albedo));
     pixels[(id.z * width + id.y) * width + id.x] = pack4x8unorm(vec4<f32>(color, 1.0));
 }

@@ -7,7 +7,7 @@ use crate::shared::animation::gate_state;
 /// A [`Lod`] as kernels read and write it: the struct `Lod` of the WGSL module `animation`, whose `flags` are
 /// `LOD_HIDDEN`, `LOD_FORCED` or 0.
 pub use crate::shared::animation::gate_state::Lod as PackedLod;
-pub use crate::shared::animation::gate_state::OMEGA_ONE;
+pub use crate::shared::animation::gate_state::{FULL_WEIGHT, OMEGA_ONE};
 
 /// An instance's level of detail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -17,7 +17,7 @@ pub struct Lod {
     pub omega: u32,
     /// The motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
     pub allowed: u32,
-    /// The weight of this instance's motion against that of other instances, 0 to 65535, proportional to its
+    /// The weight of this instance's motion against that of other instances, 0 to [`FULL_WEIGHT`], proportional to its
     /// size on screen.
     pub weight: u32,
     /// Which bones a frame samples.
@@ -38,7 +38,8 @@ pub enum Sampling {
 
 impl Lod {
     /// Full detail.
-    pub const FULL: Self = Self { omega: OMEGA_ONE, allowed: 0, weight: 65535, sampling: Sampling::Gated };
+    pub const FULL: Self =
+        Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: Sampling::Gated };
 
     /// The level of detail as kernels read it.
     pub fn packed(&self) -> PackedLod {

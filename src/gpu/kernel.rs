@@ -71,7 +71,7 @@ impl Kernel {
     }
 
     /// Invocations of a workgroup along x, y and z.
-    pub(super) fn workgroup_size(&self) -> [u32; 3] {
+    pub(crate) fn workgroup_size(&self) -> [u32; 3] {
         self.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size)
     }
 

@@ -85,7 +85,7 @@ impl MeshBuffers {
         Ok((buffers, clusters))
     }
 
-    /// Number of clusters, of 64 vertices each.
+    /// Number of clusters, of [`CLUSTER`](super::clusters::CLUSTER) vertices each.
     pub fn clusters(&self) -> usize {
         self.vertices.len().div_ceil(super::clusters::CLUSTER)
     }

@@ -1,4 +1,4 @@
-//! Clusters: the vertices of a mesh in runs of 64 that follow few bones, arranged for the kernels.
+//! Clusters: the vertices of a mesh in runs of [`CLUSTER`] that follow few bones, arranged for the kernels.
 
 use std::cmp::Reverse;
 
@@ -6,11 +6,12 @@ use crate::InputError;
 use crate::animation::order::Order;
 use crate::asset::mesh::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
+use crate::shared::skinning::cluster;
 use crate::skinning::vertex::Vertex;
 use crate::skinning::vertex::vertices_of;
 
 /// Number of vertices in a cluster.
-pub const CLUSTER: usize = 64;
+pub const CLUSTER: usize = cluster::CLUSTER as usize;
 
 /// The largest number of bones of a skin.
 pub const MAX_SKIN_BONES: usize = 1 << 16;
@@ -45,7 +46,7 @@ pub struct Clusters {
     /// uses at the levels of a character ([`Clusters::with_levels`]).
     pub levels: Vec<ClusterLevel>,
     /// Two words per cluster: where its influences begin, and the largest number per vertex. The influences lie
-    /// there in columns of 64 words: the bones, two per word, with the strongest in the lower half of the
+    /// there in columns of [`CLUSTER`] words: the bones, two per word, with the strongest in the lower half of the
     /// first; then the weights of all but the strongest, as bits. The weight of the strongest is 1 minus the
     /// sum of the others.
     pub influences: Vec<u32>,

@@ -44,6 +44,8 @@ impl Draw {
         }
     }
 
+    /// The offset of a height from the words drawn for it. Its constants are written again, because known heights,
+    /// which independent programs computed, check them and the shader's.
     #[inline(always)]
     fn offset_of(&self, range: u32, first: u32, second: u32) -> i32 {
         let uniform = match self.offset {

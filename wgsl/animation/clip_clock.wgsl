@@ -28,7 +28,9 @@ struct ClipClockParams {
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
 // Binding 8 holds the clip clocks.
 
-const BLENDED = 0x80000000u;
+const BLENDED: u32 = 0x80000000u;
+// The factor of the hash of clips above the base.
+const CLIP_HASH_FACTOR: u32 = 31u;
 
 // A hash of the clips that play above the base; 0 if there are none.
 fn clips_above(instance: u32) -> u32 {
@@ -36,7 +38,7 @@ fn clips_above(instance: u32) -> u32 {
     for (var layer = 0u; layer < clip_clock_params.layers; layer++) {
         let is_heard = layer_weights[layer * clip_clock_params.instances + instance] > 0.0;
         let clip = instances[(layer + 1u) * clip_clock_params.instances + instance].clip;
-        clips = 31u * clips + select(0u, clip + 1u, is_heard);
+        clips = CLIP_HASH_FACTOR * clips + select(0u, clip + 1u, is_heard);
     }
     return clips;
 }

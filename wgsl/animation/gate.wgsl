@@ -44,10 +44,14 @@ struct GateParams {
 // For each bone that has children other than the next bone, what it leaves of the error budget.
 @group(0) @binding(13) var<storage, read_write> remaining: array<u32>;
 
+// The factors of the hash below.
+const SCRAMBLE_FIRST: u32 = 0x21f0aaadu;
+const SCRAMBLE_SECOND: u32 = 0x735a2d97u;
+
 // One round of a multiplicative hash (Wellons' "lowbias32").
 fn scramble(word: u32) -> u32 {
-    var mixed = (word ^ (word >> 16u)) * 0x21f0aaadu;
-    mixed = (mixed ^ (mixed >> 15u)) * 0x735a2d97u;
+    var mixed = (word ^ (word >> 16u)) * SCRAMBLE_FIRST;
+    mixed = (mixed ^ (mixed >> 15u)) * SCRAMBLE_SECOND;
     return mixed ^ (mixed >> 15u);
 }
 
@@ -110,14 +114,19 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
 }
 
 // More than is ever permitted.
-const EVERYTHING = 1u << 30u;
-// The encoding of a bone's error budget: above the lowest 8 bits its fraction of what is left, in the lowest
-// five the rounding error that must be added.
-const STARTS = 32u;
-const REMAINING = 64u;
+const EVERYTHING: u32 = 1u << 30u;
+
+// The encoding of a bone's error budget. From this bit on lies its fraction of what is left, in FRACTION_ONE-ths.
+const BUDGET_FRACTION_SHIFT: u32 = 8u;
+// The bits of the exponent of the rounding error that must be added: 2^(exponent − 1), or 0.
+const BUDGET_SLACK_MASK: u32 = 31u;
+// Set if the bone above is not the previous one in the order.
+const STARTS: u32 = 32u;
+// Set if what the bone leaves is needed later.
+const REMAINING: u32 = 64u;
 
 fn quantization_slack_of(granted: u32) -> u32 {
-    return (1u << (granted & 31u)) >> 1u;
+    return (1u << (granted & BUDGET_SLACK_MASK)) >> 1u;
 }
 
 // One bit per bone: the bones that are sampled, and those of them that are sampled ahead.
@@ -162,7 +171,7 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated
         }
         let at = own + first + bit;
         let quantization_slack = quantization_slack_of(whole.y);
-        let own_budget = scale_by_fraction(*left, whole.y >> 8u);
+        let own_budget = scale_by_fraction(*left, whole.y >> BUDGET_FRACTION_SHIFT);
         let now = motion_at(table[row + bit], fraction_of(accumulated.clip_clock));
         let missed = motion_between(now, sampled[at], whole.x) + quantization_slack;
         let is_forced = (forced & (1u << bit)) != 0u;

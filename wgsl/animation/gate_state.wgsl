@@ -7,7 +7,7 @@ struct Lod {
     omega: u32,
     // The motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
     allowed: u32,
-    // The weight of this instance's motion against that of other instances, 0 to 65535, proportional to its
+    // The weight of this instance's motion against that of other instances, 0 to FULL_WEIGHT, proportional to its
     // size on screen.
     weight: u32,
     // LOD_HIDDEN, LOD_FORCED or none of them; a hidden instance is not sampled even if it has both.
@@ -19,7 +19,9 @@ const LOD_HIDDEN: u32 = 1u;
 // The instance is sampled in full this frame, whatever the gate says.
 const LOD_FORCED: u32 = 2u;
 // The value of `Lod::omega` at full detail.
-const OMEGA_ONE = 65536u;
+const OMEGA_ONE: u32 = 65536u;
+// The weight of an instance that counts in full.
+const FULL_WEIGHT: u32 = 65535u;
 
 // The position of an instance on the common timeline of its clip.
 struct ClipClock {
@@ -42,10 +44,10 @@ const FRACTION_BITS: u32 = 20u;
 const FRACTION_ONE: u32 = 65536u;
 
 // Update reasons: the gate decides; nothing is sampled; everything is; layers are blended over the clip.
-const UPDATE_REASON_FREE = 0u;
-const UPDATE_REASON_HIDDEN = 1u;
-const UPDATE_REASON_FORCED = 2u;
-const UPDATE_REASON_BLENDED = 3u;
+const UPDATE_REASON_FREE: u32 = 0u;
+const UPDATE_REASON_HIDDEN: u32 = 1u;
+const UPDATE_REASON_FORCED: u32 = 2u;
+const UPDATE_REASON_BLENDED: u32 = 3u;
 
 // The update reason: one of the constants above.
 fn update_reason_of(clip_clock: ClipClock) -> u32 {
@@ -63,4 +65,4 @@ fn fraction_of(clip_clock: ClipClock) -> u32 {
 }
 
 // Marks a pair of instance and bone that is sampled ahead.
-const PAIR_AHEAD = 0x80000000u;
+const PAIR_AHEAD: u32 = 0x80000000u;

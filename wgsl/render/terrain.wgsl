@@ -1,5 +1,6 @@
 // Draws height fields straight from their heights (B section 3.3.1, tables 4.7 and 4.8): a triangle strip for
 // each row of cells, zone textures blended by height, a directional light. `WIREFRAME` draws edges instead.
+import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 import package::wgsl::terrain::light::{Light, lit};
@@ -63,7 +64,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) ins
         heights[center + field.in_width] - heights[center - field.in_width]);
     let place = places[window];
     let sample_index = place.origin + vec2<i32>(at);
-    let height = f32(heights[center]) / 65536.0;
+    let height = f32(heights[center]) / f32(HEIGHT_ONE);
     let position = vec3<f32>(
         f32(sample_index.x) * field.spacing, height, f32(sample_index.y) * field.spacing);
     var corner = vec3<f32>(0.0);

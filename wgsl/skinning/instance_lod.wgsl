@@ -9,3 +9,6 @@ struct InstanceLod {
     // its `Mesh::levels` whose error is at most the n-th of `level_errors`. A number beyond the last level means the last.
     mesh_lod: u32,
 }
+
+// The most levels of detail of a mesh, itself included.
+const MAX_LEVELS: u32 = 16u;

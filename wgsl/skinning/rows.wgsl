@@ -7,6 +7,9 @@ struct Rows {
     z: vec4<f32>,
 }
 
+// A vector whose components are all smaller than this has no direction: devices may flush smaller values to zero.
+const LEAST_LENGTH: f32 = 1e-30;
+
 // The matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions: rotation and dual
 // part, both of any length but 0, then the stretch that is applied before them, as its diagonal (x, y, z) and
 // the elements above it (xy, xz, yz).

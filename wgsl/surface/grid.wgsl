@@ -58,9 +58,12 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
     return SurfaceGrid(texels, cells, first, texel - base, 1.0 / scale, travel, inverse, address);
 }
 
+// The most cells that a ray is taken to cross.
+const SURFACE_MAX_CROSSED: f32 = 16384.0;
+
 // A number of steps that is enough for any ray: every node that it can touch, once.
 fn surface_bound(grid: SurfaceGrid, levels: u32) -> u32 {
-    let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), 16384.0);
+    let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), SURFACE_MAX_CROSSED);
     return 2u * (u32(crossed) + 3u) + levels;
 }
 

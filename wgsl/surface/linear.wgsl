@@ -7,6 +7,8 @@ import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 // Limits of the numbers of steps in a march.
 const SURFACE_MAX_STEPS: u32 = 1024u;
 const SURFACE_MAX_BINARY: u32 = 24u;
+// The height above and below the surface, added up, from which on they are divided.
+const SURFACE_LEAST_SPAN: f32 = 1e-12;
 
 // The two points between which a linear search stopped: the last one above the surface, and the first one on or
 // below it, with the heights of the surface at both.
@@ -89,7 +91,7 @@ fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMa
     let over = max(1.0 - bracket.above - bracket.height_above, 0.0);
     let below = max(bracket.height_under - (1.0 - bracket.under), 0.0);
     // The fraction of the segment that lies above the surface; if both distances vanish, its end.
-    let fraction = select(1.0, over / max(over + below, 1e-12), over + below > 1e-12);
+    let fraction = select(1.0, over / max(over + below, SURFACE_LEAST_SPAN), over + below > SURFACE_LEAST_SPAN);
     let parameter = bracket.above + fraction * (bracket.under - bracket.above);
     return surface_point(ray, parameter, bracket.samples, SURFACE_HIT);
 }

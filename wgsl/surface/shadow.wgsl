@@ -8,6 +8,8 @@ import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
 
 // The height difference below which a point does not shade itself, as a fraction of the relief's depth.
 const SURFACE_SHADOW_BIAS: f32 = 0.005;
+// What is added to the distance of an occluder, as a fraction of the relief's depth, so that none is at distance 0.
+const SURFACE_LEAST_OCCLUSION: f32 = 0.001;
 
 // The ray from the light to a point of the surface: it falls from the top of the volume to the hit. `light` is
 // the unit vector towards the light, in tangent space.
@@ -46,7 +48,7 @@ fn surface_soft_shadow(
         let parameter = rise * (1.0 - travelled);
         let height = surface_height(heights, ray.origin + parameter * ray.slope, march.mip, march.address);
         let excess = height - (1.0 - parameter) - SURFACE_SHADOW_BIAS;
-        shade = max(shade, excess / (softness * (travelled * rise + 1e-3)));
+        shade = max(shade, excess / (softness * (travelled * rise + SURFACE_LEAST_OCCLUSION)));
     }
     return 1.0 - min(shade, 1.0);
 }

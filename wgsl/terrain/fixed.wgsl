@@ -1,6 +1,8 @@
 // Exact integer arithmetic of terrain heights (i32, Q15.16). No operation here can overflow for heights
 // within the bound that the host checks (2^30 - 1), so every device gives the same bits.
 
+// One world unit of height.
+const HEIGHT_ONE: i32 = 65536;
 // The largest absolute height, in 1/65536 units.
 const HEIGHT_LIMIT: i32 = 0x3fffffff;
 

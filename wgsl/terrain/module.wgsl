@@ -5,5 +5,5 @@ import package::wgsl::terrain::zones::{Zone, ZoneFold, zone_fold, zone_folded, z
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::light::{Light, lit};
 import package::wgsl::terrain::offset::{OFFSET_GAUSSIAN, OFFSET_POSITIVE, OFFSET_SIGNED, height_offset};
-import package::wgsl::terrain::fixed::{HEIGHT_LIMIT, mean_of_four};
+import package::wgsl::terrain::fixed::{HEIGHT_LIMIT, HEIGHT_ONE, mean_of_four};
 import package::wgsl::hash::{Words, threefry2x32};

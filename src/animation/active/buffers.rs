@@ -4,6 +4,7 @@ use crate::animation::crowd::Crowd;
 use crate::animation::model_matrices::ExclusiveConsumer;
 use crate::animation::order::Order;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
+use crate::shared::animation::compact::WIDTH;
 use crate::{Error, InputError};
 
 /// The pairs of instance and bone to be sampled, in a buffer that kernels may fill.
@@ -39,7 +40,7 @@ impl ActivePairs {
     /// [`GpuError`], also for more pairs than the crowd has.
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
-        let groups = pairs.len().div_ceil(64) as u32;
+        let groups = (pairs.len() as u32).div_ceil(WIDTH);
         let [x, y, z] = rows_of_workgroups(gpu, groups);
         self.dispatched.write(gpu, &[x, y, z, pairs.len() as u32])
     }

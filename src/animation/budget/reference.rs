@@ -57,7 +57,8 @@ fn missed_by(table: &ExpectationTable, clip_clock: &ClipClock, slot: usize, last
     motion_between(motion_now(table, clip_clock, slot), last, table.period(clip_clock.clip, slot))
 }
 
-/// The rank, 1 to 768, by the logarithm of `missed · weight`: sixteen ranks per octave.
+/// The rank, 1 to 768, by the logarithm of `missed · weight`: sixteen ranks per octave. It is
+/// computed from the whole product, with constants of its own, so that it checks the kernel's two words.
 pub fn rank_of(missed: u32, weight: u32) -> u32 {
     let product = u64::from(missed) * u64::from(weight);
     let Some(lead) = product.checked_ilog2() else { return 1 };

@@ -8,6 +8,8 @@ use crate::animation::layers::Layer;
 use crate::animation::lod::{Lod, Sampling};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::keyframe_cursor;
+use crate::shared::animation::clip_clock::CLIP_HASH_FACTOR;
+use crate::shared::animation::gate_state::FRACTION_ONE;
 
 /// The clip clock of each instance. `layers` are those above the base, `ahead` is the number of seconds by
 /// which bones may be sampled ahead, and `history` is kept from frame to frame, zero at first.
@@ -47,7 +49,8 @@ pub fn clip_clocks(
         } else {
             UpdateReason::Free
         };
-        let fraction = |cursor: KeyframeCursor| (cursor.fraction.clamp(0.0, 1.0) * 65536.0) as u32;
+        let fraction =
+            |cursor: KeyframeCursor| (cursor.fraction.clamp(0.0, 1.0) * FRACTION_ONE as f32) as u32;
         ClipClock {
             ahead_row: clip.first_row + later_cursor.key,
             ahead_fraction: fraction(later_cursor),
@@ -61,6 +64,6 @@ pub fn clip_clocks(
 fn clips_above(layers: &[Layer], instance: usize) -> u32 {
     layers.iter().fold(0, |clips: u32, layer| {
         let heard = if layer.weights[instance] > 0.0 { layer.instances[instance].clip + 1 } else { 0 };
-        clips.wrapping_mul(31).wrapping_add(heard)
+        clips.wrapping_mul(CLIP_HASH_FACTOR).wrapping_add(heard)
     })
 }

@@ -6,6 +6,7 @@ use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
 use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, PriorityTable, bits_of};
 use crate::animation::lod::{Lod, OMEGA_ONE};
+use crate::shared::animation::gate::{SCRAMBLE_FIRST, SCRAMBLE_SECOND};
 
 /// The bones that a gate decides to sample.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -122,8 +123,8 @@ fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled:
 
 /// Hashes a word by Wellons' "lowbias32".
 pub fn scramble(word: u32) -> u32 {
-    let mixed = (word ^ (word >> 16)).wrapping_mul(0x21f0_aaad);
-    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x735a_2d97);
+    let mixed = (word ^ (word >> 16)).wrapping_mul(SCRAMBLE_FIRST);
+    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(SCRAMBLE_SECOND);
     mixed ^ (mixed >> 15)
 }
 

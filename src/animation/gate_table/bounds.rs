@@ -11,6 +11,7 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::shared::animation::gate;
+use crate::shared::animation::gate_state::FRACTION_ONE;
 use crate::shared::animation::order::NO_PARENT;
 
 /// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
@@ -162,17 +163,17 @@ impl ErrorBudget {
     /// Packs a fraction from 0 to 1 and `quantization_slack`, which is a power of two or 0.
     pub(super) fn new(fraction: f64, quantization_slack: u32) -> Self {
         let bits = u32::BITS - quantization_slack.leading_zeros();
-        Self(((fraction * 65536.0).floor() as u32) << 8 | bits)
+        Self(((fraction * f64::from(FRACTION_ONE)).floor() as u32) << gate::BUDGET_FRACTION_SHIFT | bits)
     }
 
     /// The fraction of what the bones above leave, in 65536ths.
     pub fn fraction(self) -> u32 {
-        self.0 >> 8
+        self.0 >> gate::BUDGET_FRACTION_SHIFT
     }
 
     /// The number of units that rounding may hide.
     pub fn quantization_slack(self) -> u32 {
-        ((1_u64 << (self.0 & 31)) >> 1) as u32
+        ((1_u64 << (self.0 & gate::BUDGET_SLACK_MASK)) >> 1) as u32
     }
 
     /// Whether the bone above is not the previous one in the order.

@@ -54,6 +54,7 @@ mod document;
 mod materials;
 mod meshes;
 mod nodes;
+mod primitive;
 mod rigid;
 mod scene;
 mod tangents;

@@ -42,7 +42,8 @@ impl LoadsPass {
         let uniform = Uniform::new(gpu, "loads", &params)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let group = bindings::Group { params: &uniform, texels: &view, sums: sums.slice() };
-        let [x, y] = threads.map(|threads| threads.div_ceil(8));
+        let [width, height, _] = self.kernel.workgroup_size();
+        let [x, y] = [threads[0].div_ceil(width), threads[1].div_ceil(height)];
         let step = Step {
             kernel: self.kernel.clone(),
             groups: vec![group.bind(gpu, &self.kernel)?],

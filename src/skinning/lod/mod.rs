@@ -11,6 +11,7 @@ use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::transform::Affine;
+use crate::shared::skinning::lod::LEAST_NORMAL;
 use crate::skinning::instance_lod::FadeRange;
 
 #[cfg(feature = "verify")]
@@ -22,7 +23,7 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{LodJob, LodPass};
+pub use pass::{LodBuffers, LodJob, LodPass};
 #[cfg(feature = "gpu")]
 pub(crate) use pass::{draws_at, numbers_at};
 
@@ -149,7 +150,7 @@ impl LodView {
             None => distance,
             Some(ahead) => {
                 let depth = ahead.dot(towards).max(0.0);
-                depth * (depth / distance.max(f32::MIN_POSITIVE))
+                depth * (depth / distance.max(LEAST_NORMAL))
             }
         }
     }

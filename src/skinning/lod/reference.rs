@@ -3,6 +3,7 @@
 use glam::{Vec3, Vec3Swizzles as _, Vec4};
 
 use crate::asset::transform::Affine;
+use crate::shared::skinning::lod::NEARLY_SINGULAR;
 use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::LodView;
 use crate::skinning::picture::is_mirrored;
@@ -48,7 +49,7 @@ pub fn seen(view: &LodView, placement: &Affine) -> Seen {
 pub fn may_mirror(view: &LodView, placement: &Affine) -> bool {
     let [x, y, z] = placement.map(|row| Vec4::from_array(row).truncate());
     let side = if is_mirrored(&view.clip_from_world) { -1.0 } else { 1.0 };
-    side * x.dot(y.cross(z)) < 1e-5 * (x.length() * y.length() * z.length())
+    side * x.dot(y.cross(z)) < NEARLY_SINGULAR * (x.length() * y.length() * z.length())
 }
 
 /// The level of detail of an instance; [`InstanceLod::UNSEEN`] if it is not seen.

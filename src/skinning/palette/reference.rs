@@ -6,6 +6,7 @@ use crate::animation::local_to_model::reference::product;
 use crate::asset::skeleton::Skin;
 use crate::asset::transform::Affine;
 use crate::asset::transform::rows;
+use crate::shared::skinning::rows::LEAST_LENGTH;
 use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::vertex::Blend;
 
@@ -48,8 +49,7 @@ pub fn dual(matrix: &Affine) -> DualBone {
 /// The vector scaled to length 1, or `other` if it has no direction.
 pub(crate) fn unit_or(vector: Vec3, other: Vec3) -> Vec3 {
     let size = vector.abs().max_element();
-    // Devices may flush values smaller than this to zero.
-    if size < 1e-30 {
+    if size < LEAST_LENGTH {
         return other;
     }
     let scaled = vector / size;

@@ -86,7 +86,9 @@ impl ConeMapPass {
             pyramids: pyramids.nodes.slice(),
             cones: cones.cones.slice(),
         };
-        let [x, y] = layout.cells.map(|cells| cells.div_ceil(8));
+        let [width, height, _] = self.kernel.workgroup_size();
+        let [columns, rows] = layout.cells;
+        let [x, y] = [columns.div_ceil(width), rows.div_ceil(height)];
         let step = Step {
             kernel: self.kernel.clone(),
             groups: vec![group.bind(gpu, &self.kernel)?],

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::surface::cone_map::OPENING;
+use crate::shared::surface::cone_map::{LEAST_RISE, NARROWING, OPENING, WIDEST};
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};
 
@@ -33,7 +33,7 @@ impl Search<'_> {
             let offset = [(number % 3 - 1) * cells[0], (number / 3 - 1) * cells[1]];
             radius = self.narrowed([cell[0] - offset[0], cell[1] - offset[1]], own, radius);
         }
-        [own, radius * (1.0 - 1e-6)]
+        [own, radius * NARROWING]
     }
 
     fn highest(&self, level: u32, node: [i32; 2]) -> f32 {
@@ -115,7 +115,7 @@ fn leaf_radius(corners: [f32; 4], offset: [i32; 2], own: f32) -> f32 {
     let (x, y) = (edges(0), edges(1));
     let distances = [x[0] + y[0], x[1] + y[0], x[0] + y[1], x[1] + y[1]];
     let radii = corners.into_iter().zip(distances).filter(|(height, _)| height - own > 0.0);
-    radii.map(|(height, distance)| distance / (height - own).max(1e-9)).fold(1e9, f32::min)
+    radii.map(|(height, distance)| distance / (height - own).max(LEAST_RISE)).fold(WIDEST, f32::min)
 }
 
 fn rises([h00, h10, h01, h11]: [f32; 4], offset: [i32; 2]) -> bool {

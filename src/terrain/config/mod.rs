@@ -19,7 +19,7 @@ use crate::shared::terrain::offset;
 use crate::{Error, InputError};
 
 /// Fixed-point one of heights: a height is an integer multiple of 1/65536 unit.
-pub const HEIGHT_ONE: f64 = 65_536.0;
+pub const HEIGHT_ONE: f64 = fixed::HEIGHT_ONE as f64;
 
 /// World coordinates along the edge of a patch: the world is addressed in 1/4096 of an edge.
 pub const PATCH_EDGE: i64 = 4096;

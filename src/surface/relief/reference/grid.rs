@@ -1,7 +1,7 @@
 //! The grid of bilinear cells: the CPU reference of `wgsl/surface/grid.wgsl`.
 
 use crate::shared::surface::grid::{
-    SURFACE_FAR as FAR, SURFACE_LEAST_TRAVEL as LEAST_TRAVEL, SURFACE_NEVER as NEVER,
+    SURFACE_FAR as FAR, SURFACE_LEAST_TRAVEL as LEAST_TRAVEL, SURFACE_MAX_CROSSED, SURFACE_NEVER as NEVER,
 };
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::Ray;
@@ -41,7 +41,7 @@ impl Grid {
     }
 
     pub(crate) fn bound(&self, levels: u32) -> u32 {
-        let crossed = (self.travel[0].abs() + self.travel[1].abs()).min(16384.0);
+        let crossed = (self.travel[0].abs() + self.travel[1].abs()).min(SURFACE_MAX_CROSSED);
         2 * (crossed as u32 + 3) + levels
     }
 

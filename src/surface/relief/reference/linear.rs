@@ -1,6 +1,7 @@
 //! Linear search: the CPU reference of `wgsl/surface/linear.wgsl`.
 
 use super::height::{BILINEAR, height};
+use crate::shared::surface::linear::SURFACE_LEAST_SPAN as LEAST_SPAN;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, MAX_BINARY, MAX_STEPS, March, Outcome, Ray};
 
@@ -73,7 +74,7 @@ pub(crate) fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     }
     let over = (1.0 - bracket.above - bracket.height_above).max(0.0);
     let below = (bracket.height_under - (1.0 - bracket.under)).max(0.0);
-    let fraction = if over + below > 1e-12 { over / (over + below).max(1e-12) } else { 1.0 };
+    let fraction = if over + below > LEAST_SPAN { over / (over + below).max(LEAST_SPAN) } else { 1.0 };
     let parameter = bracket.above + fraction * (bracket.under - bracket.above);
     Hit::of(ray, parameter, bracket.samples, Outcome::Hit)
 }

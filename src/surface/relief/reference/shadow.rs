@@ -1,7 +1,9 @@
 //! Self-shadow: the CPU reference of `wgsl/surface/shadow.wgsl`.
 
 use super::height::height;
-use crate::shared::surface::shadow::SURFACE_SHADOW_BIAS as BIAS;
+use crate::shared::surface::shadow::{
+    SURFACE_LEAST_OCCLUSION as LEAST_OCCLUSION, SURFACE_SHADOW_BIAS as BIAS,
+};
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
@@ -44,7 +46,7 @@ pub(crate) fn soft_shadow(
         let travelled = fraction * fraction;
         let parameter = rise * (1.0 - travelled);
         let excess = height(map, ray.at(parameter), march.address) - (1.0 - parameter) - BIAS;
-        shade = f32::max(shade, excess / (softness * (travelled * rise + 1e-3)));
+        shade = f32::max(shade, excess / (softness * (travelled * rise + LEAST_OCCLUSION)));
     }
     1.0 - shade.min(1.0)
 }
