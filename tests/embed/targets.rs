@@ -139,7 +139,7 @@ fn averaged(picture: &RgbaImage) -> RgbaImage {
         let sums = texels.fold([0.0; 3], |sum: [f32; 3], texel| {
             std::array::from_fn(|channel| sum[channel] + relievo::srgb::linear(texel.0[channel]))
         });
-        let [r, g, b] = sums.map(|sum| relievo::srgb::encoded(sum / 16.0));
+        let [r, g, b] = sums.map(|sum| relievo::srgb::byte(sum / 16.0));
         Rgba([r, g, b, 255])
     })
 }
