@@ -1,18 +1,24 @@
 //! Objects: what all instances of one model or one terrain share.
 
-use crate::Error;
+use glam::Vec3;
+
+use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::assign::AssignPass;
-use crate::scene::Shares;
 use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable};
+use crate::scene::handles::Slots;
 use crate::scene::instances::Instances;
-use crate::scene::layout::{self, Layout, ObjectRange};
+use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::terrain::Terrain;
+use crate::scene::mesh;
+use crate::scene::quality::Shares;
+use crate::scene::relief::{self, Relief};
+use crate::scene::terrain::{self, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::{Error, InputError};
 
 /// An object of a scene.
 #[derive(Debug)]
@@ -67,11 +73,74 @@ impl Object {
         }
     }
 
+    /// Terrain.
+    pub(super) fn terrain(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Self, Error> {
+        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source)?;
+        let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+        Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// A model's meshes at rest.
+    pub(super) fn mesh(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        model: &Model,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let (merged, sphere) = mesh::at_rest_merged(model)?;
+        let drawn = mesh::drawn(gpu, layouts, &merged)?;
+        Ok(Self::new(Kind::Mesh, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+    }
+
+    /// A mesh with relief.
+    pub(super) fn relief(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        relief: &Relief,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
+        Ok(Self::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// A model that has clips.
+    pub(super) fn character(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        model: &Model,
+        capacity: usize,
+        shares: Shares,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
+        let drawn = (character.drawables(gpu, layouts)?, character.draws());
+        let (sphere, errors) = (character.sphere(), character.errors());
+        let kind = Kind::Character(Box::new(character));
+        Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
+    }
+
     /// World units between the samples of a terrain.
     pub(super) fn spacing(&self) -> Option<f64> {
         match &self.kind {
             Kind::Terrain(terrain) => Some(terrain.spacing),
             Kind::Mesh | Kind::Character(_) => None,
+        }
+    }
+
+    /// The object as kernels see it.
+    pub(super) fn lod_object(&self) -> LodObject {
+        LodObject {
+            first: self.range.first,
+            instances: self.instances.capacity() as u32,
+            levels: self.errors.len() as u32,
+            first_list: self.range.first_list,
+            first_draw: self.range.first_draw,
+            parts: self.draws.len() as u32 / OBJECT_LISTS,
+            mesh_fraction: self.mesh_fraction,
+            shown: u32::from(self.is_shown),
+            errors: error_vectors(&self.errors).map(Into::into),
         }
     }
 
@@ -103,7 +172,7 @@ impl Object {
             return Ok(());
         }
         self.fitted = layout.version;
-        let mut lod = layout::lod_object(self);
+        let mut lod = self.lod_object();
         self.lods.clear();
         for drawable in &self.drawables {
             self.lods.push(lod);
@@ -127,4 +196,31 @@ impl Object {
     pub(crate) fn capacity(&self) -> usize {
         self.instances.capacity()
     }
+}
+
+/// Room for at least `capacity` instances.
+fn room(capacity: usize) -> Result<Instances, InputError> {
+    match (1..=1 << 20).contains(&capacity) {
+        true => Ok(Instances::new(capacity)),
+        false => Err(InputError::new("capacity", capacity, "must be in 1..=1048576")),
+    }
+}
+
+/// Lays out objects, one after the other, and tells each its range.
+///
+/// # Errors
+/// [`crate::gpu::GpuError`].
+pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
+    let mut range = ObjectRange::default();
+    let (mut all, mut draws) = (Vec::new(), Vec::new());
+    for object in objects.iter_mut() {
+        object.range = range;
+        let instances = object.instances.capacity() as u32;
+        all.push(object.lod_object());
+        draws.extend_from_slice(&object.draws);
+        range.first += instances;
+        range.first_list += 2 * object.errors.len() as u32 * instances;
+        range.first_draw += object.draws.len() as u32;
+    }
+    Layout::new(gpu, (&all, draws), range, version)
 }
