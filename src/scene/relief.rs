@@ -44,6 +44,12 @@ pub struct Relief {
 }
 
 impl Relief {
+    /// A square wall with an edge of one world unit, centered at the origin and facing +Z, that shows the maps `tiles` times
+    /// along each edge. Otherwise as [`Relief::new`].
+    pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
+        Self::new(SurfaceMesh::square(tiles), heights, albedo)
+    }
+
     /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self {
