@@ -311,10 +311,10 @@ mod tests {
             rows: vec![[poison; 4]; 3 * count],
             counts: vec![POISON; count / 4],
         };
-        for index in 0..count {
+        for (index, before) in allowed.iter().enumerate() {
             let Some(object) = scene.object_of(view, index) else { continue };
             let selected = select(view, object, &scene.instances[index]);
-            let before = (view.is_first == 0).then(|| allowed[index]);
+            let before = (view.is_first == 0).then_some(*before);
             found.allowed[index] = merged(before, selected.as_ref());
             found.decisions[index] = selected.map_or(0, |selected| selected.decision);
             if let Some(selected) = selected {
