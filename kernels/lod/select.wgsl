@@ -79,7 +79,7 @@ fn decide(index: u32, object: LodObject) -> u32 {
         let sphere = instance.bounding_sphere;
         let center = axes.x * sphere.x + axes.y * sphere.y + axes.z * sphere.z + at;
         let scale = max(max(abs(instance.scale.x), abs(instance.scale.y)), abs(instance.scale.z));
-        // Rounding of the centre must not move the sphere off what it contains.
+        // Rounding of the center must not move the sphere off what it contains.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
         if is_inside(center, radius) {
             rows[3u * index] = vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x);

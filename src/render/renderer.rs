@@ -1,7 +1,7 @@
 //! Draws a scene through a view into the caller's render pass or render bundle.
 
-mod pass;
 mod pipelines;
+mod scene_pass;
 #[cfg(all(test, feature = "samples"))]
 mod tests;
 
@@ -13,8 +13,8 @@ use crate::lod::{OBJECT_LISTS, SceneDraw};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
 use crate::{Error, InputError};
-pub use pass::ScenePass;
 use pipelines::{Kind, PipelineKey};
+pub use scene_pass::ScenePass;
 
 /// What of a scene is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

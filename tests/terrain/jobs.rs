@@ -1,4 +1,4 @@
-//! `prepare` refuses buffers, sizes and parameters that do not fit, one field at a time, and takes what just fits.
+//! `prepare` refuses buffers, sizes and parameters that do not fit, and names the field. It accepts what just fits.
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Options};
@@ -38,7 +38,7 @@ fn fields(gpu: &Gpu, width: u32, count: u32) -> Fields {
     Fields::new(gpu, "test", width, count).expect("allocated")
 }
 
-/// Fields that say they are larger than their buffer.
+/// Fields whose width and count exceed their buffer.
 fn short(gpu: &Gpu) -> Fields {
     Fields { heights: buffer(gpu, 49), width: 5, count: 2 }
 }
@@ -201,7 +201,7 @@ fn pad() {
 fn generation() {
     let gpu = gpu();
     let config = Config::new(5, 1.0, "short").expect("valid");
-    // With features, each dispatch makes one level and needs scratch for the next on every adapter.
+    // With features, each dispatch computes one level on every adapter, and leaves it in scratch memory for the next.
     let height = HeightPass::new(&gpu, Offset::Signed, Some(FeatureMode::Keep)).expect("compiled");
     let scratch = HeightScratch::new(&gpu, &height, &config, 2, 1).expect("allocated");
     let points = HeightJob::output_points(&config, 2, 1);

@@ -20,8 +20,8 @@ pub struct Selected {
     pub rows: [[f32; 4]; 3],
 }
 
-/// The bounding sphere of an instance, relative to the corner of a cell: centre and radius. The radius includes what
-/// rounding may do to the centre.
+/// The bounding sphere of an instance, relative to the corner of a cell: center and radius. The radius includes what
+/// rounding may do to the center.
 pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
     let ([x, y, z], at, scale) = (instance.axes(), instance.position(cell), instance.largest_scale());
     let [cx, cy, cz, radius] = instance.bounding_sphere;
