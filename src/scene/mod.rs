@@ -17,6 +17,7 @@ pub(crate) mod layouts;
 pub(crate) mod material;
 mod mesh;
 pub(crate) mod object;
+mod paging;
 mod placement;
 mod quality;
 mod relief;
@@ -36,6 +37,7 @@ pub use view::View;
 use crate::animation::Frame;
 use crate::asset::{Light, Model};
 use crate::gpu::{Gpu, Staged, StagingRing, Upload as _, compute_pass};
+use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
@@ -198,11 +200,9 @@ impl Scene {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
             // Until the next layout, the object's entry is written alone.
-            let (value, range) = (entry.lod_object(), entry.range);
+            let (value, number) = (entry.lod_object(), entry.number);
             if let Some(layout) = &self.layout {
-                let at =
-                    self.objects.iter().position(|object| object.range.first == range.first).unwrap_or(0);
-                self.staged.elements(&layout.objects, at, &[value])?;
+                self.staged.elements(&layout.objects, number, &[value])?;
             }
         }
         Ok(())
@@ -488,6 +488,11 @@ impl Scene {
 
     fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
+        let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
+        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        for object in self.objects.iter_mut() {
+            object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
+        }
         let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
         for (at, view) in views.iter().enumerate() {
             view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
 use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable};
@@ -30,6 +31,10 @@ pub(crate) struct Object {
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
+    /// The factor by which its levels are coarser than the views ask for: 1 unless its vertices exceed a binding.
+    pub(super) coarsening: f32,
+    /// Its number among the objects of the layout.
+    pub(super) number: usize,
     pub(super) is_shown: bool,
     /// What is drawn, part by part.
     pub(crate) drawables: Vec<Drawable>,
@@ -64,6 +69,8 @@ impl Object {
             sphere,
             errors,
             mesh_fraction,
+            coarsening: 1.0,
+            number: 0,
             is_shown: true,
             drawables,
             draws,
@@ -138,7 +145,7 @@ impl Object {
             first_list: self.range.first_list,
             first_draw: self.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
-            mesh_fraction: self.mesh_fraction,
+            mesh_fraction: self.coarsening * self.mesh_fraction,
             shown: u32::from(self.is_shown),
             errors: error_vectors(&self.errors).map(Into::into),
         }
@@ -155,7 +162,30 @@ impl Object {
         self.instances.change_all();
         if let Kind::Character(character) = &mut self.kind {
             character.grow(gpu, self.instances.capacity())?;
-            self.drawables = character.drawables(gpu, layouts)?;
+            rebind(&mut self.drawables, gpu, layouts, character)?;
+        }
+        Ok(())
+    }
+
+    /// Provides what the views of a frame need of a character. Where a binding is too small for it, its levels of detail
+    /// are coarser.
+    pub(super) fn provide(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        views: &[SelectView],
+        (staged, layout): (&mut Staged, &Layout),
+    ) -> Result<(), Error> {
+        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object() };
+        let Kind::Character(character) = &mut self.kind else { return Ok(()) };
+        let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
+        if is_replaced {
+            rebind(&mut self.drawables, gpu, layouts, character)?;
+        }
+        if coarsening != self.coarsening {
+            self.coarsening = coarsening;
+            character.stage_mesh_fraction(staged, coarsening * self.mesh_fraction)?;
+            staged.elements(&layout.objects, self.number, &[self.lod_object()])?;
         }
         Ok(())
     }
@@ -198,6 +228,21 @@ impl Object {
     }
 }
 
+/// Binds a character's pages, after they were replaced.
+fn rebind(
+    drawables: &mut [Drawable],
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    character: &Character,
+) -> Result<(), Error> {
+    for (drawable, pages) in drawables.iter_mut().zip(character.pages()) {
+        if let Drawable::Mesh(mesh) = drawable {
+            *mesh = mesh.with_pages(gpu, layouts, pages)?;
+        }
+    }
+    Ok(())
+}
+
 /// Room for at least `capacity` instances.
 fn room(capacity: usize) -> Result<Instances, InputError> {
     match (1..=1 << 20).contains(&capacity) {
@@ -215,6 +260,8 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
     let (mut all, mut draws) = (Vec::new(), Vec::new());
     for object in objects.iter_mut() {
         object.range = range;
+        object.number = all.len();
+        object.coarsening = 1.0;
         let instances = object.instances.capacity() as u32;
         all.push(object.lod_object());
         draws.extend_from_slice(&object.draws);

@@ -155,10 +155,24 @@ impl View {
         spacings: &[f64],
         is_first: bool,
     ) -> Result<(), Error> {
+        let (camera, view) = self.select_view(blocks, is_first)?;
+        staged.uniform(&self.select, &view)?;
+        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
+        let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
+        for ((uniform, _), spacing) in terrain.zip(spacings) {
+            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
+        }
+        Ok(())
+    }
+
+    /// The view as kernels see it.
+    pub(super) fn select_view(
+        &self,
+        blocks: u32,
+        is_first: bool,
+    ) -> Result<(Camera, SelectView), InputError> {
         let Some(camera) = self.camera else {
-            return Err(
-                InputError::new("view.camera", "none", "must be set before a frame is recorded").into()
-            );
+            return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
         };
         let own = [camera];
         let cameras = if self.lod_cameras.is_empty() { &own[..] } else { &self.lod_cameras };
@@ -175,13 +189,7 @@ impl View {
         for (to, from) in view.cameras.iter_mut().zip(cameras) {
             *to = lod_camera(from, camera.cell, self.quality.pixels)?;
         }
-        staged.uniform(&self.select, &view)?;
-        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
-        let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
-        for ((uniform, _), spacing) in terrain.zip(spacings) {
-            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
-        }
-        Ok(())
+        Ok((camera, view))
     }
 
     /// Adds culling, choice of levels and lists to a compute pass.

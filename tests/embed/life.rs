@@ -120,3 +120,38 @@ fn a_long_life_leaves_no_trace() {
     let difference = Difference::of(&kept, &refreshed, 1);
     assert!(difference.outliers < 0.01, "{difference:?}");
 }
+
+/// Memory for vertices follows what is seen, and the picture does not tell: an object with room for many instances, whose
+/// pages grow as the camera comes near, shows what an object shows that has all pages from the start.
+#[test]
+fn pages_follow_what_is_seen() {
+    let gpu = device();
+    let mut many = World::empty(&gpu, 640);
+    let before = gpu.memory().now();
+    let mut few = World::empty(&gpu, 64);
+    let few_bytes = gpu.memory().now() - before;
+    for at in 0..60 {
+        many.spawn(at % 15);
+        few.spawn(at % 15);
+    }
+    let frame = Frame::plain(&gpu, SIZE);
+    let renderers = [&many, &few].map(|world| frame.renderer(&gpu, &world.scene));
+    let mut views = [many.view(1.0), few.view(1.0)];
+    let mut held = Vec::new();
+    for distance in [300.0, 60.0, 14.0, 200.0] {
+        let eye = glam::Vec3::new(0.0, 0.3, 1.0) * distance;
+        let camera = Camera::looking_at(eye, glam::Vec3::ZERO, 0.6, [0.5, 900.0], SIZE);
+        for (view, world) in views.iter_mut().zip([&mut many, &mut few]) {
+            view.set(camera).expect("a camera");
+            world.scene.advance(0.1).expect("finite");
+        }
+        let a = frame.shot(&mut many.scene, &mut views[0], &renderers[0]);
+        let b = frame.shot(&mut few.scene, &mut views[1], &renderers[1]);
+        assert!(a == b, "another picture at {distance}");
+        held.push(gpu.memory().now());
+    }
+    println!("64 instances: {few_bytes} bytes; all while the camera comes near: {held:?}");
+    // 640 instances in full detail would take 136 MB of pages.
+    assert!(held.iter().all(|bytes| *bytes < 120_000_000), "{held:?}");
+    assert!(held[2] > held[1], "no page was added: {held:?}");
+}
