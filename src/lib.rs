@@ -113,8 +113,7 @@ pub mod render;
 #[cfg(feature = "samples")]
 pub mod samples;
 #[cfg(feature = "gpu")]
-#[allow(dead_code, unused_imports, reason = "scenes that use it are being built")]
-mod scene;
+pub mod scene;
 mod shared;
 pub mod skinning;
 pub mod srgb;

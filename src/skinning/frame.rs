@@ -10,7 +10,7 @@ use super::skin::SkinPass;
 use crate::animation::ModelMatrices;
 use crate::animation::model_matrices::Consumer;
 use crate::asset::Model;
-use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
+use crate::gpu::{Buffer, Gpu, IndirectJob, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
@@ -92,8 +92,13 @@ impl SkinFrame {
     /// recording thus skins everything that is seen. It counts frames ([`SelectBuffers::skinned`]): record it
     /// once per frame.
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
-        [&self.palette, &self.selection].into_iter().for_each(|job| job.record(encoder));
-        self.some.iter().for_each(|job| job.record(encoder));
+        self.dispatch_updated_bones(&mut compute_pass(encoder, "skinning"));
+    }
+
+    /// Adds the same work as [`SkinFrame::record_updated_bones`] to a compute pass that is being recorded.
+    pub fn dispatch_updated_bones(&self, pass: &mut wgpu::ComputePass<'_>) {
+        [&self.palette, &self.selection].into_iter().for_each(|job| job.dispatch(pass));
+        self.some.iter().for_each(|job| job.dispatch(pass));
     }
 
     /// Reads the vertices of an instance, in the mesh's own order; those beyond its level of detail are out of
