@@ -55,8 +55,9 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     };
     let up = "uploaded";
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 64, stride: 0 }).expect(up),
+        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 64, clusters: 0 }).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &corners.map(vertex)).expect(up),
+        page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         uv: Buffer::from_slice(gpu, "uv", &corners.map(|[x, y]| [0.5 * x + 0.5, 0.5 - 0.5 * y])).expect(up),
         material_of: Buffer::from_slice(gpu, "material of", &[1; 4]).expect(up),
         indices: Buffer::from_slice(gpu, "indices", &[0, 2, 1, 1, 2, 3]).expect(up),
@@ -68,7 +69,7 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
             PartMaterials::new(gpu, layouts, &model(), &table, &Sampling::default()).expect(up),
         ),
     };
-    Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, vec![part]).expect("bound"))
+    Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))
 }
 
 /// A parallel view along −Z (or +Z, from behind), lit in colour from a direction.
