@@ -10,7 +10,7 @@ struct PageParams {
     // Clusters of the mesh, entries of an instance in the table.
     clusters: u32,
     // Number of clusters at each level of detail.
-    levels: array<vec4<u32>, 4>,
+    levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
 struct PageState {

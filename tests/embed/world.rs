@@ -1,5 +1,7 @@
 //! The scene of these tests: nine patches of ground, characters that stand on them, and boxes.
 
+use std::sync::LazyLock;
+
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
@@ -24,9 +26,12 @@ pub struct World {
 
 /// The creature, smaller than it is, with levels of detail for one of its clips.
 pub fn model() -> Model {
-    let mut model = creature().expect("valid");
-    add_levels(&mut model, &[0], 9).expect("a clip");
-    model
+    static MODEL: LazyLock<Model> = LazyLock::new(|| {
+        let mut model = creature().expect("valid");
+        add_levels(&mut model, &[0], 9).expect("a clip");
+        model
+    });
+    MODEL.clone()
 }
 
 impl World {
