@@ -98,10 +98,10 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
         .collect();
     for vertex in of_stage("vertex") {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
-        // Entries of that name need the vertices of one.
+        // Entries of that name take the vertices of one.
         let is_bumpy = |entry: &Value| name_of(entry).ends_with("_bumpy");
         let fitting =
-            of_stage("fragment").into_iter().filter(|fragment| is_bumpy(vertex) || !is_bumpy(fragment));
+            of_stage("fragment").into_iter().filter(|fragment| is_bumpy(vertex) == is_bumpy(fragment));
         all.extend(fitting.map(|fragment| {
             // Fragment entries of this name write no colour.
             let is_deep = name_of(fragment).starts_with("depth_");
