@@ -5,8 +5,8 @@ use crate::lod::select::reference::{depth_inside, is_shown, placed_sphere, view_
 use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::skinning::pages::PAGE_BYTES;
 
-/// Up to this size, pages for all instances in full detail are allocated at once: 16 MiB.
-const SMALL: usize = 16 << 20;
+/// Up to this size, pages for all instances in full detail are allocated at once: 4 MiB.
+const SMALL: usize = 4 << 20;
 
 /// The factor by which rounding may make the device allow less than the host.
 const CAUTION: f32 = 0.999;
