@@ -9,8 +9,8 @@ use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, Sk
 /// The inputs of a selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
 pub struct SelectBuffers {
-    /// The bones of each instance that were updated this frame, one bit per slot of the skeleton's order, in
-    /// [`MeshBuffers::mask_words`] words per instance. Under a gate,
+    /// The bones of each instance that were updated since the last selection, one bit per slot of the skeleton's
+    /// order, in [`MeshBuffers::mask_words`] words per instance. Under a gate,
     /// [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
     /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) for it. Every bone below an
     /// updated one must be set too.
