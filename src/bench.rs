@@ -50,6 +50,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/palette", run: skinning::palette::bench::cases },
     Stem { name: "skinning/morph_weights", run: skinning::morph_weights::bench::cases },
     Stem { name: "skinning/morph", run: skinning::morph::bench::cases },
+    Stem { name: "skinning/pages", run: skinning::pages::bench::cases },
     Stem { name: "skinning/select", run: skinning::select::bench::cases },
     Stem { name: "skinning/skin", run: skinning::skin::bench::cases },
     Stem { name: "lod/select", run: lod::select::bench::cases },

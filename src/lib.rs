@@ -59,7 +59,7 @@
 //! ```
 //! # #[cfg(feature = "gpu")] {
 //! use relievo::gpu::{Buffer, Gpu, Options};
-//! use relievo::terrain::morph::{Morph, MorphPass};
+//! use relievo::terrain::morph::{Morph, MorphBuffers, MorphPass};
 //!
 //! let gpu = Gpu::headless(&Options::default())?; // or Gpu::from_wgpu(device, queue)
 //! let from = Buffer::from_slice(&gpu, "from", &[0, 65_536])?; // heights in 1/65536 units
@@ -67,7 +67,7 @@
 //! let heights = Buffer::new(&gpu, "heights", 2)?;
 //!
 //! let pass = MorphPass::new(&gpu)?;
-//! let job = pass.prepare(&gpu, &from, &to, &heights)?;
+//! let job = pass.prepare(&gpu, MorphBuffers { from: &from, to: &to, heights: &heights })?;
 //! job.set(&gpu, Morph { time: 0.25 })?;
 //! gpu.run("morph", |encoder| job.record(encoder))?; // or record it into your own encoder
 //! assert_eq!(heights.read_blocking(&gpu)?, [16_384, 49_152]);
@@ -113,8 +113,7 @@ pub mod render;
 #[cfg(feature = "samples")]
 pub mod samples;
 #[cfg(feature = "gpu")]
-#[allow(dead_code, unused_imports, reason = "scenes that use it are being built")]
-mod scene;
+pub mod scene;
 mod shared;
 pub mod skinning;
 pub mod srgb;

@@ -53,6 +53,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/palette", run: skinning::palette::verify::cases },
     Stem { name: "skinning/morph_weights", run: skinning::morph_weights::verify::cases },
     Stem { name: "skinning/morph", run: skinning::morph::verify::cases },
+    Stem { name: "skinning/pages", run: skinning::pages::verify::cases },
     Stem { name: "skinning/select", run: skinning::select::verify::cases },
     Stem { name: "skinning/skin", run: skinning::skin::verify::cases },
     Stem { name: "lod/select", run: lod::select::verify::cases },

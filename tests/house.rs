@@ -41,9 +41,9 @@ impl Source {
         names
     }
 
-    /// Parity cases and benchmarks may use what lies above them: samples.
+    /// Parity cases, benchmarks and tests may use what lies above them: samples.
     fn is_case(&self) -> bool {
-        self.module().iter().skip(1).any(|name| ["verify", "bench"].contains(name))
+        self.module().iter().skip(1).any(|name| ["verify", "bench", "tests"].contains(name))
     }
 
     /// Whether the file is an operation's CPU reference, or a part of one.

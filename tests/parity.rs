@@ -19,7 +19,7 @@ use relievo::surface::shade::verify::{JudgedShade, PARTS, Part, compare, perspec
 use relievo::surface::verify::bounds::{Judged, Source, judge};
 use relievo::surface::verify::{Shape, random_map, random_rays};
 use relievo::surface::{HeightMap, Hit, March, Method, Ray, Shade, ShadePoint, ShadeView, SurfaceTextures};
-use relievo::terrain::morph::{Morph, MorphPass};
+use relievo::terrain::morph::{Morph, MorphBuffers, MorphPass};
 use relievo::verify;
 
 #[test]
@@ -284,9 +284,8 @@ fn a_kernel_that_computes_something_else_fails() {
         (Buffer::from_slice(&gpu, "from", &[0; 64]), Buffer::from_slice(&gpu, "to", &[65_536; 64]));
     let (from, to) = (from.expect("uploaded"), to.expect("uploaded"));
     let heights = Buffer::from_slice(&gpu, "heights", &[POISON as i32; 64]).expect("uploaded");
-    let job = MorphPass::new(&gpu)
-        .and_then(|pass| pass.prepare(&gpu, &from, &to, &heights).map_err(|error| panic!("{error}")));
-    let job = job.expect("prepared");
+    let buffers = MorphBuffers { from: &from, to: &to, heights: &heights };
+    let job = MorphPass::new(&gpu).expect("compiled").prepare(&gpu, buffers).expect("prepared");
     job.set(&gpu, Morph { time: 0.5 }).expect("set");
     gpu.run("test", |encoder| job.record(encoder)).expect("run");
     let actual = heights.read_blocking(&gpu).expect("read");

@@ -37,19 +37,21 @@ fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
 
 // Whether a sphere reaches into the view volume.
 fn is_inside(center: vec3<f32>, radius: f32) -> bool {
-    var is_seen = true;
+    let lengths = length(center) + radius;
+    var least = MAX_ALLOWED;
     for (var plane = 0u; plane < 6u; plane++) {
         let side = view.planes[plane];
-        let slack = POSITION_SLACK * (length(center) + abs(side.w) + radius);
-        is_seen = is_seen && dot(side.xyz, center) + side.w >= -(radius + slack);
+        least = min(least, dot(side.xyz, center) + side.w + radius + POSITION_SLACK * (lengths + abs(side.w)));
     }
-    return is_seen;
+    return least >= 0.0;
 }
 
-// The displacement that all of the view's cameras allow, in the model's units.
+// The displacement that all of the view's cameras allow, in the model's units. The loop ends where it is 0. (Where uniforms
+// alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
 fn view_allows(center: vec3<f32>, radius: f32, scale: f32) -> f32 {
-    var least = camera_allows(view.cameras[0], center, radius);
-    for (var camera = 1u; camera < min(view.camera_count, VIEW_CAMERAS); camera++) {
+    let cameras = min(view.camera_count, VIEW_CAMERAS);
+    var least = MAX_ALLOWED;
+    for (var camera = 0u; camera < select(0u, cameras, least > 0.0); camera++) {
         least = min(least, camera_allows(view.cameras[camera], center, radius));
     }
     return min(least / max(scale, LEAST_SCALE), MAX_ALLOWED);
@@ -70,30 +72,25 @@ fn list_of(object: LodObject, scale: vec3<f32>, allowed_here: f32) -> u32 {
 // The decision for an instance. Writes its rows and its allowed displacement.
 fn decide(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
+    let before = select(allowed[index], UNSEEN_ALLOWED, view.is_first != 0u);
     if is_shown(instance, object) {
         let axes = instance_axes(instance);
         let at = instance_position(instance, view.cell);
         let sphere = instance.bounding_sphere;
         let center = axes.x * sphere.x + axes.y * sphere.y + axes.z * sphere.z + at;
         let scale = max(max(abs(instance.scale.x), abs(instance.scale.y)), abs(instance.scale.z));
-        // Rounding of the centre must not move the sphere off what it contains.
+        // Rounding of the center must not move the sphere off what it contains.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
         if is_inside(center, radius) {
             rows[3u * index] = vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x);
             rows[3u * index + 1u] = vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y);
             rows[3u * index + 2u] = vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z);
             let allowed_here = view_allows(center, radius, scale);
-            var merged = allowed_here;
-            if view.is_first == 0u && allowed[index] >= 0.0 {
-                merged = min(merged, allowed[index]);
-            }
-            allowed[index] = merged;
+            allowed[index] = select(allowed_here, min(before, allowed_here), before >= 0.0);
             return 1u + list_of(object, instance.scale, allowed_here);
         }
     }
-    if view.is_first != 0u {
-        allowed[index] = UNSEEN_ALLOWED;
-    }
+    allowed[index] = before;
     return 0u;
 }
 

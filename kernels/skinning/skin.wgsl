@@ -4,6 +4,7 @@
 // those of a list. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
+import package::wgsl::skinning::page::NO_PAGE;
 import package::wgsl::skinning::rows::{LEAST_LENGTH, Rows, rows_of_dual};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
@@ -12,6 +13,8 @@ override COMPACTED: bool = false;
 override DUAL: bool = false;
 // Whether each instance has vertices of its own (morphed) and does not use the mesh's.
 override MORPHED: bool = false;
+// Whether the output lies in pages. Clusters without a page are skipped.
+override PAGED: bool = false;
 
 struct SkinParams {
     vertices: u32,
@@ -40,8 +43,10 @@ struct SkinParams {
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
-// Skinned vertices in the layout of `vertices`, instance by instance.
+// Skinned vertices in the layout of `vertices`, instance by instance or page by page.
 @group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
+// With PAGED the page of each cluster of each instance.
+@group(0) @binding(8) var<storage, read> page_table: array<u32>;
 
 // A weighted sum of bones: rows of matrices, or rotation, dual part, diagonal and the elements above it.
 struct Sum {
@@ -146,6 +151,14 @@ fn main(
     if instance_lod.max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
+    var to = 5u * (number * params.vertices + vertex);
+    if PAGED {
+        let page = page_table[instance * ((params.vertices + CLUSTER - 1u) / CLUSTER) + cluster];
+        if page == NO_PAGE {
+            return;
+        }
+        to = 5u * (CLUSTER * page + lane);
+    }
     let rows = blended(
         influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, instance_lod);
     var first = 5u * vertex;
@@ -170,7 +183,6 @@ fn main(
     let normal = unit_or(
         side * vec3<f32>(dot(of_x, old_normal), dot(cross(z, x), old_normal), dot(cross(x, y), old_normal)), old_normal);
     let tangent = unit_or(vec3<f32>(dot(x, along), dot(y, along), dot(z, along)), along);
-    let to = 5u * (number * params.vertices + vertex);
     skinned[to] = position.xy;
     skinned[to + 1u] = vec2<f32>(position.z, normal.x);
     skinned[to + 2u] = normal.yz;

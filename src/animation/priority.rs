@@ -23,14 +23,14 @@
 //! otherwise nothing follows it, and its first three terms are 0.
 
 mod analyze;
+mod differences;
 
 use crate::InputError;
-use crate::animation::local_to_model::reference::local_to_model;
-use crate::animation::sample::reference::sample_bone;
-use crate::asset::clip::{Clip, Part};
-use crate::asset::keyframe::RotationPath;
+use crate::asset::clip::Clip;
 use crate::asset::skeleton::Skeleton;
-use crate::asset::transform::Transform;
+
+use differences::{Difference, Differences};
+pub use differences::{key_times, size};
 
 /// Largest values below this count as 0: in radians, factors of the scale at rest, and fractions of the model's
 /// size.
@@ -144,116 +144,12 @@ fn check_user(skeleton: &Skeleton, user: &[f32]) -> Result<(), InputError> {
     }
 }
 
-/// The change from a key to the next.
-struct Difference {
-    bone: u32,
-    key: u32,
-    time: f32,
-    /// The time of the next key, or its own if there is none.
-    until: f32,
-    /// The change in units of the model, in radians, and in factors of the scale at rest.
-    change: [f64; 3],
-}
-
-struct Differences {
-    keys: Vec<Difference>,
-    offsets: Vec<u32>,
-    size: f64,
-}
-
-impl Differences {
-    fn new(skeleton: &Skeleton, clip: &Clip, loops: bool) -> Result<Self, InputError> {
-        if clip.bones() != skeleton.len() {
-            let bound = format!("must be {}, as the skeleton's", skeleton.len());
-            return Err(InputError::new("clip.bones", clip.bones(), bound));
-        }
-        let mut all = Self { keys: Vec::new(), offsets: vec![0], size: size(skeleton) };
-        let above = skeleton.scales_above();
-        for (bone, node) in skeleton.bones().iter().enumerate() {
-            let times = key_times(clip, bone);
-            let change = |from: &Transform, to: &Transform| {
-                let [translation, rotation, scale] = change(from, to);
-                [translation * above[bone], rotation, scale / node.scale()]
-            };
-            let at = |time: f32| sample_bone(clip, bone, time, RotationPath::Slerp);
-            for (key, time) in times.iter().enumerate() {
-                let next = times.get(key + 1).or_else(|| times.first().filter(|_| loops));
-                let change = next.map_or([0.0; 3], |next| change(&at(*time), &at(*next)));
-                let until = times.get(key + 1).copied().unwrap_or(*time);
-                let (bone, key) = (bone as u32, key as u32);
-                all.keys.push(Difference { bone, key, time: *time, until, change });
-            }
-            all.offsets.push(all.keys.len() as u32);
-        }
-        Ok(all)
-    }
-
-    /// The first five terms of each key.
-    fn terms(&self, skeleton: &Skeleton) -> Vec<[f64; 5]> {
-        let largest = |part: usize| self.keys.iter().map(|key| key.change[part]).fold(0.0, f64::max);
-        let least = [NOISE * self.size, NOISE, NOISE];
-        let fraction = |value: f64, largest: f64, least: f64| {
-            if largest < least || largest <= 0.0 { 0.0 } else { value / largest }
-        };
-        let largest = [0, 1, 2].map(largest);
-        let most_children = skeleton.descendants().iter().copied().max().unwrap_or(0).into();
-        let deepest = f64::from(skeleton.depths().iter().copied().max().unwrap_or(0));
-        let of_key = |key: &Difference| {
-            let bone = key.bone as usize;
-            let [translation, rotation, scale] =
-                [0, 1, 2].map(|part| fraction(key.change[part], largest[part], least[part]));
-            let children = fraction(skeleton.descendants()[bone].into(), most_children, NOISE);
-            let depth = (deepest - f64::from(skeleton.depths()[bone]) + 1.0) / (deepest + 1.0);
-            [translation, rotation, scale, children, depth]
-        };
-        self.keys.iter().map(of_key).collect()
-    }
-}
-
-/// The distinct times of a bone's keys.
-pub fn key_times(clip: &Clip, bone: usize) -> Vec<f32> {
-    let tracks = Part::ALL.map(|part| clip.times_of(clip.track(bone, part)));
-    let mut times = tracks.concat();
-    times.sort_by(f32::total_cmp);
-    times.dedup();
-    times
-}
-
-fn change(from: &Transform, to: &Transform) -> [f64; 3] {
-    [
-        distance(from.translation, to.translation),
-        angle(from.rotation, to.rotation),
-        distance(from.scale, to.scale),
-    ]
-}
-
-fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
-    let [a, b] = [a, b].map(|v| glam::DVec3::from(v.map(f64::from)));
-    a.distance(b)
-}
-
-/// The angle `2·acos(min(1, |a·b|))`, computed from the chord, which is exact for small angles; the rounding of
-/// the cosine would give 0.001 rad.
-fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
-    let [a, b] = [a, b].map(|q| glam::DVec4::from(q.map(f64::from)).normalize());
-    let b = if a.dot(b) < 0.0 { -b } else { b };
-    4.0 * libm::asin((a.distance(b) / 2.0).min(1.0))
-}
-
-/// The diagonal of the box around all bones at rest, in units of the model.
-pub fn size(skeleton: &Skeleton) -> f64 {
-    let model_matrices = local_to_model(skeleton, &skeleton.rest());
-    let places = model_matrices.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));
-    let (low, high) = places
-        .fold((glam::DVec3::MAX, glam::DVec3::MIN), |(low, high), place| (low.min(place), high.max(place)));
-    low.distance(high)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::clip::{BoneKeys, Interpolation, Keys};
     use crate::asset::skeleton::Bone;
+    use crate::asset::transform::Transform;
 
     /// root ─ arm ─ hand, and a leg below the root: 3, 1, 0, 0 descendants, 0, 1, 2, 1 steps from the root.
     fn skeleton() -> Skeleton {

@@ -10,14 +10,15 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 /// the matrices has been brought up to date, so a frame may skip skinning. Every bone below an updated one is set
 /// too.
 ///
-/// What follows the matrices is a reader ([`UpdatedBones::reader`]); a
-/// [`SkinFrame`](crate::skinning::frame::SkinFrame) is one by itself. The bits are cleared by whichever reader is the
-/// last to be recorded after an update. Until then, a reader that is recorded again finds all bits once more and does
-/// too much, and never too little. So it is for readers that take turns, each skipping the frames of the others, and
-/// for one that is never recorded: drop it.
+/// What follows the matrices is a reader ([`UpdatedBones::reader`]), as every
+/// [`SkinFrame`](crate::skinning::frame::SkinFrame) and [`PagedSkin`](crate::skinning::paged::PagedSkin) is by
+/// itself. The bits are cleared by whichever reader is the last to be recorded after an update. Until then, a reader
+/// that is recorded again finds all bits once more and does too much, and never too little. So it is for readers that
+/// take turns, each skipping the frames of the others, and for one that is never recorded: drop it.
 ///
-/// The order of recording counts. Submit encoders in the order in which they were recorded; if one with readers is not
-/// submitted, prepare the frames of skinning anew. Clones are of the same bits and readers.
+/// The order of recording counts. Submit encoders in the order in which they were recorded. If an encoder with some
+/// of the readers is not submitted, while others clear the bits, prepare the skinning of the former anew. Clones are
+/// of the same bits and readers.
 #[derive(Debug, Clone)]
 pub struct UpdatedBones {
     bits: Buffer<u32>,
@@ -110,12 +111,11 @@ impl UpdatedBones {
 }
 
 impl UpdatedBonesReader {
-    /// Records that the work before, in this encoder, has read the bits. If no reader is behind any more, the bits are
-    /// cleared.
-    pub fn record_read(&self, encoder: &mut wgpu::CommandEncoder) {
-        if self.updated.lock().read(self.number) {
-            encoder.clear_buffer(self.updated.bits.raw(), 0, None);
-        }
+    /// Tells that the work recorded now reads the bits. Returns whether that work must clear them afterwards, because
+    /// no reader is behind any more.
+    #[must_use = "the last reader clears the bits"]
+    pub fn read(&self) -> bool {
+        self.updated.lock().read(self.number)
     }
 }
 

@@ -1,12 +1,15 @@
 //! Skinned meshes: vertices in the space in which they were bound, their influences, triangles, and morph
 //! targets.
 
-use super::indices::check_triangles;
+mod validate;
+
 use super::morph::{MorphTarget, WeightKeys};
 use super::tangents::{self, tangents};
 use crate::InputError;
 use crate::asset::influences::Influences;
 use crate::asset::skeleton::Skin;
+
+pub(crate) use validate::in_range;
 
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 1 << 24;
@@ -81,117 +84,6 @@ impl Mesh {
         }
     }
 
-    /// Checks lengths, indices and ranges, and that the mesh matches its skin.
-    ///
-    /// # Errors
-    /// [`InputError`] that names the field, with its index.
-    pub fn validate(&self, skins: &[Skin]) -> Result<(), InputError> {
-        let Some(skin) = skins.get(self.skin) else {
-            return Err(InputError::new("mesh.skin", self.skin, format!("must be below {}", skins.len())));
-        };
-        let vertices = self.vertices();
-        if vertices > MAX_VERTICES {
-            return Err(InputError::new(
-                "mesh.positions.len",
-                vertices,
-                format!("must be at most {MAX_VERTICES}"),
-            ));
-        }
-        for (field, len) in [
-            ("normals", self.normals.len()),
-            ("tangents", self.tangents.len()),
-            ("uv", self.uv.len()),
-            ("influences", self.influences.vertices()),
-        ] {
-            if len != vertices {
-                return Err(InputError::new(
-                    format!("mesh.{field}.len"),
-                    len,
-                    format!("must be {vertices}, one a vertex"),
-                ));
-            }
-        }
-        in_range("mesh.positions", &self.positions)?;
-        in_range("mesh.normals", &self.normals)?;
-        in_range("mesh.tangents", &self.tangents)?;
-        in_range("mesh.uv", &self.uv)?;
-        for vertex in 0..vertices {
-            let mut bones = self.influences.of(vertex).iter().map(|influence| influence.bone);
-            if let Some(bone) = bones.find(|bone| *bone as usize >= skin.bones.len()) {
-                let bound = format!("must be below {}, the skin's bones", skin.bones.len());
-                return Err(InputError::new(format!("mesh.influences[{vertex}].bone"), bone, bound));
-            }
-        }
-        check_triangles("mesh.indices", &self.indices, vertices)?;
-        self.validate_levels()?;
-        self.validate_targets()
-    }
-
-    fn validate_levels(&self) -> Result<(), InputError> {
-        if self.levels.len() >= MAX_LEVELS {
-            let bound = format!("must be at most {}", MAX_LEVELS - 1);
-            return Err(InputError::new("mesh.levels.len", self.levels.len(), bound));
-        }
-        let mut least = 0.0;
-        let mut finer = self.used(&self.indices);
-        for (at, level) in self.levels.iter().enumerate() {
-            let path = format!("mesh.levels[{at}]");
-            if !(least..f32::INFINITY).contains(&level.error) {
-                let bound = format!("must be finite, and at least {least}, which the level before has");
-                return Err(InputError::new(format!("{path}.error"), level.error, bound));
-            }
-            if level.indices.is_empty() {
-                return Err(InputError::new(format!("{path}.indices.len"), 0, "must be at least 3"));
-            }
-            check_triangles(&format!("{path}.indices"), &level.indices, self.vertices())?;
-            if let Some(at) = level.indices.iter().position(|vertex| !finer[*vertex as usize]) {
-                let bound = "must be a vertex of the level before";
-                return Err(InputError::new(format!("{path}.indices[{at}]"), level.indices[at], bound));
-            }
-            (least, finer) = (level.error, self.used(&level.indices));
-        }
-        Ok(())
-    }
-
-    /// For each vertex, whether the triangles use it.
-    fn used(&self, indices: &[u32]) -> Vec<bool> {
-        let mut used = vec![false; self.vertices()];
-        indices.iter().for_each(|vertex| used[*vertex as usize] = true);
-        used
-    }
-
-    fn validate_targets(&self) -> Result<(), InputError> {
-        let targets = self.targets.len();
-        if self.weights.len() != targets {
-            let bound = format!("must be {targets}, one a target");
-            return Err(InputError::new("mesh.weights.len", self.weights.len(), bound));
-        }
-        numbers_in_range(|| "mesh.weights".to_owned(), &self.weights)?;
-        for (at, target) in self.targets.iter().enumerate() {
-            let path = format!("mesh.targets[{at}]");
-            let (vertices, deltas) = (&target.vertices, &target.deltas);
-            if vertices.len() != deltas.len() {
-                let bound = format!("must be {}, one a vertex", vertices.len());
-                return Err(InputError::new(format!("{path}.deltas.len"), deltas.len(), bound));
-            }
-            let is_wrong = |at: &usize| {
-                vertices[*at] as usize >= self.vertices() || (*at > 0 && vertices[at - 1] >= vertices[*at])
-            };
-            if let Some(at) = (0..vertices.len()).find(is_wrong) {
-                let bound = format!("must ascend below {}", self.vertices());
-                return Err(InputError::new(format!("{path}.vertices[{at}]"), vertices[at], bound));
-            }
-            for (at, delta) in deltas.iter().enumerate() {
-                for (field, vector) in
-                    [("position", delta.position), ("normal", delta.normal), ("tangent", delta.tangent)]
-                {
-                    numbers_in_range(|| format!("{path}.deltas[{at}].{field}"), &vector)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// The weights of the morph targets at a time inside a clip, in seconds.
     pub fn weights_at(&self, clip: usize, time: f32) -> Vec<f32> {
         let keys = self.weight_keys.iter().find(|(of, _)| *of == clip);
@@ -202,25 +94,6 @@ impl Mesh {
     fn largest_weight(&self, target: usize) -> f32 {
         let keyed = self.weight_keys.iter().map(|(_, keys)| keys.largest(target));
         keyed.fold(self.weights[target].abs().max(1.0), f32::max)
-    }
-}
-
-/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` is that of the list of vectors.
-pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
-    (vectors.iter().enumerate())
-        .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
-}
-
-/// As [`in_range`], for one list of numbers.
-fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Result<(), InputError> {
-    // The comparison is false for NaN.
-    let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
-    match numbers.iter().position(|value| !is_within(value)) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
-            Err(InputError::new(format!("{}[{at}]", path()), numbers[at], bound))
-        }
     }
 }
 
@@ -305,7 +178,7 @@ mod tests {
     use crate::asset::morph::MorphDelta;
 
     /// One triangle, whose last vertex follows two bones, one of them bound at x = 10 and at half the size.
-    fn triangle() -> (Mesh, Vec<Skin>) {
+    pub(super) fn triangle() -> (Mesh, Vec<Skin>) {
         let bind = glam::Mat4::from_scale(glam::Vec3::splat(0.5))
             * glam::Mat4::from_translation(glam::vec3(-10.0, 0.0, 0.0));
         let skin = Skin {
@@ -363,93 +236,5 @@ mod tests {
         assert_eq!((normals[2], normals[3], normals[4]), ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]));
         let expected = glam::vec3(0.0, 3.0, 1.0).normalize();
         assert!((glam::Vec3::from(normals[0]) - expected).length() < 1e-6);
-    }
-
-    #[test]
-    fn meshes_are_checked_field_by_field() {
-        let refused = |change: &dyn Fn(&mut Mesh)| {
-            let (mut mesh, skins) = triangle();
-            change(&mut mesh);
-            mesh.validate(&skins).expect_err("refused").path
-        };
-        assert_eq!(refused(&|mesh| mesh.skin = 1), "mesh.skin");
-        assert_eq!(refused(&|mesh| mesh.uv.clear()), "mesh.uv.len");
-        assert_eq!(refused(&|mesh| mesh.positions[1][2] = f32::NAN), "mesh.positions[1][2]");
-        assert_eq!(refused(&|mesh| mesh.tangents[0][3] = 2e18), "mesh.tangents[0][3]");
-        assert_eq!(refused(&|mesh| mesh.indices.truncate(2)), "mesh.indices.len");
-        assert_eq!(refused(&|mesh| mesh.indices[1] = 3), "mesh.indices[1]");
-        assert_eq!(refused(&|mesh| mesh.weights.clear()), "mesh.weights.len");
-    }
-
-    #[test]
-    fn targets_and_influences_are_refused_with_their_place() {
-        let refused = |change: &dyn Fn(&mut Mesh)| {
-            let (mut mesh, skins) = triangle();
-            change(&mut mesh);
-            mesh.validate(&skins).expect_err("refused")
-        };
-        let far = |mesh: &mut Mesh| {
-            let near = vec![Influence { bone: 0, weight: 1.0 }];
-            let far = vec![Influence { bone: 2, weight: 1.0 }];
-            mesh.influences = Influences::new("w", 3, vec![near.clone(), far, near]).expect("valid");
-        };
-        let doubled = |mesh: &mut Mesh| {
-            let delta = mesh.targets[0].deltas[0];
-            (mesh.targets[0].vertices, mesh.targets[0].deltas) = (vec![1, 1], vec![delta; 2]);
-        };
-        let range = "must be finite and within ±1e18";
-        let cases: [(&dyn Fn(&mut Mesh), &str, &str, &str); 6] = [
-            (&far, "mesh.influences[1].bone", "2", "must be below 2, the skin's bones"),
-            (&|mesh| mesh.weights[0] = f32::NAN, "mesh.weights[0]", "NaN", range),
-            (
-                &|mesh| mesh.targets[0].deltas.clear(),
-                "mesh.targets[0].deltas.len",
-                "0",
-                "must be 1, one a vertex",
-            ),
-            (
-                &|mesh| mesh.targets[0].vertices[0] = 3,
-                "mesh.targets[0].vertices[0]",
-                "3",
-                "must ascend below 3",
-            ),
-            (&doubled, "mesh.targets[0].vertices[1]", "1", "must ascend below 3"),
-            (
-                &|mesh| mesh.targets[0].deltas[0].normal[1] = f32::NAN,
-                "mesh.targets[0].deltas[0].normal[1]",
-                "NaN",
-                range,
-            ),
-        ];
-        for (change, path, value, bound) in cases {
-            assert_eq!(refused(change), InputError::new(path, value, bound));
-        }
-    }
-
-    #[test]
-    fn levels_are_nested_and_coarser_and_coarser() {
-        // A level with both triangles, then one with the first.
-        let levelled = |levels: &[(&[u32], f32)]| {
-            let (mut mesh, skins) = triangle();
-            mesh.indices = vec![0, 1, 2, 2, 1, 0];
-            let level =
-                |(indices, error): &(&[u32], f32)| MeshLevel { indices: indices.to_vec(), error: *error };
-            mesh.levels = levels.iter().map(level).collect();
-            mesh.validate(&skins).map_err(|error| error.path)
-        };
-        let (one, none): (&[u32], &[u32]) = (&[0, 1, 2], &[]);
-        assert_eq!(levelled(&[(one, 0.0), (one, 0.5), (&[1, 1, 1], 0.5)]), Ok(()));
-        assert_eq!(levelled(&vec![(one, 1.0); 15]), Ok(()));
-        let refused =
-            |levels: &[(&[u32], f32)], field: &str| assert_eq!(levelled(levels), Err(field.to_owned()));
-        refused(&vec![(one, 1.0); 16], "mesh.levels.len");
-        refused(&[(one, -1.0)], "mesh.levels[0].error");
-        refused(&[(one, f32::NAN)], "mesh.levels[0].error");
-        refused(&[(one, f32::INFINITY)], "mesh.levels[0].error");
-        refused(&[(one, 1.0), (one, 0.5)], "mesh.levels[1].error");
-        refused(&[(one, 1.0), (none, 1.0)], "mesh.levels[1].indices.len");
-        refused(&[(&[0, 1], 1.0)], "mesh.levels[0].indices.len");
-        refused(&[(&[0, 1, 3], 1.0)], "mesh.levels[0].indices[2]");
-        refused(&[(&[0, 1, 1], 1.0), (one, 1.0)], "mesh.levels[1].indices[2]");
     }
 }

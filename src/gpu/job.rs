@@ -155,7 +155,7 @@ mod tests {
     use super::{INVOCATIONS_A_SUBMISSION, Step};
     use crate::gpu::{Gpu, Options};
     use crate::terrain::fields::Fields;
-    use crate::terrain::thermal::{Thermal, ThermalPass};
+    use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 
     #[test]
     fn long_jobs_go_to_the_device_in_pieces() {
@@ -168,7 +168,8 @@ mod tests {
             let [windows, other] = [0, 1].map(|_| Fields::new(&gpu, "windows", width, 1).expect("allocated"));
             windows.heights.write(&gpu, &heights).expect("written");
             let params = Thermal { iterations, ..Thermal::default() };
-            let job = pass.prepare(&gpu, params, 1.0, &windows, &other).expect("prepared");
+            let buffers = ThermalBuffers { windows: &windows, other: &other };
+            let job = pass.prepare(&gpu, params, 1.0, buffers).expect("prepared");
             let pieces = job.submissions(most);
             assert_eq!(pieces.iter().map(|steps| steps.len()).sum::<usize>(), iterations as usize);
             let invocations = |steps: &[Step]| {

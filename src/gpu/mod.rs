@@ -16,6 +16,7 @@ pub mod shaders;
 mod shared;
 mod timer;
 mod tuning;
+mod upload;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -30,6 +31,7 @@ pub(crate) use kernel::{Layouts, layouts, module, pipeline_layout, rows_of_workg
 pub use memory::Memory;
 pub use timer::{Measurement, TimedBy, Timer};
 pub(crate) use tuning::Tuning;
+pub use upload::{Staged, StagingRing, Upload};
 
 use shared::Shared;
 pub(crate) use shared::{Drawing, Program};

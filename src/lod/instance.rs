@@ -6,7 +6,7 @@ use super::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, Scen
 
 impl SceneInstance {
     /// An instance at the corner of cell 0, of the model's size, that casts shadows and that every view may see.
-    /// `bounding_sphere` is a sphere around everything that it may draw, in the model's space: centre and radius.
+    /// `bounding_sphere` is a sphere around everything that it may draw, in the model's space: center and radius.
     pub fn new(bounding_sphere: [f32; 4]) -> Self {
         Self {
             cell: [0; 3],

@@ -14,7 +14,7 @@ use crate::render::skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::instance_lod::{FadeRange, InstanceLod};
-use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words, numbers_at};
+use crate::skinning::lod::{LevelRanges, LodBuffers, LodJob, LodPass, LodView, list_words, numbers_at};
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
 
@@ -130,8 +130,13 @@ impl CrowdScene {
             radius,
             levels,
         };
-        let instance_lods = &frames[0].crowd.instance_lods;
-        let lod = self.lod.prepare(gpu, &view, placements, instance_lods, &drawn, &scenes[0].arguments)?;
+        let buffers = LodBuffers {
+            placements,
+            instance_lods: &frames[0].crowd.instance_lods,
+            drawn: &drawn,
+            arguments: &scenes[0].arguments,
+        };
+        let lod = self.lod.prepare(gpu, &view, buffers)?;
         let is_gated = matrices.updated_bones().is_some();
         self.characters.push(DrawnCharacter { frames, scenes, drawn, view, lod, is_gated });
         Ok(self.characters.len() - 1)

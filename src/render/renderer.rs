@@ -1,7 +1,7 @@
 //! Draws a scene through a view into the caller's render pass or render bundle.
 
-mod pass;
 mod pipelines;
+mod scene_pass;
 #[cfg(all(test, feature = "samples"))]
 mod tests;
 
@@ -12,9 +12,10 @@ use crate::gpu::Gpu;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::{Scene, View};
 use crate::{Error, InputError};
-pub use pass::ScenePass;
 use pipelines::{Kind, PipelineKey};
+pub use scene_pass::ScenePass;
 
 /// What of a scene is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -73,6 +74,34 @@ impl Renderer {
             }
         }
         Ok(())
+    }
+
+    /// Compiles every pipeline that the objects of a scene need and that is not there yet. Call it again after objects
+    /// were added; drawing never compiles.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare_objects(scene.drawables())
+    }
+
+    /// Draws a layer of a scene as a view saw it in the last [`Scene::record`]. It sets pipelines, the bind groups 0 to 2,
+    /// the first vertex buffer and the index buffer, and nothing else: viewport, scissor and stencil reference are the
+    /// caller's.
+    ///
+    /// # Errors
+    /// [`InputError`] for a view of another scene, one that was not recorded since objects were added or grew, one with
+    /// the other direction of depth, a layer that the format has no attachment for, and objects that were added since
+    /// [`Renderer::prepare`].
+    pub fn draw<'a>(
+        &'a self,
+        pass: &mut impl ScenePass<'a>,
+        scene: &'a Scene,
+        view: &'a View,
+        layer: Layer,
+    ) -> Result<(), InputError> {
+        let (drawn, objects) = scene.drawn(view)?;
+        self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
     }
 
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {

@@ -19,13 +19,25 @@ pub(crate) enum Drawable {
     Terrain(TerrainDrawable),
 }
 
+impl Drawable {
+    /// Number of parts, each with draws of its own.
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.parts.len(),
+            Self::Terrain(_) => 1,
+        }
+    }
+}
+
 /// The buffers of a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshGeometry {
     /// Index of its first instance in the scene, and where its vertices lie.
     pub params: Uniform<MeshParams>,
-    /// Vertices in the model's space: of the mesh, or of each instance.
+    /// Vertices in the model's space: of the mesh, or in pages of each instance.
     pub vertices: Buffer<Vertex>,
+    /// The page of each cluster of each instance; any buffer if vertices do not lie in pages.
+    pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
     pub uv: Buffer<[f32; 2]>,
     /// For each vertex of the mesh, the index of its material in its part's table.
@@ -39,6 +51,8 @@ pub(crate) struct MeshGeometry {
 pub(crate) struct MeshDrawable {
     /// Its buffers.
     pub geometry: MeshGeometry,
+    /// Number of clusters if vertices lie in pages, else 0.
+    pub clusters: u32,
     /// Its parts, in the order of their draws.
     pub parts: Vec<MeshPart>,
     /// Bind group 1.
@@ -54,6 +68,7 @@ impl MeshDrawable {
         gpu: &Gpu,
         layouts: &SceneLayouts,
         geometry: MeshGeometry,
+        clusters: u32,
         parts: Vec<MeshPart>,
     ) -> Result<Self, GpuError> {
         let group = scene_mesh::Group1 {
@@ -61,8 +76,9 @@ impl MeshDrawable {
             vertices: geometry.vertices.slice().cast(),
             texture_coordinates: geometry.uv.slice(),
             material_of: geometry.material_of.slice(),
+            page_table: geometry.page_table.slice(),
         };
-        Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, parts })
+        Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, clusters, parts })
     }
 }
 

@@ -13,7 +13,7 @@ use crate::animation::model_matrices::Consumer;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::animation::{ModelMatrices, UpdatedBones};
 use crate::asset::Model;
-use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
+use crate::gpu::{Buffer, Gpu, IndirectJob, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
@@ -35,7 +35,8 @@ pub struct SkinFrame {
     /// detail are out of date.
     pub skinned: Buffer<Vertex>,
     palette: Job,
-    selection: Job,
+    /// The selection that keeps the updated bones, and the one that clears them.
+    selections: [Job; 2],
     /// The jobs of morph targets and of vertices.
     all: [Job; 2],
     /// The same jobs for selected clusters.
@@ -77,7 +78,7 @@ impl SkinFrame {
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
         let morph = MorphPass::new(gpu)?;
-        let selection = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
+        let selections = SelectPass::new(gpu)?.prepare_both(gpu, &mesh, &crowd, &select, &active)?;
         let pass = SkinPass::new(gpu, blend)?;
         let all =
             [morph.prepare(gpu, &mesh, &crowd)?, pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?];
@@ -85,7 +86,7 @@ impl SkinFrame {
         let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
         // This comes last: it claims the matrices for its kind of blending, which a refused frame must not do.
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
-        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selection, all, some, reader })
+        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selections, all, some, reader })
     }
 
     /// Records the skinning of every vertex of the instances that are seen, at their level of detail. Updated bones
@@ -101,9 +102,15 @@ impl SkinFrame {
     /// record it at most once per frame; frames may do without. The last of several frames of skinning over the same
     /// model matrices clears the updated bones ([`UpdatedBones`]).
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
-        [&self.palette, &self.selection].into_iter().for_each(|job| job.record(encoder));
-        self.some.iter().for_each(|job| job.record(encoder));
-        self.reader.record_read(encoder);
+        self.dispatch_updated_bones(&mut compute_pass(encoder, "skinning"));
+    }
+
+    /// Adds the same work as [`SkinFrame::record_updated_bones`] to a compute pass that is being recorded.
+    pub fn dispatch_updated_bones(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.palette.dispatch(pass);
+        let [keeping, clearing] = &self.selections;
+        if self.reader.read() { clearing } else { keeping }.dispatch(pass);
+        self.some.iter().for_each(|job| job.dispatch(pass));
     }
 
     /// Reads the vertices of an instance, in the mesh's own order; those beyond its level of detail are out of

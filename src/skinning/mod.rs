@@ -20,6 +20,8 @@ pub mod lod;
 pub mod merged;
 pub mod morph;
 pub mod morph_weights;
+pub mod paged;
+pub mod pages;
 pub mod palette;
 pub mod picture;
 mod pose;

@@ -1,7 +1,7 @@
 //! Benchmarks of `kernels/terrain/`.
 
 use crate::Error;
-use crate::baseline::copy::CopyPass;
+use crate::baseline::copy::{CopyBuffers, CopyPass};
 use crate::gpu::{Buffer, Gpu, Job};
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::random_heights;
@@ -11,7 +11,7 @@ pub(crate) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
     let words = words.next_multiple_of(4);
     let (source, destination) =
         (Buffer::new(gpu, "copy source", words)?, Buffer::new(gpu, "copy destination", words)?);
-    CopyPass::new(gpu)?.prepare(gpu, words, &source, &destination)
+    CopyPass::new(gpu)?.prepare(gpu, words, CopyBuffers { source: &source, destination: &destination })
 }
 
 /// Plausible random heights for a batch of `points` samples, in 1/65536 units.

@@ -9,16 +9,16 @@ use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
-use crate::terrain::despike::DespikePass;
+use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::{Fields, REMEDY};
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
-use crate::terrain::thermal::ThermalPass;
+use crate::terrain::thermal::{ThermalBuffers, ThermalPass};
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
-use crate::terrain::wrap::{WrapJob, WrapPass};
+use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 
 /// Generates the fields of one recipe.
 #[derive(Debug, Clone)]
@@ -174,7 +174,8 @@ impl Generator {
         let fields = Fields::new(gpu, "terrain/wrap", config.patch_size, count)?;
         let scratch = Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))
             .map_err(|error| error.with_remedy(REMEDY))?;
-        let job = self.wrap.prepare(gpu, config, count, features.len(), &fields.heights, &scratch)?;
+        let buffers = WrapBuffers { output: &fields.heights, scratch: &scratch };
+        let job = self.wrap.prepare(gpu, config, count, features.len(), buffers)?;
         job.set(gpu, patches, features)?;
         gpu.run("terrain/wrap", |encoder| job.record(encoder))?;
         Ok(fields)
@@ -197,13 +198,15 @@ impl Generator {
         let (mut current, mut other) = (windows, other);
         if let Some(despike) = self.recipe.despike {
             let features = self.index(gpu, apron, injected)?;
-            let job = self.despike.prepare(gpu, despike, &current, &features, &other)?;
+            let buffers = DespikeBuffers { windows: &current, features: &features, cropped: &other };
+            let job = self.despike.prepare(gpu, despike, buffers)?;
             gpu.run("terrain/despike", |encoder| job.record(encoder))?;
             (current, other) = (other, current.cropped(1));
         }
         if let Some(thermal) = thermal {
             let scale = self.recipe.config.terrain_scale;
-            let job = self.thermal.prepare(gpu, thermal, scale, &current, &other)?;
+            let buffers = ThermalBuffers { windows: &current, other: &other };
+            let job = self.thermal.prepare(gpu, thermal, scale, buffers)?;
             job.run(gpu)?;
             let width = current.cropped(thermal.iterations).width;
             let result = if thermal.iterations % 2 == 0 { current } else { other };

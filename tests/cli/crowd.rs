@@ -33,7 +33,9 @@ fn made(arguments: &[&str]) -> (Run, tempfile::TempDir) {
 
 fn read(folder: &tempfile::TempDir, name: &str) -> Value {
     let text = std::fs::read(folder.path().join("out").join(name)).expect("written");
-    serde_json::from_slice(&text).expect("JSON")
+    let report = serde_json::from_slice(&text).expect("JSON");
+    crate::assert_documented(&report);
+    report
 }
 
 fn report(arguments: &[&str]) -> Value {

@@ -26,6 +26,7 @@ fn rows(name: &str, arguments: &[&str]) -> ([Value; 2], PathBuf, tempfile::TempD
     assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
     let text = std::fs::read(out.join(name)).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
+    crate::assert_documented(&report);
     let [near, far] = &report["distances"].as_array().expect("a list")[..] else { panic!("two distances") };
     ([near.clone(), far.clone()], out, folder)
 }

@@ -32,6 +32,32 @@ fn assert_refused(run: &harness::Run, arguments: &[&str], words: &[&str]) {
     assert!(run.stdout.is_empty(), "{arguments:?}: {}", run.stdout);
 }
 
+/// Checks that `docs/reports.md` names every field of a report of `relievo crowd`.
+fn assert_documented(report: &serde_json::Value) {
+    match report {
+        serde_json::Value::Object(fields) => {
+            for (name, value) in fields {
+                let own = name.strip_prefix("full_").unwrap_or(name);
+                let is_named = [name, own]
+                    .iter()
+                    .any(|name| include_str!("../../docs/reports.md").contains(&format!("`{name}`")));
+                assert!(is_named, "docs/reports.md lacks `{name}`");
+                assert_documented(value);
+            }
+        }
+        serde_json::Value::Array(entries) => entries.iter().for_each(assert_documented),
+        _ => {}
+    }
+}
+
+#[test]
+#[should_panic(expected = "lacks `steps`")]
+fn a_field_that_is_not_documented_is_found() {
+    assert_documented(
+        &json!({"distances": [{"distance": 1.0, "full_frame_nanoseconds": 2.0}, {"steps": 3}]}),
+    );
+}
+
 /// A clip of two seconds that raises node 1 from 1 to `height`, and morphs the mesh of node 2 from its shape to its target.
 fn push_raised_and_morphed(scene: &mut scene::Scene, height: f32) {
     let times = scene.floats("SCALAR", &[0.0, 2.0]);

@@ -16,7 +16,7 @@ use relievo::samples::creature;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
-use relievo::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, placed};
+use relievo::skinning::lod::{LevelRanges, LodBuffers, LodJob, LodPass, LodView, placed};
 use relievo::skinning::select::SKINNED_WORDS;
 use relievo::skinning::vertex::Blend;
 use relievo::surface::mips::Mips;
@@ -91,10 +91,13 @@ impl Stage {
         let renderer = SkinnedRenderer::new(gpu, COLOR_FORMAT).expect("compiled");
         let mut scene = renderer.scene(gpu, &instances).expect("bound");
         scene.set_camera(gpu, view.clip_from_world).expect("set");
-        let lod = LodPass::new(gpu)
-            .expect("compiled")
-            .prepare(gpu, view, placements, &skin.crowd.instance_lods, &drawn, &scene.arguments)
-            .expect("prepared");
+        let buffers = LodBuffers {
+            placements,
+            instance_lods: &skin.crowd.instance_lods,
+            drawn: &drawn,
+            arguments: &scene.arguments,
+        };
+        let lod = LodPass::new(gpu).expect("compiled").prepare(gpu, view, buffers).expect("prepared");
         Crowd { skin, lod, scene }
     }
 

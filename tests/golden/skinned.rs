@@ -16,7 +16,7 @@ use relievo::samples::creature;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
-use relievo::skinning::lod::{LevelRanges, LodPass, LodView, placed};
+use relievo::skinning::lod::{LevelRanges, LodBuffers, LodPass, LodView, placed};
 use relievo::skinning::vertex::Blend;
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::mips::Mips;
@@ -209,10 +209,13 @@ fn a_crowd_near_and_far() {
         radius,
         levels: LevelRanges::NONE,
     };
-    let lod = LodPass::new(&gpu)
-        .expect("compiled")
-        .prepare(&gpu, &view, &placements, &skin.crowd.instance_lods, &drawn, &scene.arguments)
-        .expect("prepared");
+    let buffers = LodBuffers {
+        placements: &placements,
+        instance_lods: &skin.crowd.instance_lods,
+        drawn: &drawn,
+        arguments: &scene.arguments,
+    };
+    let lod = LodPass::new(&gpu).expect("compiled").prepare(&gpu, &view, buffers).expect("prepared");
     let frame = || {
         gpu.run("frame", |encoder| {
             lod.record(encoder);

@@ -125,7 +125,7 @@ fn several_meshes_follow_one_crowd() {
     let (always, player) = (Player::new(&gpu, &model, &gate, 1), Player::new(&gpu, &model, &gate, 3));
     for number in 0..25 {
         always.play(number, lod, &[&always.skins[0]]);
-        let due = |mesh: &usize| number as usize % (mesh + 1) == 0;
+        let due = |mesh: &usize| (number as usize).is_multiple_of(mesh + 1);
         let followers: Vec<_> = (0..3).filter(due).map(|mesh| &player.skins[mesh]).collect();
         player.play(number, lod, &followers);
         let wanted = always.seen(number, &always.skins[0]);

@@ -1,4 +1,4 @@
-//! The bounds that parity gives each ray: they hold for other roundings than the reference's, and they are narrow.
+//! The bounds that parity cases give each ray hold for other roundings than the reference's, and they are narrow.
 
 use relievo::hash::threefry2x32;
 use relievo::surface::exact::exact;
@@ -9,7 +9,7 @@ use relievo::surface::{Address, HeightMap, March, Method, Ray};
 
 use crate::height;
 
-/// A map with rays, and what is known of them.
+/// A map, rays on it, and the bounds of each ray.
 struct Scene {
     map: HeightMap,
     march: March,
@@ -37,7 +37,7 @@ fn travel(ray: &Ray, map: &HeightMap) -> f64 {
     (f64::from(ray.slope[0]) * x).hypot(f64::from(ray.slope[1]) * y)
 }
 
-/// What a method finds in f64; none for rays from behind.
+/// The hit that a method finds in f64; `None` for rays from behind the polygon.
 fn in_f64(map: &HeightMap, method: Method, ray: &Ray, march: &March) -> Option<f64> {
     let above = |parameter: f64| 1.0 - parameter - height(map, ray, parameter, march.address);
     let (polygon, cosine) = (f64::from(ray.polygon), f64::from(ray.cosine));
@@ -68,7 +68,7 @@ fn in_f64(map: &HeightMap, method: Method, ray: &Ray, march: &March) -> Option<f
     })
 }
 
-/// f64 rounds otherwise than f32 everywhere: both lie within the bounds of any rounding.
+/// Arithmetic in f64 rounds differently from f32 at every step; the hits of both lie within the bounds.
 #[test]
 fn what_methods_find_in_f64_lies_within_each_rays_bound() {
     for method in Method::ALL {
@@ -89,7 +89,8 @@ fn what_methods_find_in_f64_lies_within_each_rays_bound() {
     }
 }
 
-/// Rays that are an ulp off, as arithmetic on them may be, hit within the bounds; steady ones make the same loads.
+/// Rays whose numbers are changed by one ulp, as rounding may change them, hit within the bounds. Rays that are marked
+/// as steady also make the same loads.
 #[test]
 fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
     for method in Method::ALL {
@@ -131,7 +132,7 @@ fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
     }
 }
 
-/// An ordinary ray's bound is some thousandths of a texel.
+/// The bound of an ordinary ray is a few thousandths of a texel.
 #[test]
 fn most_bounds_are_narrow() {
     for method in Method::ALL {
@@ -148,14 +149,14 @@ fn most_bounds_are_narrow() {
     }
 }
 
-/// A ray that grazes a post meets it or not, by rounding: its bound reaches from one to the other.
+/// Rounding decides whether a ray that grazes a post hits it, so the bound of this ray contains both results.
 #[test]
 fn a_ray_that_grazes_says_so() {
     let mut heights = vec![0.0; 64];
     heights[4 * 8 + 4] = 0.5;
     let map = HeightMap::new(8, 8, heights).expect("a map");
     let march = March { address: Address::Clamp, ..March::default() };
-    // At height 1/2 above the post's tip, to 1e-7 or 1e-3.
+    // The ray passes the post's tip at height 1/2, above it by 1e-7 or by 1e-3.
     let ray = |by: f32| Ray { origin: [0.0625, 0.5625], slope: [1.0, by], cosine: 0.5, polygon: 0.0 };
     let judged =
         |by: f32| judge(&map, Method::Quadtree, &march, &[ray(by)], Source::Given).expect("judged")[0];

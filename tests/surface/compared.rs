@@ -1,11 +1,11 @@
-//! Methods measured on a map of the caller's own, without a device.
+//! Compares the methods on a map that the caller supplies, without a device.
 
 use std::cell::Cell;
 
 use relievo::measure::relief::{Comparison, ReliefSquare};
 use relievo::surface::{Green, HeightMap, March, Material, Method, Mips, Shadow, SquareView};
 
-/// Ridges along v, a texel wide, between furrows of a quarter of their height.
+/// Ridges along v, one texel wide, between furrows a quarter as high.
 fn square(size: [u32; 2]) -> ReliefSquare {
     let heights = (0..256).map(|texel| if texel % 2 == 0 { 1.0 } else { 0.25 }).collect();
     let stone = image::RgbaImage::from_pixel(1, 1, image::Rgba([168, 160, 150, 255]));
@@ -44,7 +44,8 @@ fn every_method_is_measured_at_every_angle() {
         let found = entries.iter().find(|entry| entry.method == method && entry.angle == angle);
         found.expect("measured").measured.mean_error_texels
     };
-    // Straight down all are right; at an angle the polygon's own coordinates are far off, exact patches are not.
+    // Seen from straight above, all methods are right. At an angle, texture coordinates without relief are far off, and
+    // those of the exact patches are not.
     assert!(error(Method::Plain, 0.0) < 1e-3 && error(Method::Quadtree, 60.0) < 1e-2);
     assert!(error(Method::Plain, 60.0) > 0.5, "{}", error(Method::Plain, 60.0));
     let table = comparison.table();
@@ -60,7 +61,7 @@ fn a_view_of_nothing_is_refused() {
     assert_eq!(steps.get(), 4);
     let mut flat = square([1, 1]);
     (flat.view.angle, flat.view.azimuth) = (89.99, 45.0);
-    // The only pixel's center sees the middle of the square, at any angle.
+    // The ray through the center of the only pixel meets the middle of the square at every angle.
     assert!(flat.draw(Method::Plain, None, ([0.0; 3], 1), &count).is_ok());
     flat.view.size = [2, 2];
     let refused = flat.draw(Method::Plain, None, ([0.0; 3], 1), &count).expect_err("nothing is seen");

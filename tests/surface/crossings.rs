@@ -1,4 +1,5 @@
-//! No first crossing is lost: random rays at random maps, odd sizes, both address modes.
+//! No method loses the first crossing of a ray with the surface, for random rays and random maps of odd sizes, in both
+//! address modes.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -7,8 +8,8 @@ use relievo::surface::{Address, HeightMap, Hit, March, Method, Outcome, Ray};
 
 use crate::height;
 
-/// What heights may differ by: positions of up to 400 texels carry 2⁻²³ · 400 < 5e-5 texels of rounding, over slopes of
-/// up to 1 a texel, twice.
+/// How much heights may differ: positions of up to 400 texels are rounded by up to 2⁻²³ · 400 < 5e-5 texels, heights
+/// change by at most 1 a texel, and two positions are rounded.
 const BOUND: f64 = 1e-4;
 
 fn settings() -> ProptestConfig {
@@ -32,7 +33,7 @@ fn maps() -> impl Strategy<Value = HeightMap> {
 }
 
 fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
-    // Any place, and places exactly above texel centers and edges, where cells meet.
+    // Random positions, and positions exactly above texel centers and edges, where cells meet.
     let place = |edge: u32| {
         prop_oneof![
             2 => (-1.0..2.0_f32).boxed(),
@@ -45,7 +46,7 @@ fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
     let ray = (place(map.width()), place(map.height()), turn, steepness, scale);
     let ray = ray.prop_map(|(u, v, turn, cosine, scale)| {
         let sine = (1.0 - cosine * cosine).sqrt();
-        // Multiples of a quarter turn are exactly along an axis.
+        // Rays at multiples of a quarter turn run exactly along an axis.
         let exact = |part: f32| if part.abs() < 1e-6 { 0.0 } else { part };
         let view = [sine * exact(libm::cosf(turn)), sine * exact(libm::sinf(turn)), cosine];
         Ray::new([u, v], view, scale, 1.0)
@@ -57,7 +58,7 @@ fn scenes() -> impl Strategy<Value = (HeightMap, Vec<Ray>)> {
     maps().prop_flat_map(|map| (Just(map.clone()), rays(&map)))
 }
 
-/// A hit lies on the surface, and the ray is nowhere deeper than the bound before it.
+/// A hit lies on the surface, and before the hit the ray is nowhere below the surface by more than the bound.
 fn is_first(map: &HeightMap, ray: &Ray, hit: &Hit, address: Address) -> Result<(), String> {
     let found = f64::from(hit.parameter);
     let above = |parameter: f64| 1.0 - parameter - height(map, ray, parameter, address);
@@ -99,7 +100,7 @@ proptest! {
         }
     }
 
-    /// Linear search loses what is thinner than a step, but what it returns lies on the surface.
+    /// Linear search may miss what is thinner than a step, but the hits that it returns lie on the surface.
     #[test]
     fn relief_ends_on_the_surface((map, rays) in scenes(), address in address()) {
         let surface = Surface::new(&map, Method::Relief, address);
@@ -111,7 +112,7 @@ proptest! {
     }
 }
 
-/// Cones that are wider than they may be lose crossings, and the check sees it.
+/// Cones that are too wide lose crossings, and the check fails.
 #[test]
 fn wider_cones_are_found_out() {
     let map = relievo::samples::BuiltInMap::Posts.height_map(64).expect("a map");
@@ -141,7 +142,7 @@ fn rays_from_behind_miss() {
     }
 }
 
-/// Rays that do not move along an axis, exactly above a line of texel centers: they never leave their cell by it.
+/// Rays that run along one axis, exactly above a line of texel centers, never leave their cell in the other direction.
 #[test]
 fn rays_along_an_axis_do_not_stall() {
     for (width, column) in [(11_u32, 6_u32), (97, 3), (23, 3), (81, 5), (13, 3)] {

@@ -1,4 +1,5 @@
-//! Measured error and cost on the built-in maps: what each method promises. Relief depth 0.1, wrap addressing.
+//! Measures the error and the cost of each method on the built-in maps, against what the method promises. The relief
+//! is 0.1 tiles deep, and addresses wrap.
 
 use relievo::samples::BuiltInMap;
 use relievo::surface::relief::reference::Surface;
@@ -33,7 +34,7 @@ fn quadtree_is_exact_at_every_angle() {
     });
 }
 
-/// At most half of the loads that relief needs for a mean error of a quarter texel.
+/// For a mean error of a quarter texel, cone maps need at most half of the loads that relief mapping needs.
 #[test]
 fn cone_costs_half_of_relief_for_the_same_error() {
     each_map(|kind, map| {
@@ -57,7 +58,7 @@ fn errors_of_linear_search_fall_as_steps_rise() {
             for angle in [30.0, 60.0, 80.0] {
                 let errors = [4, 8, 16, 32, 64, 128, 256]
                     .map(|steps| measured(&surface, method, angle, steps).mean_error_texels);
-                // More steps see more, whatever phase they start in.
+                // Errors fall with the number of steps, wherever the first step lies.
                 let falls = errors.windows(2).all(|pair| pair[1] <= pair[0] * 1.02 + 1e-6);
                 assert!(falls && errors[6] * 4.0 <= errors[0], "{kind:?} {method:?} {angle}: {errors:?}");
             }
@@ -65,7 +66,7 @@ fn errors_of_linear_search_fall_as_steps_rise() {
     });
 }
 
-/// B figure 3.6: steps walk past thin posts; cones and the tree do not.
+/// Linear steps pass thin posts (B figure 3.6); cones and the quadtree do not.
 #[test]
 fn posts_are_lost_by_steps_alone() {
     let map = BuiltInMap::Posts.height_map(256).expect("a map");

@@ -1,5 +1,5 @@
-//! Tangent frames of the reference against what calculus says, and what every mesh must get: orthonormal frames and
-//! never NaN.
+//! The reference's tangent frames agree with the derivatives of surfaces, and every mesh gets orthonormal frames without
+//! NaN.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use proptest::test_runner::RngSeed;
 use relievo::surface::tangent::reference::tangents;
 use relievo::surface::tangent::{Mesh, split_mirrored};
 
-/// The same cases in every run.
+/// Random cases that are the same in every run.
 fn settings() -> ProptestConfig {
     ProptestConfig {
         cases: 256,
@@ -44,7 +44,7 @@ impl Owned {
             .collect()
     }
 
-    /// The same with other uv.
+    /// The same mesh with other uv.
     fn with_uv(&self, change: impl Fn(DVec2) -> DVec2) -> Self {
         let change =
             |uv: &[f32; 2]| change(DVec2::from_array(uv.map(f64::from))).to_array().map(|along| along as f32);
@@ -56,14 +56,14 @@ fn vector(components: [f32; 3]) -> DVec3 {
     DVec3::from_array(components.map(f64::from))
 }
 
-/// A surface over uv in 0..1: place and normal.
+/// A surface over uv in 0..1: gives the position and the normal.
 type Surface = fn(f64, f64) -> (DVec3, DVec3);
 
 fn plane(u: f64, v: f64) -> (DVec3, DVec3) {
     (DVec3::new(2.0 * u + 0.5 * v, 1.0, -3.0 * v), DVec3::Y)
 }
 
-/// From pole to pole but for a twentieth, where u has a direction.
+/// A sphere without the twentieth around each pole, where u has no direction.
 fn sphere(u: f64, v: f64) -> (DVec3, DVec3) {
     let (turn, polar) = (TAU * u, TAU * 0.5 * (0.95 - 0.9 * v));
     let normal = DVec3::new(polar.sin() * turn.sin(), polar.cos(), polar.sin() * turn.cos());
@@ -117,7 +117,8 @@ fn frames_are_those_of_the_surface() {
             });
             errors.fold(0.0, f64::max)
         };
-        // A chord leaves a curve by half of its angle at an end, where no second triangle makes up for it.
+        // At a border of the mesh a tangent is off by half of the angle that an edge spans, because no second triangle
+        // compensates for it.
         let (coarse, fine) = (worst(6), worst(24));
         assert!(coarse < 0.14, "{name}: {coarse}");
         assert!(fine < 0.035 && (fine < 0.3 * coarse || fine < 1e-6), "{name}: {coarse}, then {fine}");
@@ -139,14 +140,14 @@ fn mirrored_uv_turn_handedness() {
     }
 }
 
-/// Half of a plane with u as it is, half with u mirrored at the seam.
+/// A plane of which one half has u mirrored at the seam.
 fn folded() -> Owned {
     tessellated(plane, 8, 4).with_uv(|uv| DVec2::new((uv.x - 0.5).abs(), uv.y))
 }
 
 #[test]
 fn opposite_tangents_leave_the_fallback() {
-    // Two right triangles, mirrored at the edge that they share: u grows away from it, v along it.
+    // Two right triangles that mirror each other at their common edge: u grows away from the edge, and v along it.
     let mesh = Owned {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]],
         normals: vec![[0.0, 0.0, 1.0]; 4],
@@ -187,7 +188,7 @@ fn split_mirror_seams_have_a_frame_on_each_side() {
 
 #[test]
 fn cutting_a_face_in_two_hardly_turns_the_tangent() {
-    // A corner of three faces at right angles, each with a tangent of its own; the first in one triangle, then two.
+    // Three faces meet at right angles in a corner, each with its own tangent. The first face is one triangle, then two.
     let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0]];
     let normals = vec![[1.0, 1.0, 1.0]; 5];
     let uv = vec![[0.0; 2], [1.0, 0.0], [0.0, 1.0], [-1.0, -0.5], [0.5, 0.5]];
@@ -198,7 +199,7 @@ fn cutting_a_face_in_two_hardly_turns_the_tangent() {
     assert!(angle < 0.06, "turned by {angle}");
 }
 
-/// Any bits of a float, but often ordinary or troublesome ones.
+/// Floats with random bits, and often ordinary or troublesome values.
 fn floats() -> impl Strategy<Value = f32> {
     let troublesome = [0.0, -0.0, 1.0, -1.0, 1e-45, 1e-38, 1e-30, 1e18, -1e18, 1e30, f32::MAX, f32::NAN];
     prop_oneof![
@@ -208,7 +209,7 @@ fn floats() -> impl Strategy<Value = f32> {
     ]
 }
 
-/// What positions and uv may be.
+/// The ranges of positions and uv.
 fn coordinates() -> impl Strategy<Value = f32> {
     floats().prop_map(|value| if value.is_nan() { 0.0 } else { value.clamp(-1e18, 1e18) })
 }
@@ -258,7 +259,7 @@ proptest! {
     /// Frames do not depend on the units of positions and uv.
     #[test]
     fn units_do_not_matter(mesh in garbage(), size in -20..20_i32, texture in -20..20_i32) {
-        // What would leave the range of f32 is none of the units' business.
+        // The values are moderate, so that they stay in the range of f32 in other units.
         let moderate = |at: f32| if at.abs() < 1e-20 { 0.0 } else { at.clamp(-9.0, 9.0) };
         let mesh = Owned {
             positions: mesh.positions.iter().map(|place| place.map(moderate)).collect(),

@@ -1,4 +1,4 @@
-//! The shaders' exact arithmetic, on the adapter, against arithmetic that cannot overflow.
+//! Compares the exact arithmetic of the shaders, run on the adapter, with arithmetic that cannot overflow.
 
 use relievo::gpu::shaders::{TERRAIN_HEIGHT, TERRAIN_WRAP};
 use relievo::terrain::config::HEIGHT_LIMIT;
@@ -10,7 +10,7 @@ use crate::shader::called;
 
 const LIMIT: i32 = HEIGHT_LIMIT as i32;
 
-/// Four heights each: all at the limits and around 0, random ones up to the limits, and small ones.
+/// Groups of four heights: at the limits and around 0, random up to the limits, and small.
 fn corners() -> Vec<[i32; 4]> {
     let values = [-LIMIT, 1 - LIMIT, -3, -2, -1, 0, 1, 2, 3, LIMIT - 1, LIMIT];
     let digits =
@@ -20,12 +20,12 @@ fn corners() -> Vec<[i32; 4]> {
     (0..values.len().pow(4)).map(digits).chain(random).collect()
 }
 
-/// Rounded half up, in every lane; from four heights, and from the sums of two pairs.
+/// Means are rounded half up in every lane, from four heights and from the sums of two pairs.
 #[test]
 fn means_of_the_shaders_are_exact() {
     let (gpu, corners) = (gpu(), corners());
     let given: Vec<_> = corners.iter().map(|corners| corners.map(|height| height as u32)).collect();
-    // The lanes take the corners in turn: the order is nothing to the mean.
+    // Each lane has the corners in another order, on which the mean does not depend.
     let lanes = "
         let a = bitcast<vec4<i32>>(given[at]);
         let b = a.yzwx;
@@ -43,7 +43,7 @@ fn means_of_the_shaders_are_exact() {
     }
 }
 
-/// The high word of the product of two words, in every lane.
+/// Computes the high word of the product of two words in every lane.
 #[test]
 fn high_words_of_the_shaders_are_exact() {
     let edges = [0, 1, 0xffff, 0x1_0000, 0x1_0001, 0x7fff_ffff, 0x8000_0000, 0xffff_0000, 0xffff_ffff];

@@ -1,4 +1,4 @@
-//! What happens at borders after generation, where windows show other patches or the patch's other side.
+//! Despiking and erosion at borders, where windows contain samples of other patches or of the patch's opposite side.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -25,7 +25,8 @@ fn despiked_beside_features(border: &str, patches: &[[i32; 2]]) -> Vec<Vec<i32>>
     field(&recipe, patches, 0).expect("valid")
 }
 
-/// Injected points are left alone on the window's rim too, which is the patch's other side.
+/// Opposite sides of a patch still agree after despiking beside injected points, which also keeps the points on the
+/// window's rim: there the window shows the patch's opposite side.
 #[test]
 fn wrap_still_tiles_after_despiking_beside_features() {
     let patch = &despiked_beside_features("\"wrap\"", &[[0, 0]])[0];
@@ -35,7 +36,7 @@ fn wrap_still_tiles_after_despiking_beside_features() {
     }
 }
 
-/// The same across neighbours that blend.
+/// Neighbours that blend still agree after despiking beside injected points.
 #[test]
 fn blended_neighbours_still_agree_after_despiking_beside_features() {
     let patches = despiked_beside_features("{\"blend\": 1}", &[[-1, 0], [0, 0]]);
@@ -44,7 +45,7 @@ fn blended_neighbours_still_agree_after_despiking_beside_features() {
     }
 }
 
-/// Every patch is heard of once.
+/// Progress is reported once for each patch.
 #[test]
 fn progress_hears_of_every_patch_and_changes_nothing() {
     let patches: Vec<[i32; 2]> = (0..6).map(|i| [i % 3, i / 3]).collect();

@@ -1,4 +1,4 @@
-//! The ground by world position, against a ray through every triangle of the meshes that relievo exports.
+//! Compares the ground at world positions with vertical rays through the triangles of the exported meshes.
 
 use glam::DVec3;
 use relievo::terrain::config::{Border, Config};
@@ -10,7 +10,7 @@ use relievo::terrain::recipe::Recipe;
 const SIZE: u32 = 9;
 const EDGE: i32 = SIZE as i32 - 1;
 
-/// A block of 3×3 patches around (0, 0), negative ones among them.
+/// The 3×3 patches around (0, 0), some with negative coordinates.
 const BLOCK: [[i32; 2]; 9] =
     [[-2, -2], [-1, -2], [0, -2], [-2, -1], [-1, -1], [0, -1], [-2, 0], [-1, 0], [0, 0]];
 
@@ -65,7 +65,7 @@ fn hit([a, b, c]: [DVec3; 3], x: f64, z: f64) -> Option<GroundPoint> {
     inside.then(|| GroundPoint { height: 1e3 - distance, normal: ab.cross(ac).normalize().to_array() })
 }
 
-/// Positions in samples: every sample of the block, all middles of edges and diagonals, and places in between.
+/// Positions in samples: every sample of the block, the middles of all edges and diagonals, and positions in between.
 fn positions(terrain_scale: f64) -> Vec<[f64; 2]> {
     let mut positions = Vec::new();
     for (y, x) in (-4 * EDGE..=2 * EDGE).flat_map(|y| (-4 * EDGE..=2 * EDGE).map(move |x| (y, x))) {
@@ -92,7 +92,7 @@ fn it_is_where_rays_meet_the_exported_triangles() {
             let hits: Vec<_> = triangles.iter().filter_map(|triangle| hit(*triangle, x, z)).collect();
             let answer = ground.point_at(x, z).expect("inside");
             assert!(!hits.is_empty(), "({x}, {z}) is inside");
-            // What 2⁻³⁰ of a sample and a few roundings move on slopes below 100.
+            // The change of height over 2⁻³⁰ of a sample and by a few roundings, on slopes below 100.
             let bound = 1e-7 * terrain_scale.max(1.0);
             for met in &hits {
                 let error = (met.height - answer.height).abs();
@@ -121,7 +121,7 @@ fn outside_of_all_patches_there_is_none() {
         assert_eq!(ground.point_at(0.0, far), None, "{far}");
         assert_eq!(ground.point_from([i32::MIN, i32::MAX], 0.0, far), None, "{far}");
     }
-    // A hole where a patch was taken away, with its border still there from the others.
+    // Removing a patch leaves a hole; its neighbours still have the samples on its border.
     assert!(ground.point_at(-0.3, -0.3).is_some());
     assert!(ground.remove([-1, -1]) && !ground.remove([-1, -1]));
     assert_eq!(ground.point_at(-0.3, -0.3), None);
@@ -145,7 +145,7 @@ fn patches_agree_on_their_borders_to_the_bit() {
                     answers.iter().all(|other| other.height.to_bits() == answer.height.to_bits()),
                     "({x}, {z})"
                 );
-                // The last patch of the block that holds it is the eastern, southern one.
+                // Of the patches that share the position, the last is the one to the south-east.
                 assert_eq!(answers.last(), Some(&answer), "({x}, {z})");
                 shared += 1;
                 corners += usize::from(answers.len() == 4);
@@ -166,7 +166,7 @@ fn positions_far_from_the_origin_find_their_cell() {
         let near = ground.point_from(far, x, z).expect("inside");
         let beyond = ground.point_from([far[0] + 1, far[1] - 3], x - 2.4, z + 7.2).expect("inside");
         assert!((near.height - beyond.height).abs() < 1e-7, "({x}, {z}): {near:?}, {beyond:?}");
-        // World positions here are multiples of 2⁻³².
+        // The world positions of this test are multiples of 2⁻³².
         let [x, z] = [first[0] + x, first[1] + z];
         let Some(answer) = ground.point_at(x, z) else { continue };
         assert!((near.height - answer.height).abs() < 1e-7, "({x}, {z}): {near:?}, {answer:?}");
@@ -181,7 +181,7 @@ fn an_origin_moves_positions_and_nothing_else() {
     let config = config(0.25);
     let ground = ground(&config, &BLOCK);
     for [x, z] in positions(0.25) {
-        // Multiples of 2⁻² of a sample: exact in f64 from either origin.
+        // Positions are multiples of a quarter of a sample, which f64 represents exactly from either origin.
         let [x, z] = [x, z].map(|part| (part * 16.0).round() / 16.0);
         assert_eq!(ground.point_from([-2, -1], x + 4.0, z + 2.0), ground.point_at(x, z));
     }
@@ -230,7 +230,7 @@ fn the_bilinear_surface_is_off_by_a_quarter_of_the_twist() {
     }
 }
 
-/// What standing on the bilinear surface costs: the greatest distance from what is drawn.
+/// The largest distance between the bilinear surface and the triangles that are drawn.
 #[test]
 fn the_two_queries_differ_visibly_on_default_terrain() {
     for terrain_scale in [1.0, 0.25] {
@@ -262,7 +262,7 @@ fn margins_are_cut_off_and_other_numbers_of_heights_are_refused() {
     assert_eq!(margin.point_at(9.0, 1.0), None);
     let error = Ground::new(&Config { terrain_scale: 0.0, ..config.clone() }).expect_err("refused");
     assert_eq!(error.path, "terrainScale");
-    // A patch by itself has edges of its own: the eastern one answers.
+    // Patches that do not blend have different heights on their common edge; the eastern patch decides.
     let config = Config { border: Border::Wrap, ..config };
     let (both, east) = (ground(&config, &[[-1, 0], [0, 0]]), ground(&config, &[[0, 0]]));
     let west = ground(&config, &[[-1, 0]]);

@@ -1,20 +1,20 @@
-//! `prepare` refuses buffers, sizes and parameters that do not fit, one field at a time, and takes what just fits.
+//! `prepare` refuses buffers, sizes and parameters that do not fit, and names the field. It accepts what just fits.
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::terrain::blend::{BlendPass, MapZone, Shading, WeightMode};
 use relievo::terrain::border::BorderPass;
 use relievo::terrain::config::{Border, Config, Offset};
-use relievo::terrain::despike::{Despike, DespikePass};
+use relievo::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use relievo::terrain::features::{FeatureIndex, Features};
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
-use relievo::terrain::morph::MorphPass;
+use relievo::terrain::morph::{MorphBuffers, MorphPass};
 use relievo::terrain::normals::NormalsPass;
 use relievo::terrain::pad::PadPass;
-use relievo::terrain::thermal::{Thermal, ThermalPass};
-use relievo::terrain::wrap::{WrapJob, WrapPass};
+use relievo::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
+use relievo::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 
 fn gpu() -> Gpu {
     Gpu::headless(&Options::default()).expect("the suite needs an adapter")
@@ -38,7 +38,7 @@ fn fields(gpu: &Gpu, width: u32, count: u32) -> Fields {
     Fields::new(gpu, "test", width, count).expect("allocated")
 }
 
-/// Fields that say they are larger than their buffer.
+/// Fields whose width and count exceed their buffer.
 fn short(gpu: &Gpu) -> Fields {
     Fields { heights: buffer(gpu, 49), width: 5, count: 2 }
 }
@@ -111,7 +111,8 @@ fn despike() {
     let index = |widths: &[u32]| FeatureIndex::new(&gpu, widths, 2, 1).expect("allocated");
     let prepare = |windows: &Fields, widths: &[u32], cropped: usize| {
         let cropped = Fields { heights: buffer(&gpu, cropped), width: 3, count: 2 };
-        pass.prepare(&gpu, params, windows, &index(widths), &cropped).map(|_| ())
+        let buffers = DespikeBuffers { windows, features: &index(widths), cropped: &cropped };
+        pass.prepare(&gpu, params, buffers).map(|_| ())
     };
     let windows = fields(&gpu, 5, 2);
     assert!(prepare(&windows, &[5], 18).is_ok());
@@ -129,7 +130,7 @@ fn thermal() {
     let prepare = |iterations, scale, windows: &Fields, other| {
         let other = Fields { heights: buffer(&gpu, other), width: 5, count: 2 };
         let params = Thermal { iterations, ..Thermal::default() };
-        pass.prepare(&gpu, params, scale, windows, &other).map(|_| ())
+        pass.prepare(&gpu, params, scale, ThermalBuffers { windows, other: &other }).map(|_| ())
     };
     let windows = fields(&gpu, 5, 2);
     assert!(prepare(2, 1.0, &windows, 18).is_ok() && prepare(0, 1.0, &windows, 50).is_ok());
@@ -166,7 +167,8 @@ fn morph() {
     let gpu = gpu();
     let pass = MorphPass::new(&gpu).expect("compiled");
     let prepare = |from, to, heights| {
-        pass.prepare(&gpu, &buffer(&gpu, from), &buffer(&gpu, to), &buffer(&gpu, heights)).map(|_| ())
+        let [from, to, heights] = [from, to, heights].map(|len| buffer(&gpu, len));
+        pass.prepare(&gpu, MorphBuffers { from: &from, to: &to, heights: &heights }).map(|_| ())
     };
     assert!(prepare(4, 4, 4).is_ok());
     refuses(prepare(4, 5, 4), &["to.len = 5: must be 4, as from.len"]);
@@ -199,7 +201,7 @@ fn pad() {
 fn generation() {
     let gpu = gpu();
     let config = Config::new(5, 1.0, "short").expect("valid");
-    // With features, each dispatch makes one level and needs scratch for the next on every adapter.
+    // With features, each dispatch computes one level on every adapter, and leaves it in scratch memory for the next.
     let height = HeightPass::new(&gpu, Offset::Signed, Some(FeatureMode::Keep)).expect("compiled");
     let scratch = HeightScratch::new(&gpu, &height, &config, 2, 1).expect("allocated");
     let points = HeightJob::output_points(&config, 2, 1);
@@ -219,7 +221,8 @@ fn generation() {
     let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");
     let needed = WrapJob::scratch_points(&config, 2);
     let prepare = |output, scratch| {
-        wrap.prepare(&gpu, &config, 2, 0, &buffer(&gpu, output), &buffer(&gpu, scratch)).map(|_| ())
+        let [output, scratch] = [output, scratch].map(|len| buffer(&gpu, len));
+        wrap.prepare(&gpu, &config, 2, 0, WrapBuffers { output: &output, scratch: &scratch }).map(|_| ())
     };
     assert!(prepare(50, needed).is_ok());
     refuses(prepare(49, needed), &["output = [49 elements]", "at least 50"]);

@@ -22,7 +22,7 @@ use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;
 use relievo::terrain::thermal::reference::thermal;
 
-/// The same cases in every run.
+/// Random cases that are the same in every run.
 fn settings() -> ProptestConfig {
     ProptestConfig {
         cases: 64,
@@ -32,7 +32,7 @@ fn settings() -> ProptestConfig {
     }
 }
 
-/// Heights by column and row, in samples of one patch's corner.
+/// Heights by column and row, counted in samples from the corner of one patch.
 type Points = BTreeMap<[i32; 2], f64>;
 
 /// A world, and the patch under test.
@@ -79,7 +79,7 @@ fn edge(config: &Config) -> i32 {
     config.patch_size as i32 - 1
 }
 
-/// Every point in the file of the patch that it lies in, or whose left or upper border it lies on.
+/// Writes every point to the file of the patch that it lies in, or on whose left or upper border it lies.
 fn features(config: &Config, patch: [i32; 2], points: &Points, mode: FeatureMode) -> Features {
     let files: Vec<_> = points.iter().map(|(place, height)| file(config, patch, *place, *height)).collect();
     Features::new(config, &files, mode).expect("the points of a world are valid")
@@ -112,9 +112,9 @@ fn patches() -> impl Strategy<Value = [i32; 2]> {
     prop_oneof![[-3..3, -3..3], [-500_000..500_000, -500_000..500_000]]
 }
 
-/// Points on the block of a world and up to a patch beyond it: none in half of the worlds.
+/// Points on the block of a world and up to a patch beyond it. Half of the worlds have none.
 fn points(edge: i32) -> impl Strategy<Value = Points> {
-    // Cleared low bits gather points on coarse lattices, from where they reach furthest.
+    // Clearing low bits puts points on coarse lattices, where their influence reaches furthest.
     let coordinate =
         (-edge..=3 * edge, 0..=6).prop_map(move |(at, bits): (i32, i32)| (at >> bits << bits).max(-edge));
     let place = (coordinate.clone(), coordinate).prop_map(<[i32; 2]>::from);
@@ -129,10 +129,10 @@ fn worlds() -> impl Strategy<Value = World> {
     })
 }
 
-/// Counts the samples of fields that another field has too. Returns the first one that two fields disagree on.
+/// Counts the samples that several fields share.
 ///
 /// # Errors
-/// The first place that two fields fill differently.
+/// The first sample on which two fields disagree.
 fn shared_samples<T: Copy + PartialEq + std::fmt::Debug>(
     patches: &[[i32; 2]],
     fields: &[Vec<T>],
@@ -379,8 +379,8 @@ proptest! {
         prop_assert!(after[0] == world.window(0));
     }
 
-    // The field lies in the middle of a plain so wide that the last iteration's rim is still flat: nothing
-    // has left the window.
+    // The field lies in the middle of a plain so wide that the rim is still flat after the last iteration, so that no
+    // height has left the window.
     #[test]
     fn erosion_moves_mass_but_keeps_it(
         side in 1..12_usize,
@@ -437,7 +437,7 @@ fn slopes_are_central_differences() {
     assert_eq!(normals(&window, 3, 1.0).0, [[28, -4]]);
 }
 
-/// Any height, and often the largest and smallest.
+/// Random heights, and often the largest and the smallest height.
 fn heights() -> impl Strategy<Value = i32> {
     let limit = HEIGHT_LIMIT as i32;
     prop_oneof![4 => -limit..=limit, 1 => Just(limit), 1 => Just(-limit), 1 => -4..=4]
@@ -474,7 +474,7 @@ fn blends() -> impl Strategy<Value = (Config, u32)> {
     })
 }
 
-/// The patches with their transitions, and each as `wrap` makes it.
+/// The patches after their transitions, and each patch as `wrap` makes it.
 fn with_and_without_blend(config: &Config, patches: &[[i32; 2]]) -> [Vec<Vec<i32>>; 2] {
     let wrap = Config { border: Border::Wrap, ..config.clone() };
     [config, &wrap].map(|config| {
@@ -603,7 +603,7 @@ proptest! {
     }
 }
 
-/// ⌊(a + b + c + d + 2) / 4⌋, where nothing overflows.
+/// ⌊(a + b + c + d + 2) / 4⌋ in arithmetic that does not overflow.
 pub fn exact_mean(heights: [i32; 4]) -> i32 {
     let sum: i64 = heights.into_iter().map(i64::from).sum();
     (sum + 2).div_euclid(4) as i32

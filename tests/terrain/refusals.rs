@@ -1,5 +1,5 @@
-//! Bad input is refused with an error that names the field, its value and the bound, and the nearest good
-//! input is accepted. Edge cases of good input are accepted too.
+//! Bad input is refused with an error that names the field, its value and the bound. The nearest good input and edge
+//! cases are accepted.
 
 use relievo::InputError;
 use relievo::terrain::config::{Border, Config, Offset};
@@ -256,12 +256,12 @@ fn zones_are_one_to_32_ranges() {
     accepted(&[("zones", r#"[{"min": -32768, "max": 32768}]"#)]);
 }
 
-/// A height of this many 1/65536 units, as JSON reads it.
+/// A height of `fixed` 1/65536 units, as JSON writes it.
 fn units(fixed: i64) -> String {
     (fixed as f64 / 65_536.0).to_string()
 }
 
-/// The largest whole n with `times`·n ≤ 2^30 − 1, and the next.
+/// The largest integer n with `times` · n ≤ 2^30 − 1, and the integer after it.
 fn around_limit(times: i64) -> [String; 2] {
     let largest = ((1 << 30) - 1) / times;
     [units(largest), units(largest + 1)]
@@ -278,7 +278,7 @@ fn heights_that_could_overflow_are_refused() {
     refuses(&[("scaleFactor", "9000")], "9000");
     refuses(&[("scaleFactor", "1000"), ("roughness", "0"), ("coarseLevels", "8")], "1000");
     accepted(&[("scaleFactor", "1000"), ("roughness", "0")]);
-    // B_L = r_0 + 2·L·r_0 with roughness 0, in `seamless`.
+    // In `seamless` with roughness 0, the largest height is B_L = r_0 + 2·L·r_0.
     for (size, coarse_levels, levels) in [("3", "0", 1), ("257", "0", 8), ("4097", "8", 20)] {
         let [largest, next] = around_limit(1 + 2 * levels);
         let changes = |scale| {
@@ -307,7 +307,7 @@ fn corners_that_could_overflow_are_refused() {
         let corners = format!("[0, 0, -{next}, 0]");
         refused(&changes(&corners), &["corners", "16384"]);
     }
-    // C + 2·r_0 with one level.
+    // With one level, the largest height is C + 2·r_0 for corners of height C.
     let [largest, next] = [0, 1].map(|more| units((1 << 30) - 1 - 2 * 65_536 + more));
     let one = [("patchSize", "3"), ("border", "\"wrap\""), ("scaleFactor", "1")];
     accepted(&[&one[..], &[("corners", &largest)]].concat());
@@ -413,7 +413,8 @@ fn feature_heights_are_bounded() {
 
 #[test]
 fn features_that_could_overflow_are_refused() {
-    // With roughness 0 and a range of r: r + 2·L·r + F where kept; + 2·L·F where added to.
+    // With roughness 0 and a range of r, heights reach r + 2·L·r + F where features of height F are kept, and 2·L·F more
+    // where they are added.
     for (mode, size, levels) in
         [(FeatureMode::Keep, "33", 5), (FeatureMode::Additive, "3", 1), (FeatureMode::Additive, "33", 5)]
     {

@@ -1,4 +1,4 @@
-//! A batch of `blend` that one binding does not hold is split, and its heights are the same bits.
+//! A batch of `blend` that exceeds one binding is split, and its heights keep the same bits.
 
 use relievo::terrain::config::{Border, Config};
 use relievo::terrain::despike::Despike;
@@ -12,10 +12,10 @@ use relievo::terrain::thermal::Thermal;
 use crate::harness::gpu_of_bindings;
 
 const SIZE: u32 = 33;
-/// Bytes of a patch.
+/// The bytes of a patch.
 const PATCH: u64 = 4 * (SIZE as u64).pow(2);
 
-/// A 4×3 grid row by row, backwards, in no order, with holes, and with a patch that is asked for twice.
+/// A 4×3 grid: row by row, in reverse, in random order, with holes, and with a patch that occurs twice.
 fn orders() -> Vec<(&'static str, Vec<[i32; 2]>)> {
     let raster: Vec<[i32; 2]> = (0..12).map(|i| [i % 4 - 2, i / 4 - 1]).collect();
     let shuffled: Vec<_> = (0..12).map(|i| raster[(i * 7 + 5) % 12]).collect();
@@ -31,7 +31,7 @@ fn orders() -> Vec<(&'static str, Vec<[i32; 2]>)> {
     ]
 }
 
-/// Despiking and erosion between nothing at all and both.
+/// Neither despiking nor erosion, either of them, and both.
 fn recipes(blend: u32) -> Vec<Recipe> {
     let config = Config { border: Border::Blend(blend), ..Config::new(SIZE, 20.0, "split").expect("valid") };
     let precomputed_heights = vec![3.0, 10.0, 50.0, 32.0, 20.0, -50.0];
@@ -48,9 +48,9 @@ fn recipes(blend: u32) -> Vec<Recipe> {
 
 #[test]
 fn split_batches_of_blend_are_the_same_bits() {
-    // One patch to a buffer, some, and not quite all.
+    // Buffers that hold one patch, a few patches, and almost all patches.
     for most in [1, 3, 7] {
-        // The largest windows reach five samples beyond a patch: one has to fit, but no two patches.
+        // The largest windows extend five samples beyond a patch: a buffer must hold one window, but not two patches.
         let gpu = gpu_of_bindings((most * PATCH).max(4 * u64::from(SIZE + 10).pow(2)));
         for recipe in [1, 8, 30].into_iter().flat_map(recipes) {
             let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");

@@ -1,4 +1,4 @@
-// The files: each as some other exporter would write it. Joints and meshes bear names that occur once in a file.
+// Builds the files, each in the manner of some exporter. Names of joints and meshes are unique within a file.
 
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { Gltf, exact, I16, I8, U8, U16, U32 } from "./gltf.mjs";
@@ -13,24 +13,25 @@ function local({ translation = [0, 0, 0], rotation = [0, 0, 0, 1], scale = [1, 1
     return new Matrix4().compose(new Vector3(...translation), new Quaternion(...rotation), new Vector3(...scale));
 }
 
-// From a node's space to the scene's, or to that of a node above it.
+// The matrix from a node's space to the scene's, or to the space of a node above it.
 function world(gltf, node, top = -1) {
     const parent = gltf.json.nodes.findIndex(({ children }) => children?.includes(node));
     const own = local(gltf.json.nodes[node]);
     return parent < 0 || parent === top ? own : world(gltf, parent, top).multiply(own);
 }
 
-// Bound where the joints are at rest, in the space of a node above them, for a mesh that stands at `mesh` there.
+// The inverse bind matrices of joints at rest, in the space of a node above them, for a mesh whose matrix there is
+// `mesh`.
 function binds(gltf, joints, { top = -1, mesh = new Matrix4() } = {}) {
     return joints.map((joint) => world(gltf, joint, top).invert().multiply(mesh).toArray());
 }
 
-// A chain of joints, each `step` above the one before.
+// A chain of joints, each `step` above the joint before it.
 function chain(gltf, parent, names, step) {
     return names.map((name, at) => (parent = gltf.node(parent, { name, translation: at === 0 ? [0, 0, 0] : step })));
 }
 
-// Everything in hundredths, brought to size by the node above all: exporters by way of FBX, along +Z.
+// All lengths are in hundredths and along +Z, and the root node scales and turns them, as converters from FBX write them.
 function armature() {
     const gltf = new Gltf();
     const top = gltf.node(undefined, { name: "Armature", rotation: turn(X, -Math.PI / 2), scale: [100, 100, 100] });
@@ -49,7 +50,8 @@ function armature() {
     return { "armature.glb": gltf.glb() };
 }
 
-// Many meshes on one rig: skins of some joints each, in orders of their own, and things that hang on joints.
+// Many meshes on one rig: each skin has some of the joints in an order of its own, and meshes without a skin hang on
+// joints.
 function rig() {
     const gltf = new Gltf();
     const root = gltf.node(undefined, { name: "root", translation: [0.5, 0, -0.25], rotation: turn(Y, 0.3) });
@@ -107,24 +109,25 @@ function moved(shape, matrix) {
     }
 }
 
-// The same shape for the whole rig's skin, whose spine and neck have other numbers.
+// The same shape for the skin of the whole rig, in which spine and neck have other indices.
 function wrapOf(shape) {
     return { ...shape, joints: shape.joints.map((joint) => [8, 0][joint]) };
 }
 
-// Mirrored and unevenly scaled: joints below a mirrored node, a mirrored joint that was bound unmirrored beside one that
-// was not, one that was bound mirrored; turned below uneven scales, so that matrices are sheared; and boxes that hang there.
+// Mirrored and unevenly scaled: joints below a mirrored node; a mirrored joint that was bound unmirrored, beside one that
+// is not mirrored; and one that was bound mirrored. Joints turn below uneven scales, so that matrices are sheared. Boxes
+// hang on these joints.
 function mirrored() {
     const gltf = new Gltf();
     const mirror = gltf.node(undefined, { name: "mirror", scale: [-1, 1, 1], translation: [0.5, 0, 0] });
     const uneven = gltf.node(mirror, { name: "uneven", scale: [1, 1.5, 0.75], rotation: turn([1, 1, 0], 0.4) });
     const [low, middle, high] = chain(gltf, uneven, ["low", "middle", "high"], [0, 0.5, 0]);
     const joints = [low, middle, high];
-    // Bound below the mirror: turned outside in where it is seen.
+    // Bound below the mirroring node: the pose turns it outside in.
     const skin = gltf.skin(joints, binds(gltf, joints, { top: uneven }));
     const tail = gltf.mesh(gltf.primitive(limb({ radius: 0.2, joints: [0, 1, 2] })));
     gltf.node(undefined, { name: "tail", mesh: tail, skin });
-    // Bound where it is seen: as it was modelled.
+    // Bound in its pose: it looks as it was modelled.
     const seen = gltf.skin(joints, binds(gltf, joints));
     const coat = limb({ radius: 0.3, joints: [0, 1, 2], rings: 3 });
     gltf.node(mirror, { name: "coat", mesh: gltf.mesh(gltf.primitive(coat)), skin: seen });
@@ -150,19 +153,19 @@ function mirrored() {
     return { "mirrored.glb": gltf.glb() };
 }
 
-// One rig, two skins: what each was bound with is different for the same joints, as is the space of its mesh.
+// One rig with two skins, whose inverse bind matrices for the same joints differ, and whose meshes have other spaces.
 function bound() {
     const gltf = new Gltf();
     const joints = chain(gltf, undefined, ["foot", "knee", "thigh"], [0, 0.6, 0.1]);
     const first = gltf.skin(joints, binds(gltf, joints));
-    // Modelled lying, ten times as large and elsewhere.
+    // This mesh was modelled lying down, ten times as large and at another position.
     const lying = local({ translation: [0.3, -0.5, 0.2], rotation: turn(X, Math.PI / 2), scale: [0.1, 0.1, 0.1] });
     const second = gltf.skin([...joints].reverse(), binds(gltf, [...joints].reverse(), { mesh: lying }));
     const shape = limb({ to: 1.2, radius: 0.15, joints: [0, 1, 2] });
     gltf.node(undefined, { name: "leg", mesh: gltf.mesh(gltf.primitive(shape)), skin: first });
     const boot = gltf.mesh(gltf.primitive(limb({ to: 9, radius: 2, joints: [2, 1], rings: 4 })));
     gltf.node(joints[1], { name: "boot", mesh: boot, skin: second, translation: [7, 8, 9] });
-    // Without matrices: the identity for every joint.
+    // A skin without inverse bind matrices has the identity for every joint.
     const third = gltf.push("skins", { joints: [joints[1]] });
     const ring = gltf.mesh(gltf.primitive(follows(box([0.2, 0.1, 0.2]), 0)));
     gltf.node(undefined, { name: "ring", mesh: ring, skin: third });
@@ -174,19 +177,19 @@ function bound() {
     return { "bound.glb": gltf.glb() };
 }
 
-// Weights of two joints that still sum to 1 in integers, as glTF asks.
+// Weights of two joints whose integers sum exactly to 1, as glTF requires.
 function whole(weights, one) {
     const first = (at) => Math.round(weights[at - (at % 4)] * one) / one;
     return weights.map((_, at) => [first(at), 1 - first(at), 0, 0][at % 4]);
 }
 
-// Small integers for fractions and for places (KHR_mesh_quantization), attributes woven into each other, sparse accessors
-// over another one and over nothing, indices of every size, and a buffer in a file of its own.
+// Small integers for fractions and for positions (KHR_mesh_quantization), interleaved attributes, sparse accessors with
+// and without a base, indices of every size, and a buffer in a file of its own.
 function packed() {
     const gltf = new Gltf();
     gltf.json.extensionsUsed = gltf.json.extensionsRequired = ["KHR_mesh_quantization"];
     const joints = chain(gltf, undefined, ["base", "stalk", "tip"], [0, 0.5, 0]);
-    // Positions count 1/1000.
+    // Positions are in 1/1000.
     const finer = new Matrix4().makeScale(0.001, 0.001, 0.001);
     const skin = gltf.skin(joints, binds(gltf, joints, { mesh: finer }));
     const shape = limb({ to: 1, radius: 0.2, joints: [0, 1, 2] });
@@ -202,7 +205,7 @@ function packed() {
     const fine = gltf.accessor("VEC4", whole(shape.weights, 65535), { component: U16, normalized: true });
     const wide = gltf.accessor("VEC4", shape.joints, { component: U16 });
     const indices = (component) => gltf.accessor("SCALAR", shape.indices, { component });
-    // Two vertices moved, over the others' places; and two targets that are mostly nothing.
+    // A sparse accessor moves two vertices of another one; two morph targets are mostly zeros.
     const bumped = gltf.accessor("VEC3", positions, {
         bounds: true, sparse: [[3, [400, 120, 40]], [17, [-350, 800, 10]]],
     });
@@ -228,8 +231,8 @@ function packed() {
     return { "packed.gltf": gltf.gltf("packed.bin"), "packed.bin": Buffer.from(gltf.bytes) };
 }
 
-// Every interpolation of every part: steps, cubic splines, arcs longer than half a turn and to a quaternion's negative;
-// keys that begin late, that end early, and single ones.
+// Every interpolation of every part: steps, cubic splines, rotations by more than half a turn and to a quaternion's
+// negative; keys that begin late, keys that end early, and single keys.
 function keys() {
     const gltf = new Gltf();
     const names = ["step", "spline", "arc", "late"];
@@ -250,7 +253,7 @@ function keys() {
     const [STEP, CUBICSPLINE] = [{ interpolation: "STEP" }, { interpolation: "CUBICSPLINE" }];
     const q = [turn(X, 0), turn([1, 2, 0], 1.1), turn(Z, -2), turn(Y, 0.4)];
     const flipped = (rotation) => rotation.map((component) => -component);
-    // Arriving, value, leaving.
+    // In-tangent, value, out-tangent.
     const tangents = (values, size) => values.flatMap((value, at) => [
         value.map((_, axis) => size * Math.cos(3 * at + axis)), value, value.map((_, axis) => size * Math.sin(2 * at - axis)),
     ]);
@@ -274,7 +277,7 @@ function keys() {
     return { "keys.glb": gltf.glb() };
 }
 
-// No skin: parts of a machine, each below the other, moved by a clip; one of them morphs.
+// Without a skin: a clip moves the parts of a machine, each a child of the one before; one part morphs.
 function parts() {
     const gltf = new Gltf();
     const wagon = gltf.node(undefined, { name: "wagon", mesh: gltf.mesh(gltf.primitive(box([2, 0.5, 1]))) });
@@ -306,7 +309,7 @@ function parts() {
     return { "parts.glb": gltf.glb() };
 }
 
-// Neither skin nor clip: nodes with matrices and without, meshes of several primitives, one mesh in several places.
+// Without skin and clip: nodes with and without matrices, meshes of several primitives, and one mesh at several nodes.
 function still() {
     const gltf = new Gltf();
     const stone = gltf.mesh(gltf.primitive(box([1, 0.5, 0.75])), gltf.primitive(box([0.2, 0.2, 0.2], [0, 0.5, 0])));
@@ -318,8 +321,8 @@ function still() {
     return { "still.glb": gltf.glb() };
 }
 
-// Three scenes: the second is what is shown. It shares a node with the first; the third, and a node of no scene, do not
-// belong to it, nor does a clip's channel that moves them.
+// Three scenes, of which the second is the default. It shares a node with the first. It has neither the nodes of the
+// third scene nor the node of no scene, and no channel of a clip that moves these.
 function scenes() {
     const gltf = new Gltf();
     gltf.json.scenes = [{ nodes: [] }, { nodes: [] }, { nodes: [] }];

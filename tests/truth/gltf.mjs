@@ -1,12 +1,12 @@
-// Writes glTF 2.0: a document that grows beside one buffer.
+// Writes glTF 2.0: a document and its buffer, to which accessors and nodes are added one after another.
 
 export const [I8, U8, I16, U16, U32, F32] = [5120, 5121, 5122, 5123, 5125, 5126];
 const ARRAYS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
 const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
-// What a normalized integer counts as 1.
+// The integers that stand for 1 where a component type is normalized.
 const ONES = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 };
 
-// The quaternion nearest to this one whose integers are of unit length exactly.
+// The nearest quaternion of normalized integers whose length is exactly 1.
 export function exact(quaternion, component) {
     const one = ONES[component];
     const near = quaternion.slice(0, 3).map((value) => Math.round(value * one));
@@ -23,7 +23,7 @@ export function exact(quaternion, component) {
     return best.map((value) => value / one);
 }
 
-// Numbers as the bytes of a component type; fractions where it is normalized.
+// Encodes numbers as bytes of a component type; the numbers are fractions where the type is normalized.
 function packed(values, component, normalized) {
     const one = ONES[component];
     return ARRAYS[component].from(normalized ? values.map((value) => Math.round(value * one)) : values);
@@ -44,7 +44,7 @@ export class Gltf {
         return this.json[list].push(value) - 1;
     }
 
-    // A buffer view, at a multiple of 4.
+    // Adds a buffer view, whose offset is a multiple of 4.
     view(array, more = {}) {
         while (this.bytes.length % 4 !== 0) this.bytes.push(0);
         const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
@@ -53,7 +53,8 @@ export class Gltf {
         return this.push("bufferViews", { buffer: 0, byteOffset, byteLength: bytes.length, ...more });
     }
 
-    // An accessor by itself; `sparse` is a list of [index, values], over the values or over `count` zeros.
+    // Adds an accessor with a buffer view of its own. `sparse` is a list of [index, values] that replace some of the
+    // values, or of `count` zeros.
     accessor(type, values, { component = F32, normalized = false, sparse, bounds = false, count } = {}) {
         const width = WIDTHS[type];
         const array = packed(values ?? new Array(count * width).fill(0), component, normalized);
@@ -74,7 +75,7 @@ export class Gltf {
         return this.push("accessors", accessor);
     }
 
-    // Attributes one behind the other in each vertex, padded to multiples of 4 bytes.
+    // Adds interleaved attributes, each padded to a multiple of 4 bytes.
     interleaved(attributes) {
         const columns = attributes.map(({ type, values, component = F32, normalized = false, bounds }) => {
             const [array, width] = [packed(values, component, normalized), WIDTHS[type]];
@@ -102,7 +103,7 @@ export class Gltf {
         });
     }
 
-    // A node below another, or in the default scene, or with `null` in neither.
+    // Adds a node below another one or, by default, to the default scene; with `null` to neither.
     node(parent, fields) {
         const node = this.push("nodes", fields);
         if (parent === undefined) this.json.scenes[this.json.scene].nodes.push(node);
@@ -110,7 +111,7 @@ export class Gltf {
         return node;
     }
 
-    // A primitive of a shape: positions, normals, indices, and where it has them joints and weights.
+    // Adds a shape as a primitive: positions, normals, indices, and its joints and weights if it has them.
     primitive({ positions, normals, indices, joints, weights }, more = {}) {
         const attributes = { POSITION: this.accessor("VEC3", positions, { bounds: true }) };
         if (normals) attributes.NORMAL = this.accessor("VEC3", normals);
@@ -127,7 +128,7 @@ export class Gltf {
         return this.push("skins", { joints, inverseBindMatrices: this.accessor("MAT4", inverseBinds.flat()) });
     }
 
-    // Channels of [node, path, times, values, and how they are interpolated and stored].
+    // Adds an animation; a channel is [node, path, times, values, interpolation and storage].
     clip(name, channels) {
         const samplers = channels.map(([, path, times, values, { interpolation = "LINEAR", ...stored } = {}]) => {
             const type = { rotation: "VEC4", weights: "SCALAR" }[path] ?? "VEC3";
@@ -141,12 +142,12 @@ export class Gltf {
         return this.push("animations", { name, samplers, channels: targets });
     }
 
-    // JSON, its buffer in a file of that name.
+    // Writes the JSON, and the buffer to a file of the given name.
     gltf(uri) {
         return JSON.stringify({ ...this.json, buffers: [{ uri, byteLength: this.bytes.length }] });
     }
 
-    // Header, JSON and buffer in one.
+    // Writes header, JSON and buffer to one GLB file.
     glb() {
         const text = Buffer.from(JSON.stringify({ ...this.json, buffers: [{ byteLength: this.bytes.length }] }));
         const chunks = [

@@ -1,4 +1,4 @@
-// Where three.js has a file's nodes, vertices and normals, at moments of its clips.
+// Computes with three.js where the nodes, vertices and normals of a file are at moments of its clips.
 
 import { readFile } from "node:fs/promises";
 import { dirname } from "node:path";
@@ -6,14 +6,14 @@ import { pathToFileURL } from "node:url";
 import { AnimationMixer, FileLoader, LoopOnce, Matrix3, Matrix4, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
-// Node has no browser's loaders: buffers beside a document are read from disk, images not at all.
+// Node.js lacks a browser's loaders: this reads buffers beside a document from disk, and reads no images.
 FileLoader.prototype.load = function (url, onLoad, _onProgress, onError) {
     const there = new URL(url, this.path || undefined);
     const read = there.protocol === "file:" ? readFile(there) : fetch(there).then((data) => data.arrayBuffer());
     read.then((bytes) => onLoad(bytes instanceof ArrayBuffer ? bytes : Uint8Array.from(bytes).buffer), onError);
 };
 
-// Textures need a browser, and move no vertex.
+// Textures need a browser and do not move vertices, so they are left out.
 function withoutImages(bytes) {
     const isBinary = bytes.toString("latin1", 0, 4) === "glTF";
     const length = isBinary ? bytes.readUInt32LE(12) : bytes.length;
@@ -46,12 +46,12 @@ async function contents({ scene, parser }) {
     const isNode = (object) => all.includes(object) || all.some(({ name }) => name !== "" && name === object.name);
     const [nodes, meshes] = [[], []];
     for (const [node, own] of all.entries()) {
-        // Of a node in several scenes all but the first have a copy, of the same name.
+        // If several scenes share a node, three.js gives each scene after the first a copy with the same name.
         const object = isShown(own) ? own : own.name && scene.getObjectByName(own.name);
         if (!object) continue;
         const name = parser.json.nodes[node].name ?? `node_${node}`;
         nodes.push({ name, object });
-        // A mesh of several primitives is a group, and they come before the node's children.
+        // three.js makes a group of a mesh with several primitives; the primitives precede the node's children.
         const primitives = object.isMesh ? [object] : object.children.filter((child) => child.isMesh && !isNode(child));
         primitives.forEach((object, primitive) => meshes.push({ name: `${name}_${primitive}`, object }));
     }
@@ -66,7 +66,7 @@ function positions(mesh) {
     return all;
 }
 
-// What takes a vertex to the scene: three.js has no normals of its own outside shaders.
+// The matrix from a vertex to the scene, for normals: three.js computes normals in shaders only.
 function matrixOf(mesh, vertex) {
     if (!mesh.isSkinnedMesh) return mesh.matrixWorld;
     const { skinIndex, skinWeight } = mesh.geometry.attributes;
@@ -91,7 +91,7 @@ function normals(mesh) {
     return all;
 }
 
-// Keys, about so many, places between them, before the first and beyond the last.
+// About `most` moments: at keys, between keys, before the first key and after the last.
 function moments(clip, most) {
     const keys = [...new Set(clip.tracks.flatMap((track) => Array.from(track.times)))].sort((a, b) => a - b);
     const some = keys.filter((_, at) => at % Math.ceil(keys.length / most) === 0 || at === keys.length - 1);
@@ -100,7 +100,8 @@ function moments(clip, most) {
     return [...new Set(times)].sort((a, b) => a - b);
 }
 
-// Three rows of four of each node, then of each mesh positions and, where it has them, normals.
+// The numbers of a pose: three rows of four for each node, then for each mesh its positions and, if it has them, its
+// normals.
 function numbers({ nodes, meshes }) {
     const rows = ({ object: { matrixWorld: { elements } } }) =>
          [0, 1, 2].flatMap((row) => [0, 4, 8, 12].map((column) => elements[row + column]));
@@ -110,12 +111,12 @@ function numbers({ nodes, meshes }) {
     ];
 }
 
-// Morph targets change normals too; those are left to shaders.
+// Morph targets also change normals, which three.js does in shaders only; such normals are left out.
 function hasNormals({ geometry }) {
     return geometry.attributes.normal !== undefined && geometry.morphAttributes.position === undefined;
 }
 
-// What there is, and at each moment all the numbers of it.
+// Lists nodes and meshes, and appends the numbers of each moment.
 export async function judged(path) {
     const gltf = await load(path);
     const all = await contents(gltf);
@@ -123,7 +124,7 @@ export async function judged(path) {
         name, vertices: object.geometry.attributes.position.count, normals: hasNormals(object),
     }));
     const poses = [];
-    // Files stay small: the larger a model, the fewer moments.
+    // Larger models get fewer moments, so that the file stays small.
     const most = Math.max(2, Math.min(Math.floor(3500 / numbers(all).length), 8));
     const pose = (clip, time) => {
         gltf.scene.updateMatrixWorld(true);
@@ -132,7 +133,7 @@ export async function judged(path) {
     pose(null, 0);
     for (const [index, clip] of gltf.animations.entries()) {
         for (const time of moments(clip, most)) {
-            // What a clip leaves alone is as at rest.
+            // Nodes that the clip does not move return to rest.
             const mixer = new AnimationMixer(gltf.scene);
             const action = mixer.clipAction(clip).setLoop(LoopOnce, 1);
             action.clampWhenFinished = true;

@@ -1,5 +1,5 @@
-//! Poses, vertices and normals as three.js computes them, from files that are written as other exporters write them:
-//! `README.md` in this folder says how both were made.
+//! Compares poses, vertices and normals with those that three.js computes, for files in the manner of other exporters.
+//! `README.md` in this folder says how the files and the numbers were made.
 
 use std::path::{Path, PathBuf};
 
@@ -25,10 +25,10 @@ use relievo::skinning::{Blend, InstanceLod, Vertex, add_levels};
 /// them, here in `f32`.
 const PLACES: f32 = 1e-5;
 
-/// How far axes of joints may be off, as a share of the longest, and unit normals.
+/// The largest difference of a joint's axis, relative to the longest axis, and of a unit normal.
 const DIRECTIONS: f32 = 1e-4;
 
-/// What three.js says.
+/// The nodes, meshes and poses that three.js computed.
 struct Truth {
     folder: PathBuf,
     files: Vec<File>,
@@ -55,7 +55,7 @@ struct Described {
     normals: bool,
 }
 
-/// A moment of a clip, or rest, and where its numbers begin.
+/// A moment of a clip, or the rest pose, and the index at which its numbers begin.
 #[derive(Clone, serde::Deserialize)]
 struct Moment {
     clip: Option<usize>,
@@ -63,7 +63,7 @@ struct Moment {
     first: usize,
 }
 
-/// The largest differences, as shares of their bounds' units.
+/// The largest differences, each in the unit of its bound.
 #[derive(Debug, Clone, Copy, Default)]
 struct Worst {
     joints: f32,
@@ -73,7 +73,7 @@ struct Worst {
 }
 
 impl Truth {
-    /// Of the folder that `RELIEVO_TRUTH` names, or of this one.
+    /// Reads the folder that `RELIEVO_TRUTH` names, or `files/` beside this file.
     fn read() -> Self {
         let own = || Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/truth/files");
         let folder = std::env::var_os("RELIEVO_TRUTH").map_or_else(own, PathBuf::from);
@@ -100,7 +100,7 @@ impl Truth {
         &self.numbers[moment.first..][..count]
     }
 
-    /// How far a model is off, in all poses.
+    /// The largest differences between a model and three.js over all poses.
     fn compare(&self, file: &File, model: &Model) -> Worst {
         let poses = file.poses.iter().map(|moment| {
             let (bones, meshes) = posed(model, moment);
@@ -128,7 +128,7 @@ impl Worst {
     }
 }
 
-/// Where its bones are, and the vertices of each mesh.
+/// The model matrices of the bones, and the vertices of each mesh.
 fn posed(model: &Model, moment: &Moment) -> (Vec<Affine>, Vec<Vec<Vertex>>) {
     let clip = moment.clip.map(|clip| (clip, &model.clips[clip]));
     let at = clip.map(|(index, clip)| {
@@ -147,7 +147,7 @@ fn posed(model: &Model, moment: &Moment) -> (Vec<Affine>, Vec<Vec<Vertex>>) {
     (bones, meshes)
 }
 
-/// How large the place is that vertices take.
+/// The diagonal of the box around the vertices.
 fn size(places: &[Vec3]) -> f32 {
     let low = places.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = places.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
@@ -166,7 +166,7 @@ fn farthest(found: impl Iterator<Item = Vec3>, wanted: &[Vec3]) -> f32 {
     found.zip(wanted).map(far).fold(0.0, f32::max)
 }
 
-/// The meshes of both are the same, by name; bones are those of three.js's nodes that this crate needs.
+/// Compares meshes with those of the same names, and bones with the nodes of three.js that this crate needs.
 fn compared(file: &File, model: &Model, truth: &[f32], bones: &[Affine], meshes: &[Vec<Vertex>]) -> Worst {
     let (nodes, mut rest) = truth.split_at(12 * file.nodes.len());
     let mut worst = Worst::default();
@@ -215,7 +215,7 @@ fn vertices_are_where_three_js_has_them() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Each of these faults alone exceeds what the comparison permits.
+/// Each of these planted faults exceeds the bounds of the comparison.
 #[test]
 fn a_planted_fault_is_found() {
     let truth = Truth::read();
@@ -228,14 +228,14 @@ fn a_planted_fault_is_found() {
         assert!(!worst.holds(), "{name}: {worst:?}");
         worst
     };
-    // A vertex of a limb that is a metre long, by 30 micrometres.
+    // Moves one vertex of a limb one metre long by 30 micrometres.
     let worst = found("bound.glb", &|model| model.meshes[0].positions[4][1] += 3e-5);
     assert!(worst.vertices > PLACES && worst.joints < PLACES, "{worst:?}");
     found("bound.glb", &|model| model.skins[1].inverse_binds[1][12] += 1e-3);
     found("rig.glb", &|model| model.skins[0].bones.swap(0, 8));
     found("armature.glb", &|model| model.meshes[0].normals[3] = [0.0, 1.0, 0.0]);
     found("keys.glb", &|model| model.meshes[1].weight_keys.clear());
-    // Rest alone shows it: a clip moves everything else.
+    // Only the rest pose shows this fault, because clips move everything else.
     found("rig.glb", &|model| {
         let mut bones = model.skeleton.bones().to_vec();
         let neck = bones.iter_mut().find(|bone| bone.name == "neck").expect("there");
@@ -245,10 +245,10 @@ fn a_planted_fault_is_found() {
     });
 }
 
-/// Six times the volume that triangles enclose: positive, where they are counter-clockwise seen from outside.
+/// Six times the volume that triangles enclose; positive if they are counter-clockwise seen from outside.
 fn volume(vertices: &[Vertex], indices: &[u32]) -> f32 {
     let place = |index: u32| Vec3::from(vertices[index as usize].position);
-    // About a place nearby, for the sake of rounding.
+    // Volumes are taken about the middle of the vertices, which keeps rounding small.
     let middle =
         vertices.iter().map(|vertex| Vec3::from(vertex.position)).sum::<Vec3>() / vertices.len() as f32;
     let signed = |triangle: &[u32]| {
@@ -269,8 +269,8 @@ fn against_normals(vertices: &[Vertex], indices: &[u32]) -> usize {
     indices.len() / 3 - indices.chunks_exact(3).filter(is_along).count()
 }
 
-/// Every mesh of these files is closed and was written counter-clockwise, so that glTF shows its outside, mirrored or
-/// not; and so does every level of detail.
+/// Every mesh of these files is closed and counter-clockwise seen from outside, so that glTF shows its outside, whether
+/// the node mirrors it or not. The levels of detail also show their outside.
 #[test]
 fn closed_meshes_are_seen_from_outside() {
     let truth = Truth::read();
@@ -287,10 +287,10 @@ fn closed_meshes_are_seen_from_outside() {
                 let name = (&file.file, &mesh.name, moment.clip, moment.time);
                 let whole = volume(vertices, &mesh.indices);
                 assert!(whole > 0.0, "{name:?}: a volume of {whole}");
-                // Where limbs bend or morph, coarse levels fold, and normals are not quite those of the triangles.
+                // Where limbs bend or morph, coarse levels fold, and the normals differ from those of the triangles.
                 if moment.clip.is_none() && mesh.targets.is_empty() {
                     for level in &mesh.levels {
-                        // Some are flat.
+                        // Some meshes are flat.
                         let volume = volume(vertices, &level.indices);
                         assert!(volume > -1e-3 * whole, "{name:?}: a level has {volume} of {whole}");
                         levels += usize::from(volume > 0.5 * whole);
@@ -304,11 +304,11 @@ fn closed_meshes_are_seen_from_outside() {
     assert!(triangles > 500 && levels > 20, "{triangles} triangles, {levels} levels");
 }
 
-/// From outside, closed meshes look the same whether their inside is drawn or not.
+/// Seen from outside, a closed mesh looks the same with and without its back faces.
 #[test]
 fn pictures_of_closed_meshes_show_their_outside() {
     let truth = Truth::read();
-    // Elsewhere limbs bend so much that they show some of their inside.
+    // In the other files limbs bend so much that some back faces are visible.
     for name in ["mirrored.glb", "bound.glb", "parts.glb", "still.glb", "scenes.glb"] {
         let file = truth.file(name);
         let mut model = truth.model(file);
@@ -328,7 +328,7 @@ fn pictures_of_closed_meshes_show_their_outside() {
             let (one, both) = (picture(false), picture(true));
             assert!(one.iter().any(|pixel| *pixel != [0.0; 3]));
             let differ = one.iter().zip(&both).filter(|(one, both)| one != both).count();
-            // Two edges of one pixel's width may show what is behind them.
+            // At edges one pixel wide, the surface behind may be visible.
             assert!(differ <= 2, "{}, {:?} at {}: {differ} pixels", file.file, moment.clip, moment.time);
         }
     }

@@ -1,6 +1,6 @@
-// node make.mjs             writes the files of this folder, and what three.js makes of them
-// node make.mjs OUT FILE…   writes what three.js makes of other files, and copies of these, to OUT; buffers (.bin) are
-//                           copied alone
+// node make.mjs             writes the files of this folder, and the numbers that three.js computes from them
+// node make.mjs OUT FILE…   writes the numbers that three.js computes from other files, and copies of the files, to OUT;
+//                           buffers (.bin) are only copied
 
 import { copyFile, mkdir, writeFile } from "node:fs/promises";
 import { basename, dirname, join } from "node:path";

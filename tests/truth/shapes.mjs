@@ -1,6 +1,6 @@
-// Small closed shapes, counter-clockwise seen from outside, and what follows joints in them.
+// Small closed shapes, counter-clockwise seen from outside, with the joints and weights of their vertices.
 
-// A box around the origin, each side with corners of its own.
+// A box around the origin; each side has its own four corners.
 export function box([x, y, z], [cx, cy, cz] = [0, 0, 0]) {
     const [positions, normals, indices] = [[], [], []];
     for (let axis = 0; axis < 3; axis++) {
@@ -20,7 +20,7 @@ export function box([x, y, z], [cx, cy, cz] = [0, 0, 0]) {
     return { positions, normals, indices };
 }
 
-// A limb along +Y from `from` to `to`, which follows as many joints as it has, each ring two of them.
+// A limb along +Y from `from` to `to` that follows a chain of joints; each ring of vertices follows two of them.
 export function limb({ from = 0, to = 1, radius, rings = 4, sides = 4, joints = [0, 1] }) {
     const shape = { positions: [], normals: [], indices: [], joints: [], weights: [] };
     const add = (position, normal, way) => {
@@ -29,7 +29,7 @@ export function limb({ from = 0, to = 1, radius, rings = 4, sides = 4, joints = 
         const weight = place - below;
         shape.positions.push(...position);
         shape.normals.push(...normal);
-        // A joint that has no weight is the first one.
+        // Where the weight is 0, the joint is the first one.
         const above = weight > 0 ? joints[below + 1] : 0;
         shape.joints.push(weight < 1 ? joints[below] : 0, above, 0, 0);
         shape.weights.push(1 - weight, weight, 0, 0);
@@ -40,7 +40,7 @@ export function limb({ from = 0, to = 1, radius, rings = 4, sides = 4, joints = 
         const way = ring / (rings - 1);
         for (let side = 0; side < sides; side++) {
             const angle = (2 * Math.PI * (side + 0.25)) / sides;
-            // Not round, so that no mirror image is the shape itself.
+            // The section is not round, so that the mirror image differs from the shape.
             const [x, z] = [Math.cos(angle) * (1 + 0.3 * Math.sin(angle)), Math.sin(angle)];
             const length = Math.hypot(x, z);
             add([radius * x, from + (to - from) * way, radius * z], [x / length, 0, z / length], way);
@@ -59,19 +59,19 @@ export function limb({ from = 0, to = 1, radius, rings = 4, sides = 4, joints = 
     return shape;
 }
 
-// A shape that follows none.
+// A shape without joints.
 export function bare({ positions, normals, indices }) {
     return { positions, normals, indices };
 }
 
-// A shape that follows one joint.
+// A shape that follows one joint rigidly.
 export function follows(shape, joint) {
     const vertices = shape.positions.length / 3;
     const all = (four) => Array.from({ length: vertices }, () => four).flat();
     return { ...shape, joints: all([joint, 0, 0, 0]), weights: all([1, 0, 0, 0]) };
 }
 
-// Several shapes as one.
+// Joins several shapes to one.
 export function joined(...shapes) {
     const all = { positions: [], normals: [], indices: [], joints: [], weights: [] };
     for (const shape of shapes) {

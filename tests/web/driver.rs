@@ -30,7 +30,7 @@ fn a_page_that_says_nothing_ends_in_time_with_what_it_said_last() {
     assert!(start.elapsed() < Duration::from_secs(60));
 }
 
-/// Its processes end with it, those that it started too.
+/// When the driver ends, its processes and those that they started end too.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_browser_that_ends_or_hangs_is_noticed_and_killed_with_its_children() {
@@ -45,7 +45,7 @@ fn a_browser_that_ends_or_hangs_is_noticed_and_killed_with_its_children() {
     assert!(error.contains("no result within 2 s") && error.contains("last said: nothing"), "{error}");
     let child = std::fs::read_to_string(child).expect("written");
     let state = || std::fs::read_to_string(format!("/proc/{}/stat", child.trim())).unwrap_or_default();
-    // A killed process may wait for its new parent.
+    // A killed process may remain listed until its new parent has waited for it.
     let gone = || state().is_empty() || state().contains(") Z ");
     let start = Instant::now();
     while !gone() {

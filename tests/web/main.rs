@@ -1,5 +1,5 @@
-//! Every flat shader and every module in the compiler of a browser, with WebGPU's default limits: what
-//! `relievo shaders` writes, in headless Chromium.
+//! Headless Chromium compiles every flat shader and every module that `relievo shaders` writes, with WebGPU's default
+//! limits.
 #![cfg(all(feature = "gpu", feature = "cli"))]
 
 #[path = "../harness/mod.rs"]

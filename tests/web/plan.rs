@@ -26,10 +26,10 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("terrain/wrap", "FEATURES", &[0.0, 1.0, 2.0]),
 ];
 
-/// The folder that `relievo shaders` wrote, read.
+/// The contents of the folder that `relievo shaders` wrote.
 pub struct Written {
     pub shaders: Vec<Value>,
-    /// Name and source.
+    /// The name and the source of each shader.
     pub modules: Vec<(String, String)>,
     sources: Vec<String>,
 }
@@ -71,7 +71,8 @@ fn job(shader: &Value, source: &str) -> Value {
     json!({ "name": name, "code": source, "groups": groups(all(shader, "bindings")), "pipelines": pipelines })
 }
 
-/// What pipelines set: all defaults, then each value of each constant with the others at their defaults.
+/// The sets of override constants to compile with: all defaults, then each value of each constant with the others at
+/// their defaults.
 fn constants(shader: &str, overrides: &[Value]) -> Vec<Value> {
     let mut sets = vec![json!({})];
     for constant in overrides {
@@ -88,7 +89,7 @@ fn constants(shader: &str, overrides: &[Value]) -> Vec<Value> {
     sets
 }
 
-/// A compute pipeline, or one with the vertex entry for each fragment entry.
+/// A compute pipeline, or for each fragment entry a render pipeline with the vertex entry.
 fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
     let of_stage = |stage: &str| entries.iter().filter(|entry| entry["stage"] == stage).collect::<Vec<_>>();
     let label = |entry: &Value| format!("{shader} {} {constants}", name_of(entry));
@@ -98,7 +99,7 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
     for vertex in of_stage("vertex") {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
         all.extend(of_stage("fragment").into_iter().map(|fragment| {
-            // Entries of that name write no colour.
+            // Fragment entries of this name write no colour.
             let is_deep = name_of(fragment).starts_with("depth_");
             let render = json!({
                 "writeMask": if is_deep { 0 } else { 15 },
@@ -113,7 +114,7 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
     all
 }
 
-/// One vertex buffer of all inputs, if there are any.
+/// One vertex buffer that holds all inputs, if there are any.
 fn buffers(vertex: &Value) -> Value {
     let mut offset = 0;
     let attributes: Vec<_> = (all(vertex, "inputs").iter())

@@ -1,4 +1,4 @@
-//! The verdict of the browser's compiler on every shader and module, and on some that it must refuse.
+//! The browser's compiler accepts every shader and module, and refuses some that are wrong on purpose.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::harness::{browser, relievo};
 use crate::plan::{Written, name_of};
 
-/// Shaders that need more than WebGPU's default limits, and that the library does without where a device has no more.
+/// Shaders that need more than WebGPU's default limits. The library does without them on devices with these limits.
 const OPTIONAL: &[&str] = &["animation/decide"];
 
 /// A literal just above the largest f32.
@@ -17,11 +17,11 @@ const BEYOND_F32: &str = "const LARGEST = 3.40282347e38;
 @group(0) @binding(0) var<storage, read_write> out: array<f32>;
 @compute @workgroup_size(1) fn main() { out[0] = LARGEST; }";
 
-/// An index of the wrong type in an entry that nothing else is wrong with.
+/// An entry point whose only fault is an index of the wrong type.
 const ILL_TYPED: &str = "@group(0) @binding(0) var<storage, read_write> out: array<f32>;
 @compute @workgroup_size(1) fn main() { out[0] = 1u; }";
 
-/// The results that all tests of this file examine, from one page load.
+/// The results of one page load, which all tests of this file examine.
 struct Said {
     written: Written,
     result: Value,
@@ -47,7 +47,7 @@ fn said() -> &'static Said {
     })
 }
 
-/// Each module alone, and before another program's shader.
+/// Each module by itself, and each in front of a shader of another program.
 fn modules(written: &Written) -> Vec<Value> {
     let mut jobs = Vec::new();
     for (name, source) in &written.modules {
@@ -66,7 +66,7 @@ fn modules(written: &Written) -> Vec<Value> {
     jobs
 }
 
-/// Shaders that must be refused: `fault: …`.
+/// Shaders that must be refused, with names that begin with `fault: `.
 fn faults() -> Vec<Value> {
     let pipeline = |constants: Value| json!({ "label": "fault", "constants": constants, "compute": "main" });
     let storage = |kind: &str| json!([[{ "binding": 0, "visibility": 4, "buffer": { "type": kind } }]]);
@@ -84,7 +84,7 @@ fn faults() -> Vec<Value> {
     ]
 }
 
-/// A shader that binds so many storage buffers.
+/// A shader that binds `buffers` storage buffers.
 fn bound(buffers: u32) -> String {
     let declared: String = (0..buffers)
         .map(|at| format!("@group(0) @binding({at}) var<storage, read_write> b{at}: array<f32>;\n"))
@@ -106,7 +106,7 @@ fn pipelines(job: &Value) -> &[Value] {
     job["pipelines"].as_array().expect("a list")
 }
 
-/// All that was refused of a job.
+/// The messages of everything that the browser refused in a job.
 fn refusals(job: &Value) -> Vec<String> {
     let messages = job["messages"].as_array().expect("a list").iter();
     let errors = messages.filter(|message| message["type"] == "error").map(|message| &message["message"]);
@@ -146,7 +146,7 @@ fn every_shader_compiles_with_every_value_of_its_constants() {
         }
         let job = job(&name);
         assert_accepted(job);
-        // Each entry, a vertex stage's beside its fragments', as often as any other.
+        // Every entry point occurs equally often; a vertex entry comes with each of its fragment entries.
         let entries = shader["entry_points"].as_array().expect("a list");
         let starts: Vec<_> = entries.iter().filter(|entry| entry["stage"] != "vertex").map(name_of).collect();
         for start in &starts {
@@ -173,7 +173,7 @@ fn name_begins(pipeline: &Value, begin: &str) -> bool {
     pipeline["label"].as_str().is_some_and(|label| label.starts_with(begin))
 }
 
-/// They are listed by name, so that a further one is noticed.
+/// The test lists these shaders by name, so that a new one is noticed.
 #[test]
 fn shaders_that_need_more_than_the_default_limits_are_known_by_name_and_refused() {
     let needs = |shader: &&Value| !shader["limits"].as_array().expect("a list").is_empty();

@@ -27,7 +27,7 @@ struct SceneInstance {
     scale: vec3<f32>,
     // The factor of its colours: red, green, blue and alpha, 8 bits each, red in the lowest.
     tint: u32,
-    // A sphere around everything that it may draw, in the model's space: centre and radius.
+    // A sphere around everything that it may draw, in the model's space: center and radius.
     bounding_sphere: vec4<f32>,
 }
 

@@ -1,8 +1,8 @@
 // Draws instances of a mesh of a scene, textured and lit. Surfaces are opaque, cut out, or drawn through a screen-door
 // pattern, as each vertex's material says.
-import package::wgsl::render::dither::screen;
 import package::wgsl::render::scene_vertex::placed_vertex;
 import package::wgsl::render::scene_view::{scene_lit, view};
+import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
@@ -99,7 +99,7 @@ fn lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
 // Whether alpha leaves a pixel out.
 fn is_cut(alpha: f32, in: Vertex) -> bool {
     let cutoff = materials[in.material].cutoff;
-    return alpha < select(cutoff, screen(vec2<u32>(in.clip.xy)), cutoff == CUTOFF_DITHERED);
+    return alpha < select(cutoff, surface_dither_threshold(vec2<u32>(in.clip.xy)), cutoff == CUTOFF_DITHERED);
 }
 
 // Ignores alpha. It is a separate entry point because shaders with a discard are tested for depth late.

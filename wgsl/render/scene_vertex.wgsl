@@ -1,5 +1,6 @@
 // Vertices of the meshes of a scene, static or skinned, at the placement of an instance.
 import package::wgsl::lod::instance::SceneInstance;
+import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};
 
@@ -7,8 +8,8 @@ import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_
 struct MeshParams {
     // The index in the scene of the object's first instance.
     first_instance: u32,
-    // Vertices from an instance to the next; 0 if all instances share those of the mesh.
-    stride: u32,
+    // Number of clusters of the mesh if vertices lie in pages; 0 if all instances share those of the mesh.
+    clusters: u32,
 }
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the
@@ -20,6 +21,8 @@ struct MeshParams {
 @group(1) @binding(0) var<uniform> mesh: MeshParams;
 // Five pairs per vertex: position, normal, tangent.
 @group(1) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
+// The page of each cluster of each instance of the object, if vertices lie in pages.
+@group(1) @binding(4) var<storage, read> page_table: array<u32>;
 // One pair per vertex of the mesh.
 @group(1) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;
 
@@ -40,11 +43,19 @@ struct PlacedVertex {
     stretch: f32,
 }
 
+// Where a vertex lies, in vertices. One without a page, which no triangle that is drawn has, lies anywhere.
+fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
+    if mesh.clusters == 0u {
+        return vertex;
+    }
+    return CLUSTER * page_table[instance * mesh.clusters + vertex / CLUSTER] + vertex % CLUSTER;
+}
+
 // A vertex of an instance; `instance` counts those of the object, `vertex` those of the mesh.
 fn placed_vertex(instance: u32, vertex: u32) -> PlacedVertex {
     let index = mesh.first_instance + instance;
     let placement = Rows(rows[3u * index], rows[3u * index + 1u], rows[3u * index + 2u]);
-    let at = 5u * (instance * mesh.stride + vertex);
+    let at = 5u * vertex_index_of(instance, vertex);
     let middle = vertices[at + 1u];
     let tangent = vertex_tangent(vertices[at + 3u], vertices[at + 4u]);
     let along = vec3<f32>(

@@ -1,9 +1,9 @@
 // Draws skinned instances of a mesh, textured and lit, each at its own placement. Surfaces are opaque, cut out,
 // or drawn through a screen-door pattern.
 import package::wgsl::light::lambert;
-import package::wgsl::render::dither::screen;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
+import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
@@ -96,7 +96,7 @@ fn masked(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec
 @fragment
 fn screened(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     let color = colored(in);
-    if color.a < screen(vec2<u32>(in.clip.xy)) {
+    if color.a < surface_dither_threshold(vec2<u32>(in.clip.xy)) {
         discard;
     }
     return lit(color.rgb, in, is_front);

@@ -4,7 +4,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::clip_clock as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
@@ -88,10 +88,10 @@ impl ClipClockTime {
     }
 
     /// As [`ClipClockJob::set`].
-    pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
+    pub fn set(&self, upload: &mut impl Upload, elapsed: f32, ahead: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         check_seconds("frame.ahead", ahead)?;
-        Ok(self.uniform.write(gpu, &ClipClockParams { elapsed, ahead, ..self.params })?)
+        Ok(upload.uniform(&self.uniform, &ClipClockParams { elapsed, ahead, ..self.params })?)
     }
 }
 
@@ -110,7 +110,15 @@ impl ClipClockJob {
     /// # Errors
     /// [`InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
-        self.time.set(gpu, elapsed, ahead)
+        self.set_through(&mut &*gpu, elapsed, ahead)
+    }
+
+    /// As [`ClipClockJob::set`], written by `upload`.
+    ///
+    /// # Errors
+    /// As [`ClipClockJob::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32, ahead: f32) -> Result<(), Error> {
+        self.time.set(upload, elapsed, ahead)
     }
 
     /// Records the pass.

@@ -13,7 +13,7 @@ use crate::animation::gate_state::GateState;
 use crate::animation::updated_bones::UpdatedBones;
 use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, Upload, compute_pass};
 use crate::shared::animation::compact::CompactParams;
 
 /// How many dispatches divide the work.
@@ -214,15 +214,23 @@ impl DecideJob {
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
+        self.set_through(&mut &*gpu, frame, elapsed)
+    }
+
+    /// As [`DecideJob::set`], written by `upload`.
+    ///
+    /// # Errors
+    /// As [`DecideJob::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         let ahead = if self.leads { frame.ahead } else { 0.0 };
         match &self.work {
             Work::One { clip_clock, gate, .. } => {
-                clip_clock.set(gpu, elapsed, ahead)?;
-                gate.set(gpu, frame)?;
+                clip_clock.set(upload, elapsed, ahead)?;
+                gate.set(upload, frame)?;
             }
             Work::Each { clip_clock, gate, .. } => {
-                clip_clock.set(gpu, elapsed, ahead)?;
-                gate.set(gpu, frame)?;
+                clip_clock.set_through(upload, elapsed, ahead)?;
+                gate.set_through(upload, frame)?;
             }
         }
         Ok(())

@@ -14,7 +14,7 @@ use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
 use crate::animation::sample::{SampleActiveJob, SamplePass};
 use crate::asset::skeleton::Skeleton;
-use crate::gpu::{Gpu, compute_pass};
+use crate::gpu::{Gpu, Upload, compute_pass};
 
 /// A prepared frame: set the time, then record.
 #[derive(Debug, Clone)]
@@ -75,8 +75,17 @@ impl GatedFrame {
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`](crate::gpu::GpuError).
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
-        self.decide.set(gpu, frame, elapsed)?;
-        self.cursor.set(gpu, elapsed)
+        self.set_through(&mut &*gpu, frame, elapsed)
+    }
+
+    /// As [`GatedFrame::set`], written by `upload`: with [`Staged`](crate::gpu::Staged) writes, several frames may
+    /// be recorded for one submission.
+    ///
+    /// # Errors
+    /// As [`GatedFrame::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame, elapsed: f32) -> Result<(), Error> {
+        self.decide.set_through(upload, frame, elapsed)?;
+        self.cursor.set_through(upload, elapsed)
     }
 
     /// As [`DecideJob::set_budget`].

@@ -8,7 +8,7 @@ use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::TableBuffers;
 use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::animation::gate as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
 use crate::shared::animation::gate as modes;
 use crate::shared::animation::gate::GateParams;
 use crate::{Error, InputError};
@@ -203,9 +203,9 @@ impl GateTime {
     }
 
     /// Sets the frame, as [`GateJob::set`] does.
-    pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
+    pub fn set(&self, upload: &mut impl Upload, frame: &Frame) -> Result<(), GpuError> {
         let Frame { ticks, frame_ticks, frame, ahead: _ } = *frame;
-        self.uniform.write(gpu, &GateParams { ticks, frame_ticks, frame, ..self.params })
+        upload.uniform(&self.uniform, &GateParams { ticks, frame_ticks, frame, ..self.params })
     }
 }
 
@@ -227,8 +227,16 @@ impl GateJob {
     /// # Errors
     /// [`GpuError`] for errors of the device.
     pub fn set(&self, gpu: &Gpu, frame: &Frame) -> Result<(), GpuError> {
+        self.set_through(&mut &*gpu, frame)
+    }
+
+    /// As [`GateJob::set`], written by `upload`.
+    ///
+    /// # Errors
+    /// As [`GateJob::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame) -> Result<(), GpuError> {
         match &self.work {
-            Work::Gate { time, .. } => time.set(gpu, frame),
+            Work::Gate { time, .. } => time.set(upload, frame),
             Work::Budget(_) => Ok(()),
         }
     }

@@ -126,6 +126,11 @@ impl BoundTable {
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 
+    /// The distance in metres of the model that a unit of [`BoundTable::units`] is.
+    pub fn unit(&self) -> f32 {
+        self.motion.unit as f32
+    }
+
     /// The index of the first clip's row of parents.
     #[cfg(feature = "gpu")]
     pub(crate) fn first_above(&self) -> u32 {

@@ -6,7 +6,9 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::check_elapsed;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, compute_pass};
+use crate::gpu::{
+    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, Upload, compute_pass,
+};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
 /// Finds the keyframe cursors of instances.
@@ -132,8 +134,16 @@ impl KeyframeCursorJob {
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
+        self.set_through(&mut &*gpu, elapsed)
+    }
+
+    /// As [`KeyframeCursorJob::set`], written by `upload`.
+    ///
+    /// # Errors
+    /// As [`KeyframeCursorJob::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
-        Ok(self.uniform.write(gpu, &KeyframeCursorParams { elapsed, ..self.params })?)
+        Ok(upload.uniform(&self.uniform, &KeyframeCursorParams { elapsed, ..self.params })?)
     }
 
     /// Records the search.

@@ -28,12 +28,12 @@
 //! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle
 //!   in a mesh where some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A
 //!   clip whose scale has another sign than at rest shows such triangles from inside.
-//! - Of materials, the import reads base colour with its texture and the normal map with its scale (PNG or JPEG, in
-//!   the GLB, in `data:` URIs or in files beside the document; any set of texture coordinates, with
-//! `KHR_texture_transform` applied to them), samplers, alpha, and `doubleSided`. A normal map is left out if it is
-//! not   read at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a [screen-door
-//! pattern](crate::asset::material::Alpha::Dithered). Vertex colours, everything else in materials, and   materials
-//! that no mesh uses are left out.
+//! - Of materials, the import reads base colour with its texture and the normal map with its scale (PNG or
+//!   JPEG, in the GLB, in `data:` URIs or in files beside the document; any set of texture coordinates, with
+//!   `KHR_texture_transform` applied to them), samplers, alpha, and `doubleSided`. A normal map is left out if
+//!   it is not read at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a
+//!   [screen-door pattern](crate::asset::material::Alpha::Dithered). Vertex colours, everything else in
+//!   materials, and materials that no mesh uses are left out.
 //!
 //! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and
 //! `KHR_texture_transform` are read, and every other one is refused. Those that concern materials and images
@@ -54,6 +54,7 @@ mod document;
 mod materials;
 mod meshes;
 mod nodes;
+mod primitive;
 mod rigid;
 mod scene;
 mod tangents;

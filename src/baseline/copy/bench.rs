@@ -2,8 +2,8 @@
 //! `copy_buffer_to_buffer`.
 
 use crate::Error;
-use crate::baseline::copy::CopyPass;
 use crate::baseline::copy::reference::copy;
+use crate::baseline::copy::{CopyBuffers, CopyPass};
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 
@@ -18,7 +18,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let words = mebibytes << 18;
         let (source, destination) =
             (Buffer::new(gpu, "source", words)?, Buffer::new(gpu, "destination", words)?);
-        let job = pass.prepare(gpu, words, &source, &destination)?;
+        let job = pass.prepare(gpu, words, CopyBuffers { source: &source, destination: &destination })?;
         let (from, mut to) = (vec![1_u32; words], vec![0_u32; words]);
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),

@@ -7,4 +7,4 @@ pub(crate) mod reference;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 
-pub(crate) use pass::CopyPass;
+pub(crate) use pass::{CopyBuffers, CopyPass};

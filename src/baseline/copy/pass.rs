@@ -5,6 +5,14 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::baseline::copy::CopyParams;
 use crate::{Error, InputError};
 
+/// What a copy reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CopyBuffers<'a> {
+    pub(crate) source: &'a Buffer<u32>,
+    /// Written.
+    pub(crate) destination: &'a Buffer<u32>,
+}
+
 /// Copies one buffer to another.
 #[derive(Debug, Clone)]
 pub(crate) struct CopyPass {
@@ -24,13 +32,8 @@ impl CopyPass {
     ///
     /// # Errors
     /// [`InputError`] for a length that is not a multiple of four; [`GpuError`].
-    pub(crate) fn prepare(
-        &self,
-        gpu: &Gpu,
-        words: usize,
-        source: &Buffer<u32>,
-        destination: &Buffer<u32>,
-    ) -> Result<Job, Error> {
+    pub(crate) fn prepare(&self, gpu: &Gpu, words: usize, buffers: CopyBuffers<'_>) -> Result<Job, Error> {
+        let CopyBuffers { source, destination } = buffers;
         if !words.is_multiple_of(4) || words > source.len() || words > destination.len() {
             let bound = "must be a multiple of 4 that fits both buffers";
             return Err(InputError::new("words", words, bound).into());

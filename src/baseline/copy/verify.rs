@@ -1,8 +1,8 @@
 //! Parity cases of `kernels/baseline/copy.wgsl`.
 
 use crate::Error;
-use crate::baseline::copy::CopyPass;
 use crate::baseline::copy::reference::copy;
+use crate::baseline::copy::{CopyBuffers, CopyPass};
 use crate::baseline::words::reference::words;
 use crate::gpu::Buffer;
 use crate::harness::Cases;
@@ -20,7 +20,8 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let data = words([1, 2], len, 1);
         let source = Buffer::from_slice(gpu, "source", &data)?;
         let output = Poisoned::new(gpu, data.len())?;
-        let job = pass.prepare(gpu, data.len(), &source, &output.buffer)?;
+        let buffers = CopyBuffers { source: &source, destination: &output.buffer };
+        let job = pass.prepare(gpu, data.len(), buffers)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let mut expected = vec![0; data.len()];
         copy(&data, &mut expected);

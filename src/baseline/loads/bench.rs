@@ -1,7 +1,7 @@
 //! Benchmark cases of `baseline/loads`: how fast texels are loaded.
 
 use crate::Error;
-use crate::baseline::copy::CopyPass;
+use crate::baseline::copy::{CopyBuffers, CopyPass};
 use crate::baseline::loads::LoadsPass;
 use crate::baseline::loads::reference::loads;
 use crate::gpu::Buffer;
@@ -24,7 +24,8 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (source, destination) =
         (Buffer::new(gpu, "source", 8 << 20)?, Buffer::new(gpu, "destination", 8 << 20)?);
     // A copy reads half of the bytes that it moves, and writes the other half.
-    let copied = CopyPass::new(gpu)?.prepare(gpu, 8 << 20, &source, &destination)?;
+    let buffers = CopyBuffers { source: &source, destination: &destination };
+    let copied = CopyPass::new(gpu)?.prepare(gpu, 8 << 20, buffers)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),

@@ -1,7 +1,7 @@
 //! Benchmark cases of `baseline/words`: how fast random words are drawn and stored.
 
 use crate::Error;
-use crate::baseline::copy::CopyPass;
+use crate::baseline::copy::{CopyBuffers, CopyPass};
 use crate::baseline::words::WordsPass;
 use crate::baseline::words::reference::words;
 use crate::gpu::Buffer;
@@ -17,7 +17,8 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let count = (size[0] * size[1]) as usize;
     let (source, output) = (Buffer::new(gpu, "source", count)?, Buffer::new(gpu, "words", count)?);
     let job = WordsPass::new(gpu)?.prepare(gpu, [1, 2], size, &output)?;
-    let copied = CopyPass::new(gpu)?.prepare(gpu, count, &source, &output)?;
+    let buffers = CopyBuffers { source: &source, destination: &output };
+    let copied = CopyPass::new(gpu)?.prepare(gpu, count, buffers)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
         Contender::job(Backend::Copy, &copied),

@@ -43,65 +43,27 @@ use plan::Plan;
 /// instance, so that the whole crowd is in front of it: from the second distance of --range on, Ω is 0 for all
 /// instances.
 ///
-/// DIR/report.json holds: "adapter", "driver" (null on the CPU), "backend", "timed_by" (timestamp: the device's
-/// clock; wall: the host's clock), "model", "clip", "gate" {"mode", "period", "budget", "pixels", "weights"},
-/// "instances", "layout", "seed", "bones", "animated_bones" (bones of an instance that the clip moves), "size",
-/// "metres_a_unit", "spacing", "range", "frames", "rate", "focal_pixels", and "distances", a list of
-///   "distance"; "mean_omega"
-///   "interpolated", "skipped": numbers of animated bones, over all instances and all frames but the first, which is
-///     full
-///   "fraction": interpolated / (interpolated + skipped)
-///   "concatenated": bones whose matrices were computed; "concatenated_fraction": their share of all bones
-///   "nanoseconds_per_bone" {"gate", "sample", "local_to_model", "total"}: medians over frames, divided by the
-///     number of all bones of the crowd; gate is the search for clip clocks, the decision and the lists; the CPU reports
-///     the total only
-///   "full_nanoseconds_per_bone" {"sample", "local_to_model", "total"}: the same crowd without a gate
-///   "error" {"rms_metres", "p99_metres", "max_metres", "rms_pixels", "p99_pixels", "max_pixels", "points",
-///     "unseen"}: over all points and frames; metres are the model's units; points nearer than the near plane count
-///     as unseen and have no error in pixels
-///   "jump" {"max_metres", "max_pixels"}: the largest change of a point's error from one frame to the next
-/// cost.png, interpolations.png and error.png plot these values against distance.
+/// Writes DIR/report.json, which has for each distance the numbers of bones, the times in nanoseconds per bone, and
+/// the errors in metres and pixels, and cost.png, interpolations.png and error.png, which plot these values against
+/// distance. docs/reports.md in the repository describes every field of the JSON files.
 ///
 /// With --image (GPU only), the command also writes DIR/crowd_<distance>.png: the last frame of the gated crowd,
 /// textured and lit, 1920 × 1080 pixels; meshes without a material are clay of two colours. A compute pass skins
 /// those clusters of 64 vertices that follow a bone that moved, and the picture is drawn from its output. Instances
 /// out of view are not skinned. Morph targets move in every frame, whatever the gate decides. The gate bounds the
-/// error of every vertex. "skinning" repeats --skinning, and each entry of "distances" also has
-///   "nanoseconds_per_vertex": palettes, the choice of clusters and the skinning of vertices, divided by the number
-///     of all vertices of the crowd
-///   "frame_nanoseconds": gate, placements, sampling, concatenation, visibility, skinning and drawing in one
-///     submission; "compute_nanoseconds", "draw_nanoseconds": all that precedes the drawing, and the drawing, each
-///     submitted alone
-///   "full_…" of each: the same crowd without a gate, fully skinned
-///   "skinned_fraction": the share of clusters that were skinned in the timed frames
-///   "triangle_fraction": triangles that were drawn / triangles of all meshes at level 0
-///   "drawn_timed_by": as "timed_by", for these times; wall on software adapters
-///   "vertex_error": as "error", for the distance of every vertex of the full crowd from the vertex that was drawn,
-///     or, where a coarser mesh lacks the vertex, from the surface that was drawn, in the timed frames; vertices of
-///     instances out of view are not skinned: they count as "unseen" and not among the "points"
+/// error of every vertex. report.json also has the times of skinning, of drawing and of whole frames, with and
+/// without the gate, and the errors of vertices.
 ///
 /// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second.
 ///
 /// With --scene, the command instead times the whole frame at each distance in five ways that differ in nothing
 /// else: "off" (all bones, influences and triangles), "animation" (the gate), "skinning" (--skinning), "both" of
-/// these, and "all" (both, and --mesh unless it is full). DIR/scene.json holds what report.json says of the crowd,
-/// "vertices", "skinning", "mesh", and for each mesh "fade" (the units at which its fade begins and at which it is
-/// rigid, or null), "stray_metres" (how far the complete fade moves a vertex at most) and "levels" [{"triangles",
-/// "vertices", "error_metres", "from" (units)}], those of its levels that are used. Each entry of "distances" has
-/// "distance", "tall_pixels" (the size of the nearest instance), "mean_omega", the fields above for each way,
-/// "cheaper" {"frame", "compute"} (the time of "off" divided by that of "both") and "all_cheaper" (divided by that
-/// of "all"). scene.png plots "frame_nanoseconds" against distance; crowd_<distance>.png shows the last way.
+/// these, and "all" (both, and --mesh unless it is full). It writes DIR/scene.json; scene.png plots the time of a
+/// frame against distance; crowd_<distance>.png shows the last way.
 ///
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png
-/// and DIR/pareto.json {"model", "clip", "instances", "bones", "animated_bones", "frames", "rate", "period",
-/// "weights", "tall_pixels", "points", "comparisons"}. A point is {"gate", "parameter", "cost",
-/// "concatenated_fraction", the fields of "error", "jump"}: "cost" is interpolated bones / animated bones;
-/// "parameter" is what the gate sweeps: Ω for uniform, random and skip-period, the fraction of the animated bones for
-/// budget, and pixels for bounded. The comparisons are of gates along these curves: "bounded_max_pixels" and
-/// "budget_rms_pixels" [{"cost", "gate", "uniform", "random", "ratio"}] are errors at equal cost, with the ratio to
-/// the better rival; "bounded_cost" [{"max_pixels", "uniform", "bounded", "ratio"}] are costs at equal largest
-/// error.
+/// and DIR/pareto.json.
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub struct Crowd {

@@ -17,7 +17,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = SelectPass::new(gpu)?;
     let [(_, view), ..] = frame()?;
-    for blocks in [2, 16, 160, 1_600] {
+    for blocks in [16, 1_600] {
         let Blocks { objects, block_objects } = Blocks::new(0, &[blocks - 1]);
         let view = SelectView { blocks, ..view };
         let count = 64 * blocks as usize;

@@ -20,8 +20,8 @@ pub struct Selected {
     pub rows: [[f32; 4]; 3],
 }
 
-/// The bounding sphere of an instance, relative to the corner of a cell: centre and radius. The radius includes what
-/// rounding may do to the centre.
+/// The bounding sphere of an instance, relative to the corner of a cell: center and radius. The radius includes what
+/// rounding may do to the center.
 pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
     let ([x, y, z], at, scale) = (instance.axes(), instance.position(cell), instance.largest_scale());
     let [cx, cy, cz, radius] = instance.bounding_sphere;
@@ -38,17 +38,16 @@ pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance)
 
 /// How far a sphere reaches into the view volume; negative if it is outside.
 pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
+    let lengths = center.length() + radius;
     let depth = |side: &glam::Vec4| {
-        let slack = POSITION_SLACK * (center.length() + side.w.abs() + radius);
-        side.truncate().dot(center) + side.w + (radius + slack)
+        side.truncate().dot(center) + side.w + radius + POSITION_SLACK * (lengths + side.w.abs())
     };
-    view.planes.iter().map(depth).fold(f32::INFINITY, f32::min)
+    view.planes.iter().map(depth).fold(MAX_ALLOWED, f32::min)
 }
 
 /// The displacement that all of a view's cameras allow for a sphere, in units of a model with this largest scale.
 pub fn view_allows(view: &SelectView, center: Vec3, radius: f32, scale: f32) -> f32 {
-    let least =
-        view.cameras().iter().map(|camera| camera.allows(center, radius)).fold(f32::INFINITY, f32::min);
+    let least = view.cameras().iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
     (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)
 }
 

@@ -158,7 +158,7 @@ struct Range {
 
 impl Range {
     /// The displacement that a camera allows, and how far a sphere reaches into the view volume, change with the sphere's
-    /// radius at least as much as with the rounding of its centre; so two radii bound what rounding may decide.
+    /// radius at least as much as with the rounding of its center; so two radii bound what rounding may decide.
     fn of(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Self {
         let (center, radius) = placed_sphere(instance, view.cell);
         let scale = instance.largest_scale();

@@ -18,7 +18,7 @@ use crate::render::{Albedo, ColorTexture};
 use crate::skinning::Extent;
 use crate::skinning::frame::SkinFrame;
 use crate::skinning::instance_lod::{FadeRange, InstanceLod};
-use crate::skinning::lod::{LevelRanges, LodJob, LodPass, LodView, list_words};
+use crate::skinning::lod::{LevelRanges, LodBuffers, LodJob, LodPass, LodView, list_words};
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::vertex::Blend;
 use crate::surface::mips::Mips;
@@ -148,8 +148,13 @@ impl<'a> World<'a> {
             radius,
             levels,
         };
-        let instance_lods = &skin.crowd.instance_lods;
-        LodPass::new(gpu)?.prepare(gpu, &view, placements, instance_lods, drawn, &scene.arguments)
+        let buffers = LodBuffers {
+            placements,
+            instance_lods: &skin.crowd.instance_lods,
+            drawn,
+            arguments: &scene.arguments,
+        };
+        LodPass::new(gpu)?.prepare(gpu, &view, buffers)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::reference::lod;
-use crate::skinning::lod::{LevelRanges, LodPass, LodView, placed};
+use crate::skinning::lod::{LevelRanges, LodBuffers, LodPass, LodView, placed};
 use crate::terrain::bench::copy_of;
 
 /// Measures a field of instances of which a quarter is seen.
@@ -39,7 +39,13 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let buffer = Buffer::from_slice(gpu, "placements", &placements)?;
         let instance_lods = Buffer::from_slice(gpu, "instance_lods", &vec![InstanceLod::FULL; count])?;
         let (drawn, arguments) = (Buffer::new(gpu, "drawn", count)?, Buffer::new(gpu, "arguments", 10)?);
-        let job = pass.prepare(gpu, &view, &buffer, &instance_lods, &drawn, &arguments)?;
+        let buffers = LodBuffers {
+            placements: &buffer,
+            instance_lods: &instance_lods,
+            drawn: &drawn,
+            arguments: &arguments,
+        };
+        let job = pass.prepare(gpu, &view, buffers)?;
         // The kernel reads a placement, and writes an InstanceLod and an index.
         let copied = copy_of(gpu, 16 * count / 2)?;
         let contenders = vec![

@@ -23,7 +23,7 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{LodJob, LodPass};
+pub use pass::{LodBuffers, LodJob, LodPass};
 #[cfg(feature = "gpu")]
 pub(crate) use pass::{draws_at, numbers_at};
 

@@ -53,6 +53,21 @@ pub(crate) fn numbers_at(level: usize) -> [u64; 2] {
     draws_at(level).map(|draw| draw + offset_of!(Draw, instances) as u64)
 }
 
+/// What the decisions read and write.
+#[derive(Debug, Clone, Copy)]
+pub struct LodBuffers<'a> {
+    /// The transform of each instance from the model's space into the world.
+    pub placements: &'a Buffer<Affine>,
+    /// Written: one for each instance.
+    pub instance_lods: &'a Buffer<InstanceLod>,
+    /// Written: for each level of the view the list of instances that are seen, all together [`list_words`] words.
+    pub drawn: &'a Buffer<u32>,
+    /// Written in part: of the ten arguments of each level ([`crate::render::SkinnedScene::arguments`]), the second,
+    /// which is the number of instances in its list, and the seventh, which is the length of the list up to its last
+    /// mirrored instance.
+    pub arguments: &'a Buffer<u32>,
+}
+
 /// Decides visibility, fade and level of detail.
 #[derive(Debug, Clone)]
 pub struct LodPass {
@@ -68,22 +83,12 @@ impl LodPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the decisions for all instances. The job writes an InstanceLod for each; for each level of the
-    /// view the list of instances that are seen, all together [`list_words`] words of `drawn`; and, of the ten
-    /// `arguments` of each level ([`crate::render::SkinnedScene::arguments`]), the second, which is the number
-    /// of these instances, and the seventh, which is the length of the list up to its last mirrored instance.
+    /// Prepares the decisions for all instances.
     ///
     /// # Errors
     /// [`InputError`] for a view out of range and for buffers that are too small; [`GpuError`].
-    pub fn prepare(
-        &self,
-        gpu: &Gpu,
-        view: &LodView,
-        placements: &Buffer<Affine>,
-        instance_lods: &Buffer<InstanceLod>,
-        drawn: &Buffer<u32>,
-        arguments: &Buffer<u32>,
-    ) -> Result<LodJob, Error> {
+    pub fn prepare(&self, gpu: &Gpu, view: &LodView, buffers: LodBuffers<'_>) -> Result<LodJob, Error> {
+        let LodBuffers { placements, instance_lods, drawn, arguments } = buffers;
         view.validate()?;
         let instances = placements.len();
         instance_lods.check_holds("instance_lods", instances)?;
@@ -185,8 +190,13 @@ mod tests {
         let drawn = Buffer::new(&gpu, "drawn", list_words(4, 3)).expect("allocated");
         let arguments = Buffer::new(&gpu, "arguments", 30).expect("allocated");
         let pass = LodPass::new(&gpu).expect("compiled");
-        let prepare =
-            |view: &LodView| pass.prepare(&gpu, view, &placements, &instance_lods, &drawn, &arguments);
+        let buffers = LodBuffers {
+            placements: &placements,
+            instance_lods: &instance_lods,
+            drawn: &drawn,
+            arguments: &arguments,
+        };
+        let prepare = |view: &LodView| pass.prepare(&gpu, view, buffers);
         let lod = prepare(&view(&[1.0, 2.0])).expect("prepared");
         let seen = || {
             gpu.run("lod", |encoder| lod.record(encoder)).expect("run");

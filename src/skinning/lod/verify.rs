@@ -11,7 +11,7 @@ use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::reference::{Seen, lod, may_mirror, seen};
-use crate::skinning::lod::{LevelRanges, LodPass, LodView, list_stride, list_words, placed};
+use crate::skinning::lod::{LevelRanges, LodBuffers, LodPass, LodView, list_stride, list_words, placed};
 
 /// The arguments of a level before the decision: indices, instances and first index of two draws.
 const ARGUMENTS: [u32; 10] = [7, 99, 3, 0, 0, 7, 98, 3, 0, 0];
@@ -71,7 +71,13 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let (instance_lods, drawn) =
                 (Poisoned::<InstanceLod>::new(gpu, count)?, Poisoned::new(gpu, list_words(count, levels))?);
             let arguments = Buffer::from_slice(gpu, "arguments", &ARGUMENTS.repeat(levels))?;
-            let job = pass.prepare(gpu, &view, &buffer, &instance_lods.buffer, &drawn.buffer, &arguments)?;
+            let buffers = LodBuffers {
+                placements: &buffer,
+                instance_lods: &instance_lods.buffer,
+                drawn: &drawn.buffer,
+                arguments: &arguments,
+            };
+            let job = pass.prepare(gpu, &view, buffers)?;
             // Runs twice, because the number of instances must start again from 0.
             gpu.run("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
             let arguments = arguments.read_blocking(gpu)?;

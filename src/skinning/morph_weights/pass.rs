@@ -4,7 +4,7 @@ use super::{WeightEntry, WeightSet};
 use crate::Error;
 use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::bindings::skinning::morph_weights as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
 use crate::shared::skinning::morph_weights::MorphWeightsParams;
 use crate::skinning::buffers::SkinnedCrowd;
 
@@ -81,8 +81,21 @@ impl MorphWeightsJob {
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
+        self.set_through(&mut &*gpu, elapsed)
+    }
+
+    /// As [`MorphWeightsJob::set`], written by `upload`.
+    ///
+    /// # Errors
+    /// As [`MorphWeightsJob::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
-        Ok(self.uniform.write(gpu, &MorphWeightsParams { elapsed, ..self.params })?)
+        Ok(upload.uniform(&self.uniform, &MorphWeightsParams { elapsed, ..self.params })?)
+    }
+
+    /// Adds the weights to a compute pass that is being recorded.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.job.dispatch(pass);
     }
 
     /// Records the weights.

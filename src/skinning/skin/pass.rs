@@ -6,6 +6,7 @@ use crate::gpu::bindings::skinning::skin as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups};
 use crate::shared::skinning::skin::SkinParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
@@ -14,7 +15,18 @@ use crate::{Error, InputError};
 pub struct SkinPass {
     // Kernels for all clusters and for a list; each for the mesh's vertices and for morphed ones.
     kernels: [[Kernel; 2]; 2],
+    /// Those that write pages, for the mesh's vertices and for morphed ones.
+    paged: [Kernel; 2],
     blend: Blend,
+}
+
+/// Where vertices are written, and which.
+#[derive(Clone, Copy)]
+struct Output<'a> {
+    skinned: &'a Buffer<Vertex>,
+    active: &'a ActiveClusters,
+    /// Any buffer where vertices do not lie in pages.
+    table: &'a Buffer<u32>,
 }
 
 /// The prepared skinning of clusters that a kernel or the host selects.
@@ -27,10 +39,16 @@ impl SkinPass {
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, blend: Blend) -> Result<Self, GpuError> {
         let dual = blend == Blend::DualQuaternion;
-        let kernel =
-            |compacted, morphed| bindings::kernel(gpu, &bindings::Constants { compacted, dual, morphed });
-        let kernels = |compacted| Ok::<_, GpuError>([kernel(compacted, false)?, kernel(compacted, true)?]);
-        Ok(Self { kernels: [kernels(false)?, kernels(true)?], blend })
+        let kernels = |compacted, paged| {
+            let kernel =
+                |morphed| bindings::kernel(gpu, &bindings::Constants { compacted, dual, morphed, paged });
+            Ok::<_, GpuError>([kernel(false)?, kernel(true)?])
+        };
+        Ok(Self {
+            kernels: [kernels(false, false)?, kernels(true, false)?],
+            paged: kernels(true, true)?,
+            blend,
+        })
     }
 
     /// Prepares the skinning of a range of instances into `skinned`, one instance after the other, in the order
@@ -55,7 +73,9 @@ impl SkinPass {
         let kernel = self.kernel(false, mesh);
         let pairs = (instances.len() * mesh.clusters()) as u32;
         // One workgroup per pair of cluster and instance.
-        let group = self.bind(gpu, kernel, (mesh, crowd), instances, (skinned, &nothing))?;
+        skinned.check_holds("skinned", instances.len() * mesh.vertices.len())?;
+        let output = Output { skinned, active: &nothing, table: &nothing.pairs };
+        let group = self.bind(gpu, kernel, (mesh, crowd), instances, output)?;
         let workgroups = rows_of_workgroups(gpu, pairs);
         let step = Step { groups: vec![group], workgroups, kernel: kernel.clone() };
         Ok(Job::new(gpu, "skinning/skin", vec![step])?)
@@ -75,7 +95,29 @@ impl SkinPass {
         active: &ActiveClusters,
     ) -> Result<SkinActiveJob, Error> {
         let kernel = self.kernel(true, mesh);
-        let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, (skinned, active))?;
+        skinned.check_holds("skinned", crowd.instances * mesh.vertices.len())?;
+        let output = Output { skinned, active, table: &active.pairs };
+        let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, output)?;
+        Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
+    }
+
+    /// As [`SkinPass::prepare_active`], into the pages that [`PagesPass`](crate::skinning::pages::PagesPass) deals out.
+    /// Clusters without a page are skipped.
+    ///
+    /// # Errors
+    /// As [`SkinPass::prepare_active`].
+    pub fn prepare_paged(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        pages: &PageBuffers,
+        active: &ActiveClusters,
+    ) -> Result<SkinActiveJob, Error> {
+        let kernel = &self.paged[usize::from(mesh.targets > 0)];
+        pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
+        let output = Output { skinned: &pages.skinned, active, table: &pages.table };
+        let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, output)?;
         Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
 
@@ -89,7 +131,7 @@ impl SkinPass {
         kernel: &Kernel,
         (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
         instances: Range<usize>,
-        (skinned, active): (&Buffer<Vertex>, &ActiveClusters),
+        output: Output<'_>,
     ) -> Result<Group, Error> {
         if crowd.blend != self.blend {
             let bound = format!("must be {:?}, as the pass's", self.blend);
@@ -104,7 +146,6 @@ impl SkinPass {
         }
         let vectors = if self.blend == Blend::Linear { 3 } else { 4 };
         crowd.palette.check_holds("crowd.palette", vectors * crowd.instances * mesh.bones.len())?;
-        skinned.check_holds("skinned", instances.len() * mesh.vertices.len())?;
         let vertices = if mesh.targets > 0 { &crowd.morphed } else { &mesh.vertices };
         if mesh.targets > 0 {
             vertices.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
@@ -124,9 +165,10 @@ impl SkinPass {
             influences: mesh.influences.slice(),
             palette: crowd.palette.slice(),
             instance_lods: crowd.instance_lods.slice(),
-            pairs: active.pairs.slice(),
-            dispatched: active.dispatched.slice().cast(),
-            skinned: skinned.slice().cast(),
+            pairs: output.active.pairs.slice(),
+            dispatched: output.active.dispatched.slice().cast(),
+            skinned: output.skinned.slice().cast(),
+            page_table: output.table.slice(),
         };
         Ok(group.bind(gpu, kernel)?)
     }

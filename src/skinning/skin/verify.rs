@@ -8,9 +8,10 @@ use crate::harness::compare::Comparison;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use crate::skinning::clusters::Clusters;
+use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph::reference::morph;
+use crate::skinning::pages::{NO_PAGE, PageBuffers};
 use crate::skinning::palette::Palette;
 use crate::skinning::palette::reference::palette_for;
 use crate::skinning::skin::reference::weights::reduced;
@@ -49,6 +50,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
                 cases.add(format!("{name}, {list}"), scene.some(cases.gpu, &pass, every)?);
             }
+            cases.add(format!("{name}, in pages"), scene.paged(cases.gpu, &pass)?);
         }
     }
     Ok(())
@@ -125,6 +127,38 @@ impl Scene {
             }
         }
         Ok(output.check(gpu, |actual| self.compare(actual, &expected))?)
+    }
+
+    /// All clusters into pages that lie in reverse order; every fifth cluster has none.
+    fn paged(&self, gpu: &Gpu, pass: &SkinPass) -> Result<Comparison, Error> {
+        let (clusters, vertices) = (self.clusters.len(), self.clusters.order.len());
+        let count = clusters * INSTANCES;
+        let output = Poisoned::<Vertex>::new(gpu, CLUSTER * count)?;
+        let active = ActiveClusters::new(gpu, &self.mesh, &self.crowd)?;
+        active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
+        let has_page = |entry: usize| entry % 5 != 4;
+        let page = |entry: usize| if has_page(entry) { (count - 1 - entry) as u32 } else { NO_PAGE };
+        let mut pages = PageBuffers::new(gpu, &self.mesh, &self.crowd, 0)?;
+        pages.skinned = output.buffer.clone();
+        pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
+        let job = pass.prepare_paged(gpu, &self.mesh, &self.crowd, &pages, &active)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let mut expected = self.expected.clone();
+        let comparison = output.check(gpu, |actual| {
+            let mut found = Vec::with_capacity(expected.len());
+            for (instance, expected) in expected.chunks_mut(vertices).enumerate() {
+                for (slot, vertex) in self.clusters.order.iter().enumerate() {
+                    let entry = instance * clusters + slot / CLUSTER;
+                    // Clusters without a page leave no trace; what lies in pages without a cluster is compared too.
+                    if !has_page(entry) {
+                        expected[*vertex as usize] = Expected::untouched();
+                    }
+                    found.push(actual[CLUSTER * (count - 1 - entry) + slot % CLUSTER]);
+                }
+            }
+            self.compare(&found, &expected)
+        })?;
+        Ok(comparison)
     }
 
     fn compare(&self, actual: &[Vertex], expected: &[Expected]) -> Comparison {

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::despike::reference::despike;
-use crate::terrain::despike::{Despike, DespikePass};
+use crate::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 
@@ -19,7 +19,8 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let cropped = Fields::new(gpu, "cropped", width - 2, count)?;
     let features = FeatureIndex::new(gpu, &[width], count, 0)?;
     let params = Despike { threshold: 1.0 };
-    let job = DespikePass::new(gpu, false)?.prepare(gpu, params, &windows, &features, &cropped)?;
+    let buffers = DespikeBuffers { windows: &windows, features: &features, cropped: &cropped };
+    let job = DespikePass::new(gpu, false)?.prepare(gpu, params, buffers)?;
     let copied = copy_of(gpu, cropped.heights.len())?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),

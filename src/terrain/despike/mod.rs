@@ -12,7 +12,7 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::DespikePass;
+pub use pass::{DespikeBuffers, DespikePass};
 
 /// Replaces every point that is further than `threshold` from the mean of its four neighbours by that mean.
 /// Injected points are left alone. A result depends on samples at most one sample away.

@@ -8,6 +8,17 @@ use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
 
+/// What despiking reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub struct DespikeBuffers<'a> {
+    /// The windows.
+    pub windows: &'a Fields,
+    /// The injected points, which despiking leaves alone; grid 0 covers the windows.
+    pub features: &'a FeatureIndex,
+    /// Written: the despiked windows, one sample smaller on every side.
+    pub cropped: &'a Fields,
+}
+
 /// Removes spikes.
 #[derive(Debug, Clone)]
 pub struct DespikePass {
@@ -25,20 +36,13 @@ impl DespikePass {
         Ok(Self { kernel: bindings::kernel(gpu, &constants)? })
     }
 
-    /// Prepares the despiking of `windows` into `cropped`, whose fields are one sample smaller on every side.
-    /// Grid 0 of `features` covers the windows.
+    /// Prepares the despiking of windows.
     ///
     /// # Errors
     /// [`InputError`] for a threshold out of bounds, for windows with nothing inside the outermost ring, for
     /// features of other windows, and for an output that is too short; [`GpuError`].
-    pub fn prepare(
-        &self,
-        gpu: &Gpu,
-        despike: Despike,
-        windows: &Fields,
-        features: &FeatureIndex,
-        cropped: &Fields,
-    ) -> Result<Job, Error> {
+    pub fn prepare(&self, gpu: &Gpu, despike: Despike, buffers: DespikeBuffers<'_>) -> Result<Job, Error> {
+        let DespikeBuffers { windows, features, cropped } = buffers;
         despike.validate()?;
         windows.check("windows", 1)?;
         cropped.heights.check_holds("cropped.heights", windows.points(1))?;

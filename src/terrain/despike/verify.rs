@@ -5,7 +5,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::terrain::despike::reference::despike;
-use crate::terrain::despike::{Despike, DespikePass};
+use crate::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::{LIMIT, random_heights, random_words};
@@ -61,7 +61,8 @@ fn check(
         let marked = marks[window as usize].iter().enumerate().filter(|(_, marked)| **marked);
         marked.map(|(at, _)| (at as u32 % width + 1, at as u32 / width + 1, 7)).collect()
     })?;
-    let job = pass.prepare(gpu, params, &windows, &index, &cropped)?;
+    let buffers = DespikeBuffers { windows: &windows, features: &index, cropped: &cropped };
+    let job = pass.prepare(gpu, params, buffers)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = (heights.chunks_exact(points).zip(&marks))
         .flat_map(|(window, marks)| {

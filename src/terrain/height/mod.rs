@@ -1,8 +1,12 @@
 //! Heights of a window onto the diamond-square surface of the whole plane (B section 3.3.1), for `seamless`
 //! terrain. All arithmetic is on integers: every device computes the same bits.
 
+#[cfg(feature = "gpu")]
+mod batch;
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+mod job;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
@@ -10,7 +14,10 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-#[cfg(feature = "verify")]
+pub use batch::HeightBatch;
+#[cfg(feature = "gpu")]
+pub use job::{HeightJob, HeightScratch};
+#[cfg(all(feature = "gpu", any(test, feature = "verify")))]
 pub(crate) use pass::Blocks;
 #[cfg(feature = "gpu")]
-pub use pass::{HeightBatch, HeightJob, HeightPass, HeightScratch};
+pub use pass::HeightPass;

@@ -5,7 +5,7 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::{copy_of, some_heights};
 use crate::terrain::morph::reference::morph;
-use crate::terrain::morph::{Morph, MorphPass};
+use crate::terrain::morph::{Morph, MorphBuffers, MorphPass};
 
 /// Measures as many points as a batch of 64 patches of 257² has.
 ///
@@ -17,7 +17,8 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (from, to) = (some_heights(points), some_heights(points));
     let buffers = [Buffer::from_slice(gpu, "from", &from)?, Buffer::from_slice(gpu, "to", &to)?];
     let heights = Buffer::new(gpu, "heights", points)?;
-    let job = MorphPass::new(gpu)?.prepare(gpu, &buffers[0], &buffers[1], &heights)?;
+    let buffers = MorphBuffers { from: &buffers[0], to: &buffers[1], heights: &heights };
+    let job = MorphPass::new(gpu)?.prepare(gpu, buffers)?;
     let params = Morph { time: 0.3 };
     job.set(gpu, params)?;
     // The kernel reads two words and writes one per point, which is one and a half copies.

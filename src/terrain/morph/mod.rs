@@ -12,7 +12,7 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{MorphJob, MorphPass};
+pub use pass::{MorphBuffers, MorphJob, MorphPass};
 
 /// A blend of two fields: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
 /// computes the same bits in between.

@@ -6,6 +6,17 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
 
+/// What a blend reads and writes: heights in 1/65536 units, as many in each buffer.
+#[derive(Debug, Clone, Copy)]
+pub struct MorphBuffers<'a> {
+    /// The heights at time 0.
+    pub from: &'a Buffer<i32>,
+    /// The heights at time 1.
+    pub to: &'a Buffer<i32>,
+    /// Written: the heights at the time that is set.
+    pub heights: &'a Buffer<i32>,
+}
+
 /// Blends two height fields.
 #[derive(Debug, Clone)]
 pub struct MorphPass {
@@ -21,17 +32,12 @@ impl MorphPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the blend of `from` and `to` into `heights`; all three have one length.
+    /// Prepares a blend.
     ///
     /// # Errors
     /// [`InputError`] for buffers of different lengths; [`GpuError`].
-    pub fn prepare(
-        &self,
-        gpu: &Gpu,
-        from: &Buffer<i32>,
-        to: &Buffer<i32>,
-        heights: &Buffer<i32>,
-    ) -> Result<MorphJob, Error> {
+    pub fn prepare(&self, gpu: &Gpu, buffers: MorphBuffers<'_>) -> Result<MorphJob, Error> {
+        let MorphBuffers { from, to, heights } = buffers;
         for (field, len) in [("to.len", to.len()), ("heights.len", heights.len())] {
             if len != from.len() {
                 let bound = format!("must be {}, as from.len", from.len());

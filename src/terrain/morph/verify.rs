@@ -6,7 +6,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::terrain::morph::reference::morph;
-use crate::terrain::morph::{Morph, MorphPass};
+use crate::terrain::morph::{Morph, MorphBuffers, MorphPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
 /// The cases cover both ends and times between, lengths around workgroup boundaries, heights at the limit.
@@ -23,7 +23,8 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         for time in [0.0, 1.0 / 65_536.0, 0.25, 0.7, 1.0] {
             let output = Poisoned::new(gpu, from.len())?;
             let heights = Buffer::new(gpu, "heights", from.len())?;
-            let job = pass.prepare(gpu, &buffers[0], &buffers[1], &heights)?;
+            let job =
+                pass.prepare(gpu, MorphBuffers { from: &buffers[0], to: &buffers[1], heights: &heights })?;
             let params = Morph { time };
             job.set(gpu, params)?;
             heights.write(gpu, &vec![crate::harness::poison::POISON as i32; from.len()])?;

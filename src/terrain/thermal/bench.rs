@@ -5,7 +5,7 @@ use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::fields::Fields;
 use crate::terrain::thermal::reference::thermal;
-use crate::terrain::thermal::{Thermal, ThermalPass};
+use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 
 /// Measures one iteration of a batch of 64 patches, and fifty of one field of 513².
 ///
@@ -21,7 +21,12 @@ fn case(bench: &mut Bench<'_>, name: &str, [width, count]: [u32; 2], iterations:
     let (host, windows) = some_windows(gpu, width, count)?;
     let other = Fields::new(gpu, "other", width, count)?;
     let params = Thermal { iterations, ..Thermal::default() };
-    let job = ThermalPass::new(gpu)?.prepare(gpu, params, 1.0, &windows, &other)?;
+    let job = ThermalPass::new(gpu)?.prepare(
+        gpu,
+        params,
+        1.0,
+        ThermalBuffers { windows: &windows, other: &other },
+    )?;
     let points = (0..iterations).map(|i| ((width - 2 * i - 2).pow(2) * count) as usize).sum::<usize>();
     let copied = copy_of(gpu, points / iterations as usize)?;
     let contenders = vec![

@@ -12,7 +12,7 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::ThermalPass;
+pub use pass::{ThermalBuffers, ThermalPass};
 
 /// In every iteration, each pair of 4-neighbours whose heights differ by more than the talus angle allows moves
 /// an eighth of the excess downhill. Mass is conserved to the last bit. An iteration reads samples at most one

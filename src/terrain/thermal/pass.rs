@@ -8,6 +8,15 @@ use crate::shared::terrain::thermal::ThermalParams;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
+/// What erosion reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub struct ThermalBuffers<'a> {
+    /// Read and written: the windows.
+    pub windows: &'a Fields,
+    /// Written: fields with room for as many windows that are a sample smaller on every side.
+    pub other: &'a Fields,
+}
+
 /// Applies thermal erosion.
 #[derive(Debug, Clone)]
 pub struct ThermalPass {
@@ -23,8 +32,8 @@ impl ThermalPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares all iterations, which alternate between `windows` and the equally large `other`. Each iteration
-    /// drops the outermost ring of samples. The result lies in `windows` if the number of iterations is even,
+    /// Prepares all iterations, which alternate between `windows` and `other`. Each iteration drops the outermost
+    /// ring of samples. The result lies in `windows` if the number of iterations is even,
     /// else in `other`.
     ///
     /// # Errors
@@ -35,9 +44,9 @@ impl ThermalPass {
         gpu: &Gpu,
         thermal: Thermal,
         terrain_scale: f64,
-        windows: &Fields,
-        other: &Fields,
+        buffers: ThermalBuffers<'_>,
     ) -> Result<Job, Error> {
+        let ThermalBuffers { windows, other } = buffers;
         thermal.validate()?;
         check_terrain_scale(terrain_scale)?;
         windows.check("windows", thermal.iterations)?;

@@ -7,7 +7,7 @@ use crate::harness::poison::POISON;
 use crate::harness::poison::Poisoned;
 use crate::terrain::fields::Fields;
 use crate::terrain::thermal::reference::thermal;
-use crate::terrain::thermal::{Thermal, ThermalPass};
+use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use crate::terrain::verify::{LIMIT, random_heights};
 
 /// The cases cover odd and even numbers of iterations, angles from 0 up, and heights at the limit.
@@ -27,7 +27,8 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let [windows, other] =
                     [0, 1].map(|i| Fields { heights: outputs[i].buffer.clone(), width, count });
                 windows.heights.write(gpu, &fields)?;
-                let job = pass.prepare(gpu, params, 1.0, &windows, &other)?;
+                let job =
+                    pass.prepare(gpu, params, 1.0, ThermalBuffers { windows: &windows, other: &other })?;
                 gpu.run("verify", |encoder| job.record(encoder))?;
                 // What the iterations leave in the first part of either buffer, over its previous contents.
                 let mut expected = [fields.clone(), vec![POISON as i32; fields.len()]];

@@ -9,7 +9,7 @@ use crate::terrain::bench::copy_of;
 use crate::terrain::config::{Border, Config, Offset};
 use crate::terrain::features::Features;
 use crate::terrain::wrap::reference::wrap;
-use crate::terrain::wrap::{WrapJob, WrapPass};
+use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 
 /// Measures a batch of 64 patches.
 ///
@@ -23,7 +23,8 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let points = (count * size * size) as usize;
     let output = Buffer::new(gpu, "heights", points)?;
     let scratch = Buffer::new(gpu, "scratch", WrapJob::scratch_points(&config, count))?;
-    let job = WrapPass::new(gpu, Offset::Signed, None)?.prepare(gpu, &config, count, 0, &output, &scratch)?;
+    let buffers = WrapBuffers { output: &output, scratch: &scratch };
+    let job = WrapPass::new(gpu, Offset::Signed, None)?.prepare(gpu, &config, count, 0, buffers)?;
     let features = Features::default();
     job.set(gpu, &patches, &features)?;
     let copied = copy_of(gpu, points)?;

@@ -10,4 +10,4 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub use pass::{WrapJob, WrapPass};
+pub use pass::{WrapBuffers, WrapJob, WrapPass};

@@ -11,6 +11,15 @@ use crate::terrain::fixed::FeatureMode;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
 
+/// What generation writes.
+#[derive(Debug, Clone, Copy)]
+pub struct WrapBuffers<'a> {
+    /// The result: patchSize² heights per patch, in 1/65536 units, patch by patch.
+    pub output: &'a Buffer<i32>,
+    /// Room for [`WrapJob::scratch_points`] heights of other levels.
+    pub scratch: &'a Buffer<i32>,
+}
+
 /// Diamond-square heights of patches that are generated alone. A pass is compiled for one distribution and one
 /// mode of injection.
 #[derive(Debug, Clone)]
@@ -34,9 +43,7 @@ impl WrapPass {
         Ok(Self { first: kernel(true)?, next: kernel(false)?, with_features: features.is_some() })
     }
 
-    /// Prepares the generation of `count` patches into `output`, which holds patchSize² heights per patch.
-    /// `scratch` holds [`WrapJob::scratch_points`] heights, and `feature_capacity` is the largest number of
-    /// injected points.
+    /// Prepares the generation of `count` patches. `feature_capacity` is the largest number of injected points.
     ///
     /// # Errors
     /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short;
@@ -47,9 +54,9 @@ impl WrapPass {
         config: &Config,
         count: u32,
         feature_capacity: usize,
-        output: &Buffer<i32>,
-        scratch: &Buffer<i32>,
+        buffers: WrapBuffers<'_>,
     ) -> Result<WrapJob, Error> {
+        let WrapBuffers { output, scratch } = buffers;
         config.validate()?;
         if config.border == Border::Seamless {
             let bound = "must be \"wrap\" or {\"blend\": samples} for patches by themselves";

@@ -12,7 +12,7 @@ use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::verify::{config, scattered};
 use crate::terrain::wrap::reference::wrap;
-use crate::terrain::wrap::{WrapJob, WrapPass};
+use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 
 /// The cases cover every size and distribution, equal and unequal corners, features.
 ///
@@ -55,7 +55,8 @@ fn check(
     let count = patches.len() as u32;
     let output = Poisoned::new(gpu, patches.len() * (config.patch_size as usize).pow(2))?;
     let scratch = Buffer::new(gpu, "scratch", WrapJob::scratch_points(config, count))?;
-    let job = pass.prepare(gpu, config, count, features.len(), &output.buffer, &scratch)?;
+    let buffers = WrapBuffers { output: &output.buffer, scratch: &scratch };
+    let job = pass.prepare(gpu, config, count, features.len(), buffers)?;
     job.set(gpu, patches, features)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = patches.iter().flat_map(|&patch| wrap(config, features, patch)).collect();

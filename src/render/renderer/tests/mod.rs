@@ -4,5 +4,6 @@ mod formats;
 mod layers;
 mod mesh;
 mod relief;
+mod shading;
 mod stage;
 mod terrain;

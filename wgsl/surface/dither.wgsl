@@ -1,7 +1,8 @@
 // Transparency by a pattern of opaque pixels.
 
-// The rank of a pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973), between 0 and 1.
-fn screen(place: vec2<u32>) -> f32 {
+// The threshold for a pixel: those with an alpha below it are not drawn. It is the rank of the pixel's position in a 4 × 4
+// ordered-dither matrix (Bayer 1973), between 0 and 1.
+fn surface_dither_threshold(place: vec2<u32>) -> f32 {
     let fine = place & vec2<u32>(1u);
     let coarse = (place >> vec2<u32>(1u)) & vec2<u32>(1u);
     let rank = 8u * (fine.x ^ fine.y) + 4u * fine.y + 2u * (coarse.x ^ coarse.y) + coarse.y;

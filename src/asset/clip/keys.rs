@@ -1,0 +1,137 @@
+//! The keys of one track, and the form in which clips store them.
+
+use crate::InputError;
+use crate::asset::transform::{finite, unit};
+use crate::shared::animation::interpolation;
+
+/// The largest key time, in seconds: about 12 days.
+pub const LONGEST: f32 = 1_048_576.0;
+
+/// Smaller key times count as 0; seconds.
+const LEAST_TIME: f32 = 7.888_609e-31;
+
+/// How values between keys are interpolated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Interpolation {
+    /// The value of the previous key.
+    Step = interpolation::INTERPOLATION_STEP,
+    /// Linear interpolation; for rotations, along the shortest arc.
+    Linear = interpolation::INTERPOLATION_LINEAR,
+    /// A cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized
+    /// afterwards.
+    CubicSpline = interpolation::INTERPOLATION_SPLINE,
+}
+
+/// The keys of one track, as an importer gives them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Keys {
+    /// Key times in seconds, not descending.
+    pub times: Vec<f32>,
+    /// One value per key; in cubic splines three: in-tangent, value, out-tangent. The fourth component of
+    /// translations and scales is 0.
+    pub values: Vec<[f32; 4]>,
+    /// How values between keys are interpolated.
+    pub interpolation: Interpolation,
+}
+
+impl Keys {
+    /// Checks times and values of translations, scales or, if `is_rotation`, quaternions. `times` and `values`
+    /// are the paths of these fields in errors.
+    ///
+    /// # Errors
+    /// [`InputError`] for no keys; for times that descend, are negative, too large or not finite; for a number
+    /// of values that is not one per key (three in splines); for values that are not finite; and for rotations
+    /// without a direction.
+    pub(crate) fn validate(&self, [times, values]: [&str; 2], is_rotation: bool) -> Result<(), InputError> {
+        check_times(times, &self.times)?;
+        let each = self.values_a_key();
+        if self.values.len() != each * self.times.len() {
+            let bound = format!("must be {}, {each} a key", each * self.times.len());
+            return Err(InputError::new(format!("{values}.len"), self.values.len(), bound));
+        }
+        for (at, value) in self.values.iter().enumerate() {
+            let path = format!("{values}[{at}]");
+            finite(&path, value)?;
+            if is_rotation && (each == 1 || at % 3 == 1) {
+                unit(&path, *value)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn values_a_key(&self) -> usize {
+        if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
+    }
+
+    /// The keys in the form in which a clip stores them; the keys must be valid.
+    ///
+    /// # Errors
+    /// [`InputError`] for tangents that exceed `f32` when they are multiplied by their seconds.
+    pub(crate) fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
+        let mut keys = self.clone();
+        keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
+        match self.interpolation {
+            Interpolation::CubicSpline => {
+                stretch_tangents(&keys.times, &mut keys.values);
+                finite(path, keys.values.as_flattened())?;
+            }
+            _ if is_rotation => {
+                for value in &mut keys.values {
+                    *value = unit(path, *value)?;
+                }
+                if self.interpolation == Interpolation::Linear {
+                    take_short_ways(&mut keys.values);
+                }
+            }
+            _ => {}
+        }
+        Ok(keys)
+    }
+}
+
+/// Refuses an empty list of times, and times that descend or are out of range.
+pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
+    if times.is_empty() {
+        return Err(InputError::new(format!("{path}.len"), 0, "must be at least 1"));
+    }
+    if u32::try_from(times.len()).is_err() {
+        return Err(InputError::new(
+            format!("{path}.len"),
+            times.len(),
+            format!("must be at most {}", u32::MAX),
+        ));
+    }
+    if let Some(at) = times.iter().position(|time| !(0.0..=LONGEST).contains(time)) {
+        let bound = format!("must be in 0..={LONGEST} seconds");
+        return Err(InputError::new(format!("{path}[{at}]"), times[at], bound));
+    }
+    match times.windows(2).position(|pair| pair[0] > pair[1]) {
+        None => Ok(()),
+        Some(at) => {
+            let bound = format!("must not be below the time before it, {}", times[at]);
+            Err(InputError::new(format!("{path}[{}]", at + 1), times[at + 1], bound))
+        }
+    }
+}
+
+/// Gives each quaternion the sign that is closer to the previous one.
+fn take_short_ways(values: &mut [[f32; 4]]) {
+    for at in 1..values.len() {
+        let (before, here) = (values[at - 1], values[at]);
+        let dot: f64 = before.iter().zip(here).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
+        if dot < 0.0 {
+            values[at] = here.map(|component| -component);
+        }
+    }
+}
+
+/// Multiplies tangents by the seconds between their key and the adjacent key on their side, as the spline's
+/// formula needs them.
+fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
+    for (key, pair) in times.windows(2).enumerate() {
+        for at in [3 * key + 2, 3 * key + 3] {
+            values[at] = values[at].map(|tangent| tangent * (pair[1] - pair[0]));
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! Reads a primitive: vertices, triangles, influences and morph targets.
+
+use gltf_json::Index;
+use gltf_json::accessor::Accessor;
+use gltf_json::material::Material as GltfMaterial;
+use gltf_json::mesh::{Mode, MorphTarget as GltfTarget, Primitive, Semantic};
+use gltf_json::validation::Checked;
+
+use super::document::Document;
+use super::materials::Coordinates;
+use super::tangents::{Surface, Tangents};
+use crate::InputError;
+use crate::asset::influences::{Influence, Influences};
+use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals};
+use crate::asset::morph::{MorphDelta, MorphTarget};
+use crate::asset::skeleton::Skin;
+
+/// Elements charged per vertex for data that the file may lack and the import adds: normal, tangent, texture
+/// coordinates and influence.
+const LACKING: usize = 4;
+
+/// A primitive, with its path in the file.
+pub(super) struct Reader<'a, 'd> {
+    pub(super) document: &'a Document<'d>,
+    pub(super) primitive: &'a Primitive,
+    pub(super) path: String,
+    /// Whether the node has no skin.
+    pub(super) is_rigid: bool,
+    /// Whether materials are left out.
+    pub(super) is_bare: bool,
+}
+
+impl Reader<'_, '_> {
+    /// The primitive as a mesh of skin 0 without a name, a material and weights, for a `skin` with its bones and
+    /// as many morph `targets` as the mesh's first primitive has.
+    pub(super) fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
+        let Some(positions) = self.accessor(&Semantic::Positions) else {
+            return Err(InputError::new(self.named("POSITION"), "missing", "must be given"));
+        };
+        let positions = self.document.attributes::<3>(positions)?;
+        if positions.len() > MAX_VERTICES {
+            let bound = format!("must be at most {MAX_VERTICES}");
+            return Err(InputError::new(format!("{}.count", self.named("POSITION")), positions.len(), bound));
+        }
+        in_range(&self.named("POSITION"), &positions)?;
+        let vertices = positions.len();
+        self.document.budget.spend(&self.named("POSITION"), LACKING * vertices)?;
+        let uv = self.coordinates(vertices)?;
+        let indices = self.triangles(vertices)?;
+        let normals = self.normals(&positions, &indices)?;
+        let tangents = self.tangents(&positions, &normals, uv.as_deref(), &indices)?;
+        self.check_copies(vertices, tangents.copied.len())?;
+        let influences = match self.is_rigid {
+            true => {
+                let one = Influence { bone: 0, weight: 1.0 };
+                Influences::new(&self.named("POSITION"), 1, (0..vertices).map(|_| vec![one]))?
+            }
+            false => self.influences(vertices, skin.bones.len())?,
+        };
+        let targets = self.targets(vertices, targets)?;
+        let name = String::new();
+        let (weights, weight_keys) = (vec![], vec![]);
+        let mut mesh = Mesh {
+            name,
+            skin: 0,
+            normals,
+            tangents: vec![],
+            uv: uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]),
+            positions,
+            indices: vec![],
+            double_sided: self.material().is_some_and(|material| material.double_sided),
+            material: None,
+            influences,
+            targets,
+            weights,
+            weight_keys,
+            levels: vec![],
+        };
+        tangents.apply(&mut mesh);
+        Ok(mesh)
+    }
+
+    /// The file's tangents, if the file also has the normals and texture coordinates that belong to them;
+    /// otherwise those of MikkTSpace.
+    fn tangents(
+        &self,
+        positions: &[[f32; 3]],
+        normals: &[[f32; 3]],
+        uv: Option<&[[f32; 2]]>,
+        indices: &[u32],
+    ) -> Result<Tangents, InputError> {
+        let vertices = positions.len();
+        let given = self.attribute::<4>(&Semantic::Tangents, "TANGENT", vertices)?;
+        let of_normals = self.coordinates_of_normals(vertices)?;
+        let uv = of_normals.as_deref().or(uv);
+        let has_normals = self.accessor(&Semantic::Normals).is_some();
+        if let Some(given) = given.filter(|_| uv.is_some() && has_normals) {
+            let tangents = given.into_iter().map(flipped).collect();
+            return Ok(Tangents { tangents, indices: indices.to_vec(), copied: vec![] });
+        }
+        let surface = |uv| Surface { positions, normals, uv, indices };
+        match uv {
+            Some(uv) if !self.is_bare => surface(uv).generated(),
+            Some(uv) => surface(uv).solved(),
+            None => surface(&vec![[0.0; 2]; vertices]).solved(),
+        }
+    }
+
+    fn check_copies(&self, vertices: usize, copies: usize) -> Result<(), InputError> {
+        let path = self.named("POSITION");
+        if vertices + copies > MAX_VERTICES {
+            let bound = format!("with {copies} copies for tangents must be at most {MAX_VERTICES}");
+            return Err(InputError::new(format!("{path}.count"), vertices, bound));
+        }
+        self.document.budget.spend(&path, LACKING * copies)
+    }
+
+    fn material(&self) -> Option<&GltfMaterial> {
+        self.primitive.material.map(|material| &self.document.root.materials[material.value()])
+    }
+
+    /// The coordinates of the base colour's texture, which must exist, or of the normal map if there is no such
+    /// texture; without either the first set, if there is one.
+    fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
+        let Some(texture) = self.coordinates_of_material() else {
+            return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
+        };
+        let name = format!("TEXCOORD_{}", texture.set);
+        let Some(mut uv) = self.attribute::<2>(&Semantic::TexCoords(texture.set), &name, vertices)? else {
+            let bound = "must be given: the material's texture is read there";
+            return Err(InputError::new(self.named(&name), "missing", bound));
+        };
+        texture.apply(&mut uv);
+        in_range(&self.named(&name), &uv)?;
+        Ok(Some(uv))
+    }
+
+    /// Where the material's textures are read.
+    fn coordinates_of_material(&self) -> Option<Coordinates<'_>> {
+        let index = self.primitive.material.filter(|_| !self.is_bare)?;
+        let of_color = Coordinates::of_color(&self.document.root.materials[index.value()]);
+        of_color.or_else(|| Coordinates::of_normals(self.document, index))
+    }
+
+    /// The coordinates along which tangents run, untransformed, if they differ from the mesh's: those of the
+    /// normal texture, or those of the base colour's texture if that has a transform.
+    fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
+        let Some(index) = self.primitive.material.filter(|_| !self.is_bare) else { return Ok(None) };
+        let of_mesh = self.coordinates_of_material();
+        let (own, is_moved) = of_mesh.map_or((0, false), |of_mesh| (of_mesh.set, of_mesh.is_moved()));
+        let of_normals = Coordinates::of_normals(self.document, index).map(|texture| texture.set);
+        let is_there = |set: &u32| self.accessor(&Semantic::TexCoords(*set)).is_some();
+        let set = of_normals.filter(is_there).unwrap_or(own);
+        if set == own && !is_moved {
+            return Ok(None);
+        }
+        self.attribute::<2>(&Semantic::TexCoords(set), &format!("TEXCOORD_{set}"), vertices)
+    }
+
+    fn named(&self, attribute: &str) -> String {
+        format!("{}.attributes.{attribute}", self.path)
+    }
+
+    fn accessor(&self, semantic: &Semantic) -> Option<Index<Accessor>> {
+        self.primitive.attributes.get(&Checked::Valid(semantic.clone())).copied()
+    }
+
+    /// An attribute with one value per vertex, in range, or `None` if the primitive lacks it.
+    fn attribute<const N: usize>(
+        &self,
+        semantic: &Semantic,
+        name: &str,
+        vertices: usize,
+    ) -> Result<Option<Vec<[f32; N]>>, InputError> {
+        let Some(accessor) = self.accessor(semantic) else { return Ok(None) };
+        let values = self.document.attributes::<N>(accessor)?;
+        self.one_a_vertex(&self.named(name), values.len(), vertices)?;
+        in_range(&self.named(name), &values)?;
+        Ok(Some(values))
+    }
+
+    fn one_a_vertex(&self, path: &str, count: usize, vertices: usize) -> Result<(), InputError> {
+        if count == vertices {
+            return Ok(());
+        }
+        Err(InputError::new(format!("{path}.count"), count, format!("must be {vertices}, one a vertex")))
+    }
+
+    /// Unit normals: the file's. If the file has none, or one without length, they are computed from the
+    /// triangles.
+    fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
+        let Some(given) = self.attribute::<3>(&Semantic::Normals, "NORMAL", positions.len())? else {
+            return Ok(smooth_normals(positions, indices));
+        };
+        let length = |normal: &[f32; 3]| normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
+        let unit = |normal: [f32; 3]| match length(&normal) {
+            // Normals of about unit length are kept as they are, to avoid a second rounding.
+            length if (length - 1.0).abs() < 1e-3 => Some(normal),
+            length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
+            _ => None,
+        };
+        let units: Vec<_> = given.into_iter().map(unit).collect();
+        if units.iter().all(Option::is_some) {
+            return Ok(units.into_iter().flatten().collect());
+        }
+        let smooth = smooth_normals(positions, indices);
+        Ok(units.into_iter().zip(smooth).map(|(unit, smooth)| unit.unwrap_or(smooth)).collect())
+    }
+
+    /// Reads all sets of four joints and weights.
+    fn influences(&self, vertices: usize, bones: usize) -> Result<Influences, InputError> {
+        let mut all: Vec<Vec<Influence>> = vec![Vec::with_capacity(4); vertices];
+        for set in 0.. {
+            let (joints_name, weights_name) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
+            let (joints, weights) =
+                match [Semantic::Joints(set), Semantic::Weights(set)].map(|s| self.accessor(&s)) {
+                    [Some(joints), Some(weights)] => (joints, weights),
+                    [None, None] if set > 0 => break,
+                    [joints, _] => {
+                        let lacking = if joints.is_none() { joints_name } else { weights_name };
+                        let bound = "must be given: meshes of nodes with a skin follow joints";
+                        return Err(InputError::new(self.named(&lacking), "missing", bound));
+                    }
+                };
+            let (joints, weights) =
+                (self.document.integers::<4>(joints)?, self.document.vectors::<4>(weights)?);
+            self.one_a_vertex(&self.named(&joints_name), joints.len(), vertices)?;
+            self.one_a_vertex(&self.named(&weights_name), weights.len(), vertices)?;
+            for (all, (joints, weights)) in all.iter_mut().zip(joints.iter().zip(&weights)) {
+                all.extend(joints.iter().zip(weights).map(|(&bone, &weight)| Influence { bone, weight }));
+            }
+        }
+        Influences::new(&self.named("WEIGHTS_0"), bones, all)
+    }
+
+    /// Converts lists, strips and fans to lists. Points and lines give no triangles.
+    fn triangles(&self, vertices: usize) -> Result<Vec<u32>, InputError> {
+        let indices: Vec<u32> = match self.primitive.indices {
+            Some(accessor) => self.document.integers::<1>(accessor)?.into_iter().flatten().collect(),
+            None => (0..vertices as u32).collect(),
+        };
+        if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
+            let bound = format!("must be below {vertices}, the number of vertices");
+            return Err(InputError::new(format!("{}.indices[{at}]", self.path), indices[at], bound));
+        }
+        let Checked::Valid(mode) = self.primitive.mode else {
+            return Err(InputError::new(format!("{}.mode", self.path), "unknown", "must be one of glTF's"));
+        };
+        // Strips and fans have one triangle per index.
+        self.document.budget.spend(&self.path, 3 * indices.len())?;
+        // Strips are joined by triangles without area.
+        let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
+        let corners = |at: usize| [indices[at], indices[at + 1], indices[at + 2]];
+        let windows = 0..indices.len().saturating_sub(2);
+        Ok(match mode {
+            Mode::Triangles if !indices.len().is_multiple_of(3) => {
+                let bound = "must be a multiple of 3 for triangles";
+                return Err(InputError::new(format!("{}.indices.count", self.path), indices.len(), bound));
+            }
+            Mode::Triangles => indices,
+            Mode::TriangleStrip => {
+                let turned = |at: usize| match (at % 2, corners(at)) {
+                    (0, triangle) => triangle,
+                    (_, [a, b, c]) => [b, a, c],
+                };
+                windows.map(turned).filter(|triangle| !is_flat(triangle)).flatten().collect()
+            }
+            Mode::TriangleFan => {
+                let fan = |at: usize| [indices[0], indices[at + 1], indices[at + 2]];
+                windows.map(fan).filter(|triangle| !is_flat(triangle)).flatten().collect()
+            }
+            _ => Vec::new(),
+        })
+    }
+
+    fn targets(&self, vertices: usize, expected: usize) -> Result<Vec<MorphTarget>, InputError> {
+        let targets = self.primitive.targets.as_deref().unwrap_or_default();
+        if targets.len() != expected {
+            let bound = format!("must be {expected}, as many as the mesh's first primitive has");
+            return Err(InputError::new(format!("{}.targets.len", self.path), targets.len(), bound));
+        }
+        targets.iter().enumerate().map(|(at, target)| self.target(vertices, at, target)).collect()
+    }
+
+    fn target(&self, vertices: usize, at: usize, target: &GltfTarget) -> Result<MorphTarget, InputError> {
+        self.document.budget.spend(&format!("{}.targets[{at}]", self.path), 1 + vertices)?;
+        let mut deltas = vec![MorphDelta::default(); vertices];
+        let mut add = |name: &str, accessor: Option<Index<Accessor>>, set: fn(&mut MorphDelta, [f32; 3])| {
+            let Some(accessor) = accessor else { return Ok(()) };
+            let values = self.document.attributes::<3>(accessor)?;
+            let path = format!("{}.targets[{at}].{name}", self.path);
+            self.one_a_vertex(&path, values.len(), vertices)?;
+            in_range(&path, &values)?;
+            deltas.iter_mut().zip(values).for_each(|(delta, value)| set(delta, value));
+            Ok(())
+        };
+        add("POSITION", target.positions, |delta, value| delta.position = value)?;
+        add("NORMAL", target.normals, |delta, value| delta.normal = value)?;
+        add("TANGENT", target.tangents, |delta, value| delta.tangent = value)?;
+        Ok(MorphTarget::new(&deltas))
+    }
+}
+
+/// Converts between glTF's handedness and this crate's: glTF's bitangent points up in the image.
+fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+    [x, y, z, if w < 0.0 { 1.0 } else { -1.0 }]
+}

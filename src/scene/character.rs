@@ -1,0 +1,264 @@
+//! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
+
+use crate::animation::crowd::{ClipBuffers, Crowd};
+use crate::animation::frame::GatedFrame;
+use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
+use crate::asset::Model;
+use crate::asset::mesh::bone_radii;
+use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
+use crate::lod::assign::{AssignBuffers, AssignPass};
+use crate::scene::Shares;
+use crate::scene::drawable::Drawable;
+use crate::scene::instances::Changed;
+use crate::scene::layout::{Layout, ObjectRange, error_vectors};
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::mesh;
+use crate::scene::placement::Play;
+use crate::shared::lod::assign::AssignParams;
+use crate::shared::lod::object::SceneDraw;
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::clusters::CLUSTER;
+use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::merged::Merged;
+use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
+use crate::skinning::paged::PagedSkin;
+use crate::skinning::{Extent, poses_of};
+use crate::{Error, InputError};
+
+/// The time in seconds after which starts are counted from a later moment, because `f32` seconds lose precision.
+const EPOCH: f64 = 128.0;
+
+/// A character and all of its instances.
+#[derive(Debug)]
+pub(super) struct Character {
+    merged: Merged,
+    set: ClipSet,
+    gate: Gate,
+    /// Metres of the model per unit of the gate's table.
+    unit: f32,
+    /// The displacement of vertices per step of the fade of influences.
+    stray: f32,
+    /// A sphere around each clip.
+    spheres: Vec<BoundingSphere>,
+    plays: Vec<Playing>,
+    changed: Changed,
+    /// The time of the scene from which the device counts.
+    epoch: f64,
+    runtime: Runtime,
+}
+
+/// What an instance plays.
+#[derive(Debug, Clone, Copy)]
+struct Playing {
+    clip: u32,
+    wrap: Wrap,
+    start: f64,
+    rate: f32,
+}
+
+/// What lies on the device, with room for all instances.
+#[derive(Debug)]
+struct Runtime {
+    crowd: Crowd,
+    frame: GatedFrame,
+    skins: Vec<PagedSkin>,
+    weights: Vec<MorphWeightsJob>,
+    assign: Vec<(Uniform<AssignParams>, Job)>,
+    /// The layout for which `assign` was prepared.
+    version: u64,
+}
+
+impl Character {
+    /// Prepares a model that has clips, with room for `capacity` instances.
+    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize) -> Result<Self, Error> {
+        let model = &merged.model;
+        let clips: Vec<_> = model.clips.iter().collect();
+        let set = ClipSet::new(&clips)?;
+        let radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
+        let table = BoundTable::new(&model.skeleton, &set, &clips, &radii, RotationPath::default())?;
+        let unit = table.unit();
+        let poses = clips.iter().map(|clip| poses_of(clip)).collect::<Result<Vec<_>, _>>()?;
+        let every: Vec<usize> = (0..clips.len()).collect();
+        let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
+        let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
+        let gate = Gate::Bounded(table);
+        let plays = vec![Playing::REST; capacity];
+        let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
+        let mut changed = Changed::default();
+        changed.all(capacity);
+        Ok(Self { merged, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, runtime })
+    }
+
+    /// Makes room for more instances. All of them start afresh.
+    pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
+        self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
+        self.plays.resize(capacity, Playing::REST);
+        self.changed.all(capacity);
+        Ok(())
+    }
+
+    /// A sphere around an instance that plays the first clip.
+    pub fn sphere(&self) -> BoundingSphere {
+        self.spheres[0]
+    }
+
+    /// The errors of all levels.
+    pub fn errors(&self) -> Vec<f32> {
+        mesh::errors(&self.merged)
+    }
+
+    /// What is drawn: each mesh, from the vertices of each instance.
+    pub fn drawables(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Vec<Drawable>, Error> {
+        let skins = self.runtime.skins.iter().enumerate();
+        let drawable = |(index, skin): (usize, &PagedSkin)| {
+            let mesh = (&skin.mesh, &skin.clusters);
+            mesh::drawable((gpu, layouts), &self.merged, index, mesh, Some(&skin.pages))
+        };
+        skins.map(drawable).collect()
+    }
+
+    /// The draws of all parts.
+    pub fn draws(&self) -> Vec<SceneDraw> {
+        let skins = self.runtime.skins.iter().enumerate();
+        skins.flat_map(|(index, skin)| mesh::part_draws(&self.merged, index, &skin.mesh)).collect()
+    }
+
+    /// Sets what an instance plays, and returns a sphere around it.
+    pub fn play(&mut self, index: u32, play: &Play<'_>) -> Result<BoundingSphere, InputError> {
+        play.validate()?;
+        let clip = self.clip(play.clip)?;
+        self.plays[index as usize] =
+            Playing { clip: clip as u32, wrap: play.wrap, start: play.start, rate: play.rate };
+        self.changed.add(index, self.plays.len());
+        Ok(self.spheres[clip])
+    }
+
+    /// Sets that an instance plays the first clip, and returns a sphere around it.
+    pub fn play_first(&mut self, index: u32) -> BoundingSphere {
+        self.plays[index as usize] = Playing::REST;
+        self.changed.add(index, self.plays.len());
+        self.spheres[0]
+    }
+
+    fn clip(&self, name: &str) -> Result<usize, InputError> {
+        let clip = self
+            .merged
+            .model
+            .clip(name)
+            .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
+        Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+    }
+
+    /// Prepares the assignment of levels for a layout, unless it is prepared.
+    pub fn fit(
+        &mut self,
+        gpu: &Gpu,
+        layout: &Layout,
+        pass: &AssignPass,
+        (range, errors, shares): (ObjectRange, &[f32], Shares),
+    ) -> Result<(), Error> {
+        if self.runtime.version == layout.version {
+            return Ok(());
+        }
+        let instances = self.plays.len() as u32;
+        let params = AssignParams {
+            first: range.first,
+            instances,
+            levels: errors.len() as u32,
+            max_influences: InstanceLod::FULL.max_influences,
+            mesh_fraction: shares.mesh,
+            bone_fraction: shares.bones,
+            influence_fraction: shares.influences,
+            unit: self.unit,
+            stray: self.stray,
+            errors: error_vectors(errors),
+        };
+        let runtime = &mut self.runtime;
+        runtime.assign.clear();
+        for skin in &runtime.skins {
+            let params = Uniform::new(gpu, "assign", &params)?;
+            let buffers = AssignBuffers {
+                params: &params,
+                allowed: &layout.allowed,
+                lods: &runtime.frame.state.lods,
+                instance_lods: &skin.crowd.instance_lods,
+            };
+            let job = pass.prepare(gpu, buffers, instances)?;
+            runtime.assign.push((params, job));
+        }
+        runtime.version = layout.version;
+        Ok(())
+    }
+
+    /// Stages the time, and what instances play.
+    pub fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
+        if (now - self.epoch).abs() > EPOCH {
+            self.epoch = now;
+            self.changed.all(self.plays.len());
+        }
+        for [from, to] in self.changed.take(self.plays.len()) {
+            let plays = self.plays[from..to].iter().map(|play| self.on_device(play));
+            staged.elements(&self.runtime.crowd.instances, from, &plays.collect::<Vec<_>>())?;
+        }
+        let elapsed = (now - self.epoch) as f32;
+        self.runtime.frame.set_through(staged, frame, elapsed)?;
+        for weights in &self.runtime.weights {
+            weights.set_through(staged, elapsed)?;
+        }
+        Ok(())
+    }
+
+    /// What an instance plays, with a start that is counted from the epoch. The start of a clip that repeats is moved by
+    /// whole repetitions, so that it stays near.
+    fn on_device(&self, play: &Playing) -> Instance {
+        let mut start = play.start - self.epoch;
+        let duration = f64::from(self.merged.model.clips[play.clip as usize].duration());
+        let period = duration / f64::from(play.rate.abs());
+        if play.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
+            start %= period;
+        }
+        // The device computes start + rate · elapsed inside the clip.
+        Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
+    }
+
+    /// Adds sampling, gating and skinning to a compute pass.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let runtime = &self.runtime;
+        runtime.assign.iter().for_each(|(_, job)| job.dispatch(pass));
+        runtime.frame.dispatch(pass);
+        runtime.weights.iter().for_each(|weights| weights.dispatch(pass));
+        runtime.skins.iter().for_each(|skin| skin.dispatch(pass));
+    }
+}
+
+impl Playing {
+    /// The first clip, from time 0 on.
+    const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
+}
+
+impl Runtime {
+    fn new(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate, capacity: usize) -> Result<Self, Error> {
+        let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
+        let crowd = Crowd::new(gpu, set, &vec![rest; capacity])?;
+        let clips = ClipBuffers::new(gpu, set)?;
+        let frame = GatedFrame::new(gpu, &model.skeleton, &clips, &crowd, gate)?;
+        let every: Vec<usize> = (0..model.clips.len()).collect();
+        let (mut skins, mut weights) = (Vec::new(), Vec::new());
+        for (index, mesh) in model.meshes.iter().enumerate() {
+            let clusters = mesh.vertices().div_ceil(CLUSTER);
+            let pages = (capacity * clusters) as u32;
+            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, pages)?;
+            if !mesh.targets.is_empty() {
+                let keys = WeightSet::new(mesh, set, &every)?;
+                weights.push(MorphWeightsPass::new(gpu)?.prepare(
+                    gpu,
+                    &keys,
+                    &crowd.instances,
+                    &skin.crowd,
+                )?);
+            }
+            skins.push(skin);
+        }
+        Ok(Self { crowd, frame, skins, weights, assign: Vec::new(), version: 0 })
+    }
+}

@@ -1,0 +1,195 @@
+//! The instances of one object on the host, and which of them the device does not know yet.
+
+use crate::asset::transform::Transform;
+use crate::scene::placement::Placement;
+use crate::shared::lod::instance::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance};
+use crate::shared::lod::object::BLOCK;
+use crate::skinning::bounding_sphere::BoundingSphere;
+
+/// An instance that does not exist.
+pub(super) const NOBODY: SceneInstance = SceneInstance {
+    cell: [0; 3],
+    flags: 0,
+    offset: [0.0; 3],
+    word: 0,
+    rotation: Transform::IDENTITY.rotation,
+    scale: [1.0; 3],
+    tint: u32::MAX,
+    bounding_sphere: [0.0; 4],
+};
+
+/// Changed elements this close to each other are written together, with those in between.
+const GAP: usize = 4;
+
+/// The instances of an object.
+#[derive(Debug)]
+pub(super) struct Instances {
+    all: Vec<SceneInstance>,
+    generations: Vec<u32>,
+    /// Indices that are free; the last is used first.
+    free: Vec<u32>,
+    changed: Changed,
+}
+
+impl Instances {
+    /// Room for at least `capacity` instances.
+    pub fn new(capacity: usize) -> Self {
+        let mut instances =
+            Self { all: vec![], generations: vec![], free: vec![], changed: Changed::default() };
+        instances.grow(capacity);
+        instances
+    }
+
+    /// Number of instances that there is room for, a multiple of [`BLOCK`].
+    pub fn capacity(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Number of instances that exist.
+    pub fn alive(&self) -> usize {
+        self.all.len() - self.free.len()
+    }
+
+    /// Makes room for at least `capacity` instances. Everything counts as changed then.
+    pub fn grow(&mut self, capacity: usize) {
+        let before = self.all.len();
+        let after = capacity.max(1).next_multiple_of(BLOCK as usize).max(before);
+        self.all.resize(after, NOBODY);
+        self.generations.resize(after, 0);
+        self.free.splice(0..0, (before as u32..after as u32).rev());
+        self.change_all();
+    }
+
+    /// Counts everything as changed.
+    pub fn change_all(&mut self) {
+        self.changed.all(self.all.len());
+    }
+
+    /// Adds an instance, if there is room; returns its index and its generation.
+    pub fn spawn(&mut self, placement: &Placement, sphere: &BoundingSphere) -> Option<[u32; 2]> {
+        let index = self.free.pop()?;
+        self.all[index as usize] = SceneInstance { flags: flags(u16::MAX, true), ..NOBODY };
+        self.change(index, |instance| {
+            place(instance, placement);
+            bound(instance, sphere);
+        });
+        Some([index, self.generations[index as usize]])
+    }
+
+    /// Removes an instance, which must exist.
+    pub fn despawn(&mut self, index: u32) {
+        self.change(index, |instance| instance.flags = 0);
+        let generation = &mut self.generations[index as usize];
+        *generation = generation.wrapping_add(1);
+        self.free.push(index);
+    }
+
+    /// Whether an instance of this generation exists.
+    pub fn contains(&self, [index, generation]: [u32; 2]) -> bool {
+        let index = index as usize;
+        self.generations.get(index) == Some(&generation) && self.all[index].flags & INSTANCE_ALIVE != 0
+    }
+
+    /// Changes an instance.
+    pub fn change(&mut self, index: u32, change: impl FnOnce(&mut SceneInstance)) {
+        change(&mut self.all[index as usize]);
+        self.changed.add(index, self.all.len());
+    }
+
+    /// Takes the runs of instances that have changed, each with the index of its first.
+    pub fn take_changed(&mut self) -> Vec<(usize, &[SceneInstance])> {
+        let all = &self.all;
+        self.changed.take(all.len()).into_iter().map(|[from, to]| (from, &all[from..to])).collect()
+    }
+}
+
+/// The flags of an instance that exists.
+pub(super) fn flags(mask: u16, casts: bool) -> u32 {
+    INSTANCE_ALIVE | if casts { INSTANCE_CASTS } else { 0 } | u32::from(mask) << INSTANCE_MASK_SHIFT
+}
+
+/// Sets the position, rotation and scale of an instance. The placement must be checked.
+pub(super) fn place(instance: &mut SceneInstance, placement: &Placement) {
+    instance.cell = placement.cell;
+    instance.offset = placement.at.into();
+    instance.rotation = placement.turn.into();
+    instance.scale = placement.scale.into();
+}
+
+/// Sets the sphere around an instance.
+pub(super) fn bound(instance: &mut SceneInstance, sphere: &BoundingSphere) {
+    instance.bounding_sphere = sphere.center.extend(sphere.radius).into();
+}
+
+/// Which of a number of elements have changed.
+#[derive(Debug, Default)]
+pub(super) struct Changed {
+    is_changed: Vec<bool>,
+    indices: Vec<u32>,
+}
+
+impl Changed {
+    /// Adds an element of `count`.
+    pub fn add(&mut self, index: u32, count: usize) {
+        self.is_changed.resize(count, false);
+        if !std::mem::replace(&mut self.is_changed[index as usize], true) {
+            self.indices.push(index);
+        }
+    }
+
+    /// Adds all of `count` elements.
+    pub fn all(&mut self, count: usize) {
+        (0..count as u32).for_each(|index| self.add(index, count));
+    }
+
+    /// Takes the changes as runs, each from its first element to before its end. Runs that are close to each other are
+    /// joined.
+    pub fn take(&mut self, count: usize) -> Vec<[usize; 2]> {
+        self.indices.sort_unstable();
+        let mut runs: Vec<[usize; 2]> = Vec::new();
+        for index in self.indices.drain(..).map(|index| index as usize).filter(|index| *index < count) {
+            self.is_changed[index] = false;
+            match runs.last_mut() {
+                Some([_, end]) if index <= *end + GAP => *end = index + 1,
+                _ => runs.push([index, index + 1]),
+            }
+        }
+        runs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    const SPHERE: BoundingSphere = BoundingSphere { center: Vec3::Y, radius: 2.0 };
+
+    #[test]
+    fn instances_come_and_go() {
+        let mut instances = Instances::new(65);
+        assert_eq!((instances.capacity(), instances.alive()), (128, 0));
+        let spawn = |instances: &mut Instances| instances.spawn(&Placement::default(), &SPHERE);
+        let all: Vec<_> = (0..128).map(|_| spawn(&mut instances).expect("room")).collect();
+        assert!(all.iter().zip(0..).all(|(id, at)| *id == [at, 0]) && spawn(&mut instances).is_none());
+        instances.despawn(7);
+        assert!(!instances.contains([7, 0]) && instances.contains([8, 0]) && !instances.contains([8, 1]));
+        assert_eq!(spawn(&mut instances), Some([7, 1]));
+        instances.grow(129);
+        assert_eq!((instances.capacity(), instances.alive()), (192, 128));
+        assert_eq!(spawn(&mut instances), Some([128, 0]));
+        assert!(!instances.contains([500, 0]));
+    }
+
+    #[test]
+    fn changes_are_taken_once_and_in_runs() {
+        let mut instances = Instances::new(64);
+        assert_eq!(instances.take_changed().len(), 1, "all of them at first");
+        for index in [40, 3, 5, 3, 41] {
+            instances.change(index, |instance| instance.word = index);
+        }
+        let runs: Vec<_> = instances.take_changed().iter().map(|(from, run)| (*from, run.len())).collect();
+        assert_eq!(runs, [(3, 3), (40, 2)]);
+        assert!(instances.take_changed().is_empty());
+    }
+}

@@ -1,0 +1,94 @@
+//! How the instances and draws of all objects lie in the buffers of a scene and of its views.
+
+use glam::Vec4;
+
+use crate::Error;
+use crate::gpu::{Buffer, Gpu};
+use crate::scene::handles::Slots;
+use crate::scene::object::Object;
+use crate::shared::lod::instance::SceneInstance;
+use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
+
+/// The place of an object in the buffers.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ObjectRange {
+    /// Index of its first instance.
+    pub first: u32,
+    /// Word of its first list in the lists of a view.
+    pub first_list: u32,
+    /// Index of its first draw in the draws of a view.
+    pub first_draw: u32,
+}
+
+/// Buffers of all instances, as large as the objects need.
+#[derive(Debug)]
+pub(crate) struct Layout {
+    /// Counts the layouts of a scene: what was prepared for another is out of date.
+    pub version: u64,
+    pub instances: Buffer<SceneInstance>,
+    /// The allowed displacement of each instance, in its model's units; −1 for those that no view sees.
+    pub allowed: Buffer<f32>,
+    pub objects: Buffer<LodObject>,
+    pub object_count: u32,
+    /// The object of each block.
+    pub block_objects: Buffer<u32>,
+    /// Number of blocks, words of lists, and draws.
+    pub blocks: u32,
+    pub list_words: u32,
+    /// The draws of a view that sees nothing.
+    pub draws: Vec<SceneDraw>,
+}
+
+impl Layout {
+    /// Lays out the objects, one after the other, and tells each its range.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub(super) fn new(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Self, Error> {
+        let mut range = ObjectRange::default();
+        let (mut all, mut block_objects, mut draws) = (Vec::new(), Vec::new(), Vec::new());
+        for object in objects.iter_mut() {
+            object.range = range;
+            let instances = object.instances.capacity() as u32;
+            block_objects.resize(block_objects.len() + (instances / BLOCK) as usize, all.len() as u32);
+            all.push(lod_object(object));
+            draws.extend_from_slice(&object.draws);
+            range.first += instances;
+            range.first_list += 2 * object.errors.len() as u32 * instances;
+            range.first_draw += object.draws.len() as u32;
+        }
+        let count = range.first as usize;
+        Ok(Self {
+            version,
+            instances: Buffer::new(gpu, "instances", count)?,
+            allowed: Buffer::new(gpu, "allowed displacements", count)?,
+            objects: Buffer::from_slice(gpu, "objects", &all)?,
+            object_count: all.len() as u32,
+            block_objects: Buffer::from_slice(gpu, "objects of blocks", &block_objects)?,
+            blocks: block_objects.len() as u32,
+            list_words: range.first_list,
+            draws,
+        })
+    }
+}
+
+/// An object as kernels see it.
+pub(super) fn lod_object(object: &Object) -> LodObject {
+    LodObject {
+        first: object.range.first,
+        instances: object.instances.capacity() as u32,
+        levels: object.errors.len() as u32,
+        first_list: object.range.first_list,
+        first_draw: object.range.first_draw,
+        parts: object.draws.len() as u32 / OBJECT_LISTS,
+        mesh_fraction: object.mesh_fraction,
+        shown: u32::from(object.is_shown),
+        errors: error_vectors(&object.errors).map(Into::into),
+    }
+}
+
+/// The errors of levels as kernels see them. Levels that do not exist have the largest number.
+pub(super) fn error_vectors(errors: &[f32]) -> [Vec4; OBJECT_LEVELS as usize / 4] {
+    let error = |at: usize| errors.get(at).copied().unwrap_or(f32::MAX);
+    std::array::from_fn(|at| Vec4::from_array(std::array::from_fn(|lane| error(4 * at + lane))))
+}

@@ -1,0 +1,164 @@
+//! Meshes of objects on the device: those of a model at rest, and those of a character, which its bones move.
+
+use crate::asset::{Mesh, Model};
+use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::scene::Shares;
+use crate::scene::character::Character;
+use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::instances::Instances;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::PartMaterials;
+use crate::scene::object::{Kind, Object};
+use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
+use crate::shared::render::scene_vertex::MeshParams;
+use crate::skinning::at_rest::at_rest;
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::buffers::MeshBuffers;
+use crate::skinning::clusters::Clusters;
+use crate::skinning::merged::{Merged, Part, merged};
+use crate::skinning::pages::PageBuffers;
+use crate::{Error, InputError};
+
+/// An object of a model's meshes at rest.
+pub(super) fn object(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    model: &Model,
+    capacity: usize,
+) -> Result<Object, Error> {
+    check(model, capacity)?;
+    let mut rest = at_rest(model)?;
+    if model.clips.is_empty() {
+        // The levels were made for this pose. Vertices and their order are the same.
+        for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
+            mesh.levels.clone_from(&from.levels);
+        }
+    }
+    let merged = merged(&rest, OBJECT_LEVELS as usize)?;
+    let corners = merged.model.meshes.iter().flat_map(|mesh| &mesh.positions);
+    let sphere = BoundingSphere::around(corners.map(|position| (*position).into()));
+    let mut drawables = Vec::new();
+    let mut draws = Vec::new();
+    for (index, mesh) in merged.model.meshes.iter().enumerate() {
+        let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
+        draws.extend(part_draws(&merged, index, &buffers));
+        drawables.push(drawable((gpu, layouts), &merged, index, (&buffers, &clusters), None)?);
+    }
+    let instances = Instances::new(capacity);
+    Ok(Object::new(Kind::Mesh, (instances, sphere), (errors(&merged), 1.0), (drawables, draws)))
+}
+
+/// An object of a model that has clips.
+pub(super) fn character(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    model: &Model,
+    capacity: usize,
+    shares: Shares,
+) -> Result<Object, Error> {
+    check(model, capacity)?;
+    let merged = merged(model, OBJECT_LEVELS as usize)?;
+    let instances = Instances::new(capacity);
+    let character = Character::new(gpu, merged, instances.capacity())?;
+    let drawn = (character.drawables(gpu, layouts)?, character.draws());
+    let (sphere, errors) = (character.sphere(), character.errors());
+    let kind = Kind::Character(Box::new(character));
+    Ok(Object::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
+}
+
+fn check(model: &Model, capacity: usize) -> Result<(), InputError> {
+    if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
+        return Err(InputError::new("model.meshes", "none", "must have a triangle"));
+    }
+    check_capacity(capacity)
+}
+
+/// Refuses no room, and more than a million instances.
+pub(super) fn check_capacity(capacity: usize) -> Result<(), InputError> {
+    match (1..=1 << 20).contains(&capacity) {
+        true => Ok(()),
+        false => Err(InputError::new("capacity", capacity, "must be in 1..=1048576")),
+    }
+}
+
+/// The errors of all levels, the mesh itself included.
+pub(super) fn errors(merged: &Merged) -> Vec<f32> {
+    std::iter::once(0.0).chain(merged.errors.iter().copied()).collect()
+}
+
+/// The draws of the parts of a merged mesh: for each part and level two, for instances that are not mirrored and for those
+/// that are.
+pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) -> Vec<SceneDraw> {
+    let of_part = |part: &Part| {
+        let draw = |list: u32| {
+            let level = list / 2;
+            let Some(range) = part.indices.get(level as usize) else { return NOTHING };
+            let first_index = buffers.level(level).first_index + range.start;
+            SceneDraw { indices: range.len() as u32, first_index, ..NOTHING }
+        };
+        (0..OBJECT_LISTS).map(draw).collect::<Vec<_>>()
+    };
+    merged.parts.iter().filter(|part| part.mesh == mesh).flat_map(of_part).collect()
+}
+
+/// A draw of nothing.
+pub(super) const NOTHING: SceneDraw =
+    SceneDraw { indices: 0, instances: 0, first_index: 0, base_vertex: 0, first_instance: 0 };
+
+/// A merged mesh, to be drawn from its own vertices, or from those in pages.
+pub(super) fn drawable(
+    (gpu, layouts): (&Gpu, &SceneLayouts),
+    merged: &Merged,
+    index: usize,
+    (buffers, clusters): (&MeshBuffers, &Clusters),
+    pages: Option<&PageBuffers>,
+) -> Result<Drawable, Error> {
+    let mesh = &merged.model.meshes[index];
+    let own: Vec<&Part> = merged.parts.iter().filter(|part| part.mesh == index).collect();
+    let part_of = parts_of_vertices(mesh, &own);
+    let mut tables: Vec<Vec<Option<usize>>> = vec![Vec::new(); own.len()];
+    let entries: Vec<u32> = (part_of.iter().zip(&merged.materials[index]))
+        .map(|(part, material)| entry(&mut tables[*part], *material))
+        .collect();
+    let placed: Vec<u32> = clusters.order.iter().map(|vertex| entries[*vertex as usize]).collect();
+    let parts = (own.iter().zip(&tables))
+        .map(|(part, table)| {
+            let surface = SurfaceKind { cut_out: part.key.cut_out, double_sided: part.key.double_sided };
+            let sampling = part.key.sampling.unwrap_or_default();
+            let materials = PartMaterials::new(gpu, layouts, &merged.model, table, &sampling)?;
+            Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
+        })
+        .collect::<Result<_, Error>>()?;
+    let count = if pages.is_some() { buffers.clusters() as u32 } else { 0 };
+    let material_of = Buffer::from_slice(gpu, "materials of vertices", &placed)?;
+    let geometry = MeshGeometry {
+        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: count })?,
+        vertices: pages.map_or(&buffers.vertices, |pages| &pages.skinned).clone(),
+        page_table: pages.map_or(&material_of, |pages| &pages.table).clone(),
+        uv: buffers.uv.clone(),
+        material_of,
+        indices: buffers.indices.clone(),
+    };
+    Ok(Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, count, parts)?))
+}
+
+/// For each vertex, the part whose triangles use it.
+fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
+    let mut part_of = vec![0; mesh.vertices()];
+    for (at, part) in parts.iter().enumerate() {
+        let range = part.indices[0].clone();
+        for vertex in &mesh.indices[range.start as usize..range.end as usize] {
+            part_of[*vertex as usize] = at;
+        }
+    }
+    part_of
+}
+
+/// The index of a material in a table, which it joins if it is not there.
+fn entry(table: &mut Vec<Option<usize>>, material: Option<usize>) -> u32 {
+    let known = table.iter().position(|other| *other == material);
+    known.unwrap_or_else(|| {
+        table.push(material);
+        table.len() - 1
+    }) as u32
+}

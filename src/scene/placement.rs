@@ -1,0 +1,167 @@
+//! Where an instance stands, and what it plays.
+
+use glam::{DVec3, Quat, Vec3};
+
+use crate::InputError;
+use crate::animation::Wrap;
+use crate::animation::instance::check_seconds;
+use crate::shared::lod::instance::CELL_SIZE;
+
+/// Where an instance stands in the world. Its position is a cell, of [`Placement::CELL`] world units along each axis,
+/// and an offset, so that it stays precise at any distance from the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// The cell to whose corner `at` is relative.
+    pub cell: [i32; 3],
+    /// The position in world units, relative to the cell's corner. It may lie outside the cell.
+    pub at: Vec3,
+    /// The rotation. It need not have length 1.
+    pub turn: Quat,
+    /// Scale factors along the model's own axes, applied before the rotation. Negative ones mirror.
+    pub scale: Vec3,
+}
+
+impl Default for Placement {
+    /// At the origin, neither turned nor scaled.
+    fn default() -> Self {
+        Self { cell: [0; 3], at: Vec3::ZERO, turn: Quat::IDENTITY, scale: Vec3::ONE }
+    }
+}
+
+impl Placement {
+    /// The edge of a cell in world units.
+    pub const CELL: f32 = CELL_SIZE;
+
+    /// At a position of cell (0, 0, 0), neither turned nor scaled.
+    pub fn at(at: impl Into<Vec3>) -> Self {
+        Self { at: at.into(), ..Self::default() }
+    }
+
+    /// At a position in world units from the origin of the world. Positions beyond 2³¹ cells are refused when the
+    /// placement is used.
+    pub fn at_world(position: impl Into<DVec3>) -> Self {
+        let position = position.into();
+        let edge = f64::from(Self::CELL);
+        // Conversion saturates.
+        let cell = (position / edge).floor().to_array().map(|cell| cell as i32);
+        let corner = DVec3::from(cell.map(f64::from)) * edge;
+        Self { cell, at: (position - corner).as_vec3(), ..Self::default() }
+    }
+
+    /// The same placement, turned about the vertical axis by an angle in radians, counter-clockwise seen from above.
+    #[must_use]
+    pub fn turned(self, angle: f32) -> Self {
+        Self { turn: Quat::from_rotation_y(angle), ..self }
+    }
+
+    /// The same placement, scaled by one factor.
+    #[must_use]
+    pub fn scaled(self, scale: f32) -> Self {
+        Self { scale: Vec3::splat(scale), ..self }
+    }
+
+    /// The position in world units from the origin of the world.
+    pub fn position(&self) -> DVec3 {
+        DVec3::from(self.cell.map(f64::from)) * f64::from(Self::CELL) + self.at.as_dvec3()
+    }
+
+    /// The same placement with a position inside its cell and a rotation of length 1.
+    ///
+    /// # Errors
+    /// [`InputError`] for values that are not finite, a rotation without direction, a scale of 0 along all axes, and a
+    /// position beyond the last cell.
+    pub fn checked(self) -> Result<Self, InputError> {
+        if !self.at.is_finite() {
+            return Err(InputError::new("placement.at", self.at, "must be finite"));
+        }
+        if !self.scale.is_finite() || self.scale == Vec3::ZERO {
+            return Err(InputError::new(
+                "placement.scale",
+                self.scale,
+                "must be finite, and not 0 along all axes",
+            ));
+        }
+        // An infinite length has no reciprocal.
+        let length = self.turn.length();
+        if !(length > 1e-6 && length.is_finite()) {
+            return Err(InputError::new("placement.turn", self.turn, "must be finite, and not 0"));
+        }
+        let edge = f64::from(Self::CELL);
+        let mut placed = Self { turn: self.turn / length, ..self };
+        for axis in 0..3 {
+            let at = f64::from(self.at[axis]);
+            let cells = (at / edge).floor();
+            let cell = f64::from(self.cell[axis]) + cells;
+            if !(f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&cell) {
+                let bound = "must lie within 2^31 cells of the origin";
+                return Err(InputError::new(format!("placement.at[{axis}]"), self.at[axis], bound));
+            }
+            placed.cell[axis] = cell as i32;
+            placed.at[axis] = (at - cells * edge) as f32;
+        }
+        Ok(placed)
+    }
+}
+
+/// What a character plays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Play<'a> {
+    /// The name of the clip, or its index in the model, counted from 0.
+    pub clip: &'a str,
+    /// The time of the scene, in seconds, at which the clip begins. It may lie in the past: then the clip is under way.
+    pub start: f64,
+    /// Seconds of the clip per second; negative to play it backwards.
+    pub rate: f32,
+    /// What happens at the end of the clip.
+    pub wrap: Wrap,
+}
+
+impl<'a> Play<'a> {
+    /// A clip that began at time 0 of the scene, and repeats.
+    pub fn new(clip: &'a str) -> Self {
+        Self { clip, start: 0.0, rate: 1.0, wrap: Wrap::Loop }
+    }
+
+    /// Checks start and rate.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        check_seconds("play.start", self.start as f32)?;
+        check_seconds("play.rate", self.rate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_lie_in_their_cells() {
+        let far = Placement::at_world([1e6 + 0.125, -0.5, 255.0]);
+        assert_eq!((far.cell, far.at), ([3906, -1, 0], Vec3::new(64.125, 255.5, 255.0)));
+        assert_eq!(far.position(), DVec3::new(1e6 + 0.125, -0.5, 255.0));
+        let moved = Placement { at: far.at + Vec3::new(512.0, 1.0, 0.0), ..far }.checked().expect("valid");
+        assert_eq!((moved.cell, moved.at), ([3908, 0, 0], Vec3::new(64.125, 0.5, 255.0)));
+        let turned = Placement { turn: Quat::from_xyzw(0.0, 3.0, 0.0, 4.0), ..far }.checked().expect("valid");
+        assert_eq!(turned.turn, Quat::from_xyzw(0.0, 0.6, 0.0, 0.8));
+    }
+
+    #[test]
+    fn placements_are_checked_field_by_field() {
+        let good = Placement::default();
+        let refused = |placement: Placement| placement.checked().expect_err("refused").path;
+        assert_eq!(refused(Placement { at: Vec3::NAN, ..good }), "placement.at");
+        assert_eq!(refused(Placement { scale: Vec3::ZERO, ..good }), "placement.scale");
+        assert_eq!(
+            refused(Placement { turn: Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..good }),
+            "placement.turn"
+        );
+        let beyond = Placement { cell: [0, i32::MAX, 0], at: Vec3::new(0.0, 300.0, 0.0), ..good };
+        assert_eq!(refused(beyond), "placement.at[1]");
+        assert!(Placement { scale: Vec3::new(0.0, -1.0, 2.0), ..good }.checked().is_ok());
+        let refused = |play: Play<'_>| play.validate().expect_err("refused").path;
+        assert_eq!(refused(Play { start: f64::NAN, ..Play::new("walk") }), "play.start");
+        assert_eq!(refused(Play { rate: f32::INFINITY, ..Play::new("walk") }), "play.rate");
+    }
+}

@@ -1,0 +1,138 @@
+//! Meshes with relief in a scene: walls, cobbles, anything whose depth is a height map.
+
+use glam::{Vec2, Vec3};
+
+use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::instances::Instances;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::{ReliefLook, ReliefMaterial};
+use crate::scene::mesh::NOTHING;
+use crate::scene::object::{Kind, Object};
+use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
+use crate::shared::render::scene_vertex::MeshParams;
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::vertex::Vertex;
+use crate::surface::color::ColorTexture;
+use crate::surface::map::HeightMap;
+use crate::surface::mesh::SurfaceMesh;
+use crate::surface::mips::Mips;
+use crate::surface::relief::March;
+use crate::surface::relief::textures::SurfaceTextures;
+use crate::surface::{Address, Material, ReliefMaps, ReliefOptions};
+use crate::{Error, InputError};
+
+/// A mesh that carries a relief, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
+#[derive(Debug, Clone)]
+pub struct Relief {
+    /// The mesh, in the model's space.
+    pub mesh: SurfaceMesh,
+    /// The heights.
+    pub heights: HeightMap,
+    /// The colours.
+    pub albedo: image::RgbaImage,
+    /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
+    pub normals: Option<image::RgbaImage>,
+    /// What lies beyond the edges of the maps.
+    pub address: Address,
+    /// The method, shadows and silhouette.
+    pub options: ReliefOptions,
+    /// Depth, plane and the width of shadows. Its light is not used: a scene has one light.
+    pub material: Material,
+    /// How rays are marched.
+    pub march: March,
+    /// Whether both sides of the mesh are seen.
+    pub double_sided: bool,
+}
+
+impl Relief {
+    /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief.
+    pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
+        Self {
+            mesh,
+            heights,
+            albedo,
+            normals: None,
+            address: Address::Wrap,
+            options: ReliefOptions { depth: true, ..ReliefOptions::default() },
+            material: Material::default(),
+            march: March::default(),
+            double_sided: false,
+        }
+    }
+}
+
+/// An object of a mesh with relief.
+pub(super) fn object(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    relief: &Relief,
+    capacity: usize,
+) -> Result<Object, Error> {
+    super::mesh::check_capacity(capacity)?;
+    relief.mesh.validate()?;
+    if relief.mesh.indices.is_empty() {
+        return Err(InputError::new("relief.mesh.indices.len", 0, "must be at least 3").into());
+    }
+    let vertices: Vec<Vertex> = (relief.mesh.vertices.iter())
+        .map(|vertex| Vertex { position: vertex.position, normal: vertex.normal, tangent: vertex.tangent })
+        .collect();
+    let uv: Vec<[f32; 2]> = relief.mesh.vertices.iter().map(|vertex| vertex.uv).collect();
+    let material_of = Buffer::new(gpu, "materials of vertices", vertices.len())?;
+    let geometry = MeshGeometry {
+        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: 0 })?,
+        vertices: Buffer::from_slice(gpu, "mesh vertices", &vertices)?,
+        page_table: material_of.clone(),
+        uv: Buffer::from_slice(gpu, "mesh uv", &uv)?,
+        material_of,
+        indices: Buffer::from_slice(gpu, "mesh indices", &relief.mesh.indices)?,
+    };
+    let surface = SurfaceKind { cut_out: false, double_sided: relief.double_sided };
+    let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);
+    let parts = vec![MeshPart { surface, materials }];
+    let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);
+    let draw = SceneDraw { indices: relief.mesh.indices.len() as u32, ..NOTHING };
+    let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
+    draws[..2].fill(draw);
+    let sphere = BoundingSphere::around(vertices.iter().map(|vertex| vertex.position.into()));
+    let instances = Instances::new(capacity);
+    Ok(Object::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), (vec![drawable], draws)))
+}
+
+fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<ReliefMaterial, Error> {
+    let wraps = relief.address == Address::Wrap;
+    let textures = SurfaceTextures::new(gpu, &relief.heights, relief.options.method, relief.address)?;
+    let albedo = ColorTexture::new(gpu, &Mips::of_color(relief.albedo.clone()), wraps)?;
+    let normals = match &relief.normals {
+        Some(normals) => Some(ColorTexture::new(gpu, &Mips::of_data(normals.clone()), wraps)?),
+        None => None,
+    };
+    let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: normals.as_ref() };
+    let corners = || relief.mesh.vertices.iter().map(|vertex| Vec2::from(vertex.uv));
+    let low = corners().fold(Vec2::MAX, Vec2::min);
+    let high = corners().fold(Vec2::MIN, Vec2::max);
+    let look = ReliefLook {
+        material: relief.material,
+        march: relief.march,
+        range: [low.into(), high.into()],
+        world: length_of_uv(&relief.mesh)?,
+        color: [1.0; 3],
+    };
+    ReliefMaterial::new(gpu, layouts, maps, relief.options, &look)
+}
+
+/// The length of a unit of uv in the model's units: the square root of the ratio of all areas.
+fn length_of_uv(mesh: &SurfaceMesh) -> Result<f32, InputError> {
+    let (mut in_space, mut in_uv) = (0.0, 0.0);
+    for triangle in mesh.indices.chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|corner| &mesh.vertices[triangle[corner] as usize]);
+        let [pa, pb, pc] = [a, b, c].map(|vertex| Vec3::from(vertex.position).as_dvec3());
+        let [ta, tb, tc] = [a, b, c].map(|vertex| Vec2::from(vertex.uv).as_dvec2());
+        in_space += (pb - pa).cross(pc - pa).length();
+        in_uv += (tb - ta).perp_dot(tc - ta).abs();
+    }
+    if in_uv > 0.0 && in_space > 0.0 {
+        return Ok((in_space / in_uv).sqrt() as f32);
+    }
+    Err(InputError::new("relief.mesh", "no area", "must have an area, in space and in texture coordinates"))
+}

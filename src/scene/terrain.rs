@@ -1,0 +1,169 @@
+//! Terrain in a scene: patches of one recipe, generated on the device, each an instance.
+
+use glam::{DVec3, Vec3};
+
+use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
+use crate::scene::instances::Instances;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::mesh::NOTHING;
+use crate::scene::object::{Kind, Object};
+use crate::scene::placement::Placement;
+use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
+use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::terrain::blend::Shading;
+use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::fields::Fields;
+use crate::terrain::generator::Generator;
+use crate::terrain::ground::Ground;
+use crate::terrain::materials::Materials;
+use crate::terrain::mesh::GroundPoint;
+use crate::terrain::recipe::Recipe;
+use crate::terrain::texture::Texture;
+use crate::{Error, InputError};
+
+/// The samples around each patch: shading reads one.
+const MARGIN: u32 = 1;
+
+/// Terrain for [`Scene::add_terrain`](crate::scene::Scene::add_terrain): a recipe, the patches to show, and the textures of
+/// its zones. Position 0 of the world is the first sample of patch (0, 0).
+#[derive(Debug, Clone)]
+pub struct TerrainSource {
+    recipe: Recipe,
+    patches: Vec<[i32; 2]>,
+    textures: Option<Vec<Texture>>,
+    pub(super) shading: Shading,
+}
+
+impl TerrainSource {
+    /// Patch (0, 0) of a configuration, with the textures that its zones name.
+    pub fn new(config: Config) -> Self {
+        Recipe::new(config).into()
+    }
+
+    /// Shows these patches: columns to the east, rows to the south.
+    #[must_use]
+    pub fn with_patches(self, patches: &[[i32; 2]]) -> Self {
+        Self { patches: patches.to_vec(), ..self }
+    }
+
+    /// Takes these textures, one for each zone of the configuration.
+    #[must_use]
+    pub fn with_textures(self, textures: Vec<Texture>) -> Self {
+        Self { textures: Some(textures), ..self }
+    }
+
+    /// Blends zones as `shading` says. Its light is not used: a scene has one light.
+    #[must_use]
+    pub fn with_shading(self, shading: Shading) -> Self {
+        Self { shading, ..self }
+    }
+}
+
+impl From<Recipe> for TerrainSource {
+    /// Patch (0, 0) of a recipe, with features, despiking and erosion as it says.
+    fn from(recipe: Recipe) -> Self {
+        Self { recipe, patches: vec![[0, 0]], textures: None, shading: Shading::default() }
+    }
+}
+
+/// Terrain in a scene.
+#[derive(Debug)]
+pub(super) struct Terrain {
+    ground: Ground,
+    /// World units between samples.
+    pub spacing: f64,
+}
+
+impl Terrain {
+    /// The ground at a position of the world, east and south of its origin.
+    pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
+        self.ground.point_at(x, z)
+    }
+}
+
+/// Generates terrain.
+pub(super) fn object(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Object, Error> {
+    let TerrainSource { recipe, patches, textures, .. } = source;
+    let config = &recipe.config;
+    if patches.is_empty() {
+        return Err(InputError::new("patches", "none", "must be at least one").into());
+    }
+    let mut parts = Generator::new(gpu, recipe.clone())?.generate(gpu, patches, MARGIN, &mut |_| ())?;
+    if parts.len() > 1 {
+        let bound =
+            format!("must be at most {}, which one binding holds: add several terrains", parts[0].count);
+        return Err(InputError::new("patches.len", patches.len(), bound).into());
+    }
+    let fields = parts.remove(0);
+    let heights = fields.read_blocking(gpu)?;
+    let mut ground = Ground::new(config)?;
+    let mut instances = Instances::new(patches.len());
+    for (patch, heights) in patches.iter().zip(&heights) {
+        ground.insert(*patch, heights, MARGIN)?;
+        let (placement, sphere) = bounds(config, *patch, heights);
+        instances.spawn(&placement.checked()?, &sphere);
+    }
+    let textures = match textures {
+        Some(textures) => textures.clone(),
+        None => Texture::of_zones(&config.zones)?,
+    };
+    let (drawable, draws) = drawable((gpu, layouts), source, &fields, &textures)?;
+    let kind = Kind::Terrain(Terrain { ground, spacing: config.terrain_scale });
+    let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+    Ok(Object::new(kind, (instances, sphere), (vec![0.0], 1.0), (vec![drawable], draws)))
+}
+
+fn drawable(
+    (gpu, layouts): (&Gpu, &SceneLayouts),
+    source: &TerrainSource,
+    fields: &Fields,
+    textures: &[Texture],
+) -> Result<(Drawable, Vec<SceneDraw>), Error> {
+    let config = &source.recipe.config;
+    let zones = Materials::new(gpu, &config.zones, textures)?;
+    let (size, tiles) = (config.patch_size, config.tiles_per_patch());
+    let edge = size as i32 - 1;
+    let params = TerrainParams {
+        in_width: fields.width,
+        size,
+        spacing: config.terrain_scale as f32,
+        run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
+        tiling: (tiles / f64::from(edge)) as f32,
+        zone_count: zones.zone_count,
+        additive: source.shading.weights.code(),
+    };
+    let patch = |(window, patch): (u32, &[i32; 2])| TerrainPatch {
+        origin: patch.map(|index| index.wrapping_mul(edge)),
+        uv: patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32),
+        window,
+        unused: 0,
+    };
+    let patches: Vec<_> = (0..).zip(&source.patches).map(patch).collect();
+    let indices = patch_indices(size);
+    let draw = SceneDraw { indices: indices.len() as u32, ..NOTHING };
+    let geometry = TerrainGeometry {
+        params: Uniform::new(gpu, "terrain", &params)?,
+        heights: fields.heights.clone(),
+        patches: Buffer::from_slice(gpu, "patches", &patches)?,
+        indices: Buffer::from_slice(gpu, "triangles of a patch", &indices)?,
+        zones,
+    };
+    let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
+    draws[0] = draw;
+    Ok((Drawable::Terrain(TerrainDrawable::new(gpu, layouts, geometry)?), draws))
+}
+
+/// The middle of a patch on the plane, and a sphere around its heights.
+fn bounds(config: &Config, patch: [i32; 2], heights: &[i32]) -> (Placement, BoundingSphere) {
+    let edge = config.edge_length();
+    let middle = patch.map(|index| (f64::from(index) + 0.5) * edge);
+    let lowest = heights.iter().min().map_or(0.0, |height| f64::from(*height) / HEIGHT_ONE);
+    let highest = heights.iter().max().map_or(0.0, |height| f64::from(*height) / HEIGHT_ONE);
+    let half = DVec3::new(edge / 2.0, (highest - lowest) / 2.0, edge / 2.0);
+    let center = Vec3::new(0.0, ((lowest + highest) / 2.0) as f32, 0.0);
+    // Larger by a little, for rounding.
+    let sphere = BoundingSphere { center, radius: (1.000_01 * half.length()) as f32 };
+    (Placement::at_world([middle[0], 0.0, middle[1]]), sphere)
+}

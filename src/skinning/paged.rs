@@ -1,0 +1,139 @@
+//! The skinning of a crowd whose vertices lie in pages: memory follows what is seen, not the number of instances.
+
+use std::sync::Arc;
+
+use super::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use super::clusters::Clusters;
+use super::morph::MorphPass;
+use super::pages::{PageBuffers, PagesPass};
+use super::palette::PalettePass;
+use super::select::{SelectBuffers, SelectPass};
+use super::skin::SkinPass;
+use crate::Error;
+use crate::InputError;
+use crate::animation::ModelMatrices;
+use crate::animation::updated_bones::UpdatedBonesReader;
+use crate::asset::Model;
+use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
+use crate::skinning::vertex::{Blend, Vertex};
+
+/// The prepared skinning of all instances of one mesh into pages, by linear blending.
+#[derive(Debug, Clone)]
+pub struct PagedSkin {
+    /// The mesh on the device.
+    pub mesh: MeshBuffers,
+    /// The arrangement of its vertices.
+    pub clusters: Clusters,
+    /// InstanceLods and weights of morph targets, which the caller may write.
+    pub crowd: SkinnedCrowd,
+    /// The pages, and the vertices in them.
+    pub pages: PageBuffers,
+    select: SelectBuffers,
+    active: ActiveClusters,
+    /// The jobs of pages and of palettes.
+    before: [Job; 2],
+    /// The selection that keeps the updated bones, and the one that clears them.
+    selections: [Job; 2],
+    after: Vec<IndirectJob>,
+    reader: Arc<UpdatedBonesReader>,
+}
+
+impl PagedSkin {
+    /// Prepares a model's mesh for `instances` instances, whose bones are posed by `matrices`, which must record the
+    /// updated bones, with `pages` pages.
+    ///
+    /// # Errors
+    /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for matrices
+    /// without updated bones and for fewer of them than needed; [`crate::gpu::GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        model: &Model,
+        mesh: usize,
+        matrices: &ModelMatrices,
+        instances: usize,
+        pages: u32,
+    ) -> Result<Self, Error> {
+        let Some(mesh) = model.meshes.get(mesh) else {
+            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
+        };
+        let Some(updated) = matrices.updated_bones() else {
+            return Err(InputError::new("matrices.updated_bones", "none", "must be recorded").into());
+        };
+        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+        let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
+        let updated_bones = updated.bits().clone();
+        let select = SelectBuffers { updated_bones, ..SelectBuffers::new(gpu, &mesh, &crowd)? };
+        let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
+        let pages = PageBuffers::new(gpu, &mesh, &crowd, pages)?;
+        let before = [
+            PagesPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &pages)?,
+            PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?,
+        ];
+        let selections = SelectPass::new(gpu)?.prepare_both(gpu, &mesh, &crowd, &select, &active)?;
+        let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(gpu, &mesh, &crowd, &pages, &active)?;
+        let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
+        let after = morph.into_iter().chain([skin]).collect();
+        let reader = Arc::new(updated.reader());
+        Ok(Self { mesh, clusters, crowd, pages, select, active, before, selections, after, reader })
+    }
+
+    /// Replaces the pages by so many others. Everything that is seen is dealt out and skinned anew in the next frame.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
+        self.pages = PageBuffers::new(gpu, &self.mesh, &self.crowd, pages)?;
+        self.before[0] = PagesPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &self.pages)?;
+        // A new record of what was skinned: frames that are recorded already go on with the old one.
+        let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
+        self.select = SelectBuffers { skinned, ..self.select.clone() };
+        self.selections =
+            SelectPass::new(gpu)?.prepare_both(gpu, &self.mesh, &self.crowd, &self.select, &self.active)?;
+        let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(
+            gpu,
+            &self.mesh,
+            &self.crowd,
+            &self.pages,
+            &self.active,
+        )?;
+        if let Some(last) = self.after.last_mut() {
+            *last = skin;
+        }
+        Ok(())
+    }
+
+    /// Adds to a compute pass: pages for what is seen, palettes, and the vertices of clusters with an updated bone, a
+    /// changed morph weight, or a new page. The last of several skins over the same model matrices clears the updated
+    /// bones ([`UpdatedBones`](crate::animation::UpdatedBones)).
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.before.iter().for_each(|job| job.dispatch(pass));
+        let [keeping, clearing] = &self.selections;
+        if self.reader.read() { clearing } else { keeping }.dispatch(pass);
+        self.after.iter().for_each(|job| job.dispatch(pass));
+    }
+
+    /// Reads the vertices of an instance that have a page, in the mesh's own order; `None` for the others. Waits for
+    /// the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
+    pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Option<Vertex>>, Error> {
+        if instance >= self.crowd.instances {
+            let bound = format!("must be below {}", self.crowd.instances);
+            return Err(InputError::new("instance", instance, bound).into());
+        }
+        let (table, skinned) = (self.pages.table.read_blocking(gpu)?, self.pages.skinned.read_blocking(gpu)?);
+        let own = &table[instance * self.mesh.clusters()..];
+        let vertex = |place: usize| {
+            let page = own[place / super::clusters::CLUSTER] as usize;
+            skinned.get(super::clusters::CLUSTER * page + place % super::clusters::CLUSTER).copied()
+        };
+        let placed: Vec<_> = (0..self.mesh.vertices.len()).map(vertex).collect();
+        Ok(self.clusters.in_mesh_order(&placed))
+    }
+
+    /// The buffer of updated bones that the selection reads.
+    pub fn updated_bones(&self) -> &Buffer<u32> {
+        &self.select.updated_bones
+    }
+}

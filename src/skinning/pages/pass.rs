@@ -1,0 +1,101 @@
+//! The GPU pass of `kernels/skinning/pages.wgsl`.
+
+use super::{NO_PAGE, PageState};
+use crate::Error;
+use crate::gpu::bind::SeenAs;
+use crate::gpu::bindings::skinning::pages as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::skinning::pages::PageParams;
+use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::skinning::vertex::Vertex;
+
+impl SeenAs<PageState> for u32 {}
+
+/// The pages of all instances of a mesh on the device.
+#[derive(Debug, Clone)]
+pub struct PageBuffers {
+    /// The skinned vertices, 64 a page.
+    pub skinned: Buffer<Vertex>,
+    /// The page of each cluster of each instance, at `instance · clusters + cluster`, or
+    /// [`NO_PAGE`](super::NO_PAGE).
+    pub table: Buffer<u32>,
+    /// For each instance the number of clusters, from the first on, that have a page.
+    pub held: Buffer<u32>,
+    /// The pages that nobody holds; the last of them is dealt out first.
+    pub stack: Buffer<u32>,
+    /// How many these are, and how many instances went without a page.
+    pub state: Buffer<u32>,
+}
+
+impl PageBuffers {
+    /// Allocates `pages` pages that nobody holds.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd, pages: u32) -> Result<Self, GpuError> {
+        let stack: Vec<u32> = (0..pages).rev().collect();
+        let entries = crowd.instances * mesh.clusters();
+        Ok(Self {
+            skinned: Buffer::new(gpu, "pages of vertices", super::super::clusters::CLUSTER * pages as usize)?,
+            table: Buffer::from_slice(gpu, "page table", &vec![NO_PAGE; entries])?,
+            held: Buffer::new(gpu, "pages held", crowd.instances)?,
+            stack: Buffer::from_slice(gpu, "free pages", &stack)?,
+            state: Buffer::from_slice(gpu, "page state", &[pages, 0])?,
+        })
+    }
+
+    /// Number of pages.
+    pub fn pages(&self) -> usize {
+        self.stack.len()
+    }
+}
+
+/// Deals out pages.
+#[derive(Debug, Clone)]
+pub struct PagesPass {
+    kernel: Kernel,
+}
+
+impl PagesPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu)? })
+    }
+
+    /// Prepares the pages of a crowd, which need as many as its levels of detail say. Record it before
+    /// [`select`](crate::skinning::select) and [`skin`](crate::skinning::skin).
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for buffers of another crowd; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        pages: &PageBuffers,
+    ) -> Result<Job, Error> {
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
+        pages.held.check_holds("pages.held", crowd.instances)?;
+        pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
+        let params = PageParams {
+            instances: crowd.instances as u32,
+            clusters: mesh.clusters() as u32,
+            levels: mesh.clusters_of_levels(),
+        };
+        let uniform = Uniform::new(gpu, "pages", &params)?;
+        let group = bindings::Group {
+            params: &uniform,
+            instance_lods: crowd.instance_lods.slice(),
+            held: pages.held.slice(),
+            table: pages.table.slice(),
+            stack: pages.stack.slice(),
+            state: pages.state.slice().cast(),
+        };
+        let kernel = self.kernel.clone();
+        let step = Step { groups: vec![group.bind(gpu, &kernel)?], workgroups: [1; 3], kernel };
+        Ok(Job::new(gpu, "skinning/pages", vec![step])?)
+    }
+}

@@ -1,0 +1,59 @@
+//! Pages of skinned vertices: the CPU reference of `kernels/skinning/pages.wgsl`.
+
+use super::NO_PAGE;
+use crate::skinning::instance_lod::InstanceLod;
+
+/// The pages of all instances of a mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pages {
+    /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
+    pub table: Vec<u32>,
+    /// For each instance the number of clusters, from the first on, that have a page.
+    pub held: Vec<u32>,
+    /// The pages that nobody holds; the last is dealt out first.
+    pub free: Vec<u32>,
+    /// Number of instances that went without a page in the last frame.
+    pub short: u32,
+    clusters: usize,
+}
+
+impl Pages {
+    /// So many pages that nobody holds, for `instances` instances of a mesh of `clusters` clusters.
+    pub fn new(instances: usize, clusters: usize, pages: u32) -> Self {
+        let table = vec![NO_PAGE; instances * clusters];
+        Self { table, held: vec![0; instances], free: (0..pages).rev().collect(), short: 0, clusters }
+    }
+
+    /// Takes back the pages that instances no longer need, then deals out what others need, both in the order of the
+    /// instances. `levels` gives the number of clusters at each level of detail.
+    ///
+    /// # Panics
+    /// For fewer levels of detail or instances than there are.
+    pub fn deal(&mut self, lods: &[InstanceLod], levels: &[u32]) {
+        let last = levels.len() - 1;
+        let needed: Vec<u32> = (lods.iter())
+            .map(|lod| if lod.max_influences == 0 { 0 } else { levels[last.min(lod.mesh_lod as usize)] })
+            .collect();
+        let rows = || self.table.chunks_exact(self.clusters);
+        debug_assert_eq!(rows().len(), lods.len());
+        for (instance, needs) in needed.iter().enumerate() {
+            let row = &mut self.table[instance * self.clusters..][..self.clusters];
+            for entry in row[..self.held[instance] as usize].iter_mut().skip(*needs as usize).rev() {
+                self.free.push(std::mem::replace(entry, NO_PAGE));
+            }
+            self.held[instance] = self.held[instance].min(*needs);
+        }
+        self.short = 0;
+        for (instance, needs) in needed.iter().enumerate() {
+            let row = &mut self.table[instance * self.clusters..][..self.clusters];
+            while self.held[instance] < *needs {
+                let Some(page) = self.free.pop() else {
+                    self.short += 1;
+                    break;
+                };
+                row[self.held[instance] as usize] = page;
+                self.held[instance] += 1;
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! A batch of windows of any size, split where it exceeds a storage binding.
+
+use super::{HeightJob, HeightPass, HeightScratch};
+use crate::gpu::Gpu;
+use crate::terrain::config::Config;
+use crate::terrain::features::Features;
+use crate::terrain::fields::Fields;
+use crate::terrain::window::Window;
+use crate::{Error, InputError};
+
+/// A batch of any size. It is split where it exceeds a storage binding of 128 MiB, and recorded as one.
+#[derive(Debug, Clone)]
+pub struct HeightBatch {
+    jobs: Vec<HeightJob>,
+    fields: Vec<Fields>,
+    scratch: HeightScratch,
+}
+
+impl HeightBatch {
+    /// Allocates everything for `count` windows with `apron`, and for `feature_capacity` injected points in
+    /// each part.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`HeightPass::prepare`]; [`GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        pass: &HeightPass,
+        config: &Config,
+        [count, apron]: [u32; 2],
+        feature_capacity: usize,
+    ) -> Result<Self, Error> {
+        config.validate()?;
+        Window { patch: [0, 0], apron }.validate(config)?;
+        let largest = Fields::most(gpu, config.patch_size + 2 * apron) as u32;
+        let parts = count.div_ceil(largest).max(1);
+        let scratch = HeightScratch::new(gpu, pass, config, count.div_ceil(parts), apron)?;
+        let (mut jobs, mut fields) = (Vec::new(), Vec::new());
+        for part in 0..parts {
+            let size = count * (part + 1) / parts - count * part / parts;
+            let output = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, size)?;
+            jobs.push(pass.prepare(
+                gpu,
+                config,
+                [size, apron],
+                feature_capacity,
+                &output.heights,
+                &scratch,
+            )?);
+            fields.push(output);
+        }
+        Ok(Self { jobs, fields, scratch })
+    }
+
+    /// Sets the patches, in order through the parts, and the features of the next recordings.
+    ///
+    /// # Errors
+    /// As [`HeightJob::set`].
+    pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
+        let mut rest = patches;
+        for (job, fields) in self.jobs.iter().zip(&self.fields) {
+            let (part, after) = rest.split_at(rest.len().min(fields.count as usize));
+            job.set(gpu, part, features)?;
+            rest = after;
+        }
+        if rest.is_empty() {
+            return Ok(());
+        }
+        let bound = format!("must be at most {}, the batch's count", patches.len() - rest.len());
+        Err(InputError::new("patches.len", patches.len(), bound).into())
+    }
+
+    /// Records the generation of all windows.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.jobs.iter().for_each(|job| job.record(encoder));
+    }
+
+    /// The heights, part by part.
+    pub fn fields(&self) -> &[Fields] {
+        &self.fields
+    }
+
+    /// Bytes of heights and scratch on the device, apart from features.
+    pub fn bytes(&self) -> u64 {
+        self.fields.iter().map(|fields| fields.heights.bytes()).sum::<u64>() + self.scratch.bytes()
+    }
+}

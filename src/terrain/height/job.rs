@@ -1,0 +1,168 @@
+//! Prepared generation of windows, and the scratch memory that its dispatches share.
+
+use super::HeightPass;
+use crate::gpu::{Buffer, Gpu, GpuError, Job};
+use crate::terrain::config::Config;
+use crate::terrain::features::{FeatureIndex, Features};
+use crate::terrain::fields::REMEDY;
+use crate::terrain::window::{Lattice, Window};
+use crate::{Error, InputError};
+
+/// Points along an edge at every level, the base lattice first: enough for windows of any alignment.
+pub(super) fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
+    let mut widths = vec![config.patch_size + 2 * apron];
+    for _ in 0..config.levels() {
+        widths.push((widths[widths.len() - 1] - 1) / 2 + 3);
+    }
+    widths.reverse();
+    widths
+}
+
+/// Scratch memory for the levels that one dispatch leaves to the next: about a third of the output with one
+/// level per dispatch, a fifteenth with two. Jobs of one pass and shape may share it.
+#[derive(Debug, Clone)]
+pub struct HeightScratch {
+    // The two buffers alternate: the last dispatch reads the first, the one before it the second, and so on.
+    pub(super) buffers: [Buffer<i32>; 2],
+}
+
+impl HeightScratch {
+    /// Allocates scratch for `count` windows with `apron`.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
+    pub fn new(
+        gpu: &Gpu,
+        pass: &HeightPass,
+        config: &Config,
+        count: u32,
+        apron: u32,
+    ) -> Result<Self, GpuError> {
+        let [first, second] = Self::points(pass, &level_widths(config, apron), count);
+        let buffer =
+            |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
+        Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
+    }
+
+    fn points(pass: &HeightPass, widths: &[u32], count: u32) -> [usize; 2] {
+        let mut points = [0; 2];
+        for (left, &[level, _]) in pass.plan(widths.len() as u32 - 1).iter().rev().enumerate() {
+            // The base lattice is computed in the first dispatch and not loaded.
+            if level > 0 {
+                let needed = count as usize * (widths[level] as usize).pow(2);
+                points[left % 2] = needed.max(points[left % 2]);
+            }
+        }
+        points
+    }
+
+    /// Bytes that the scratch takes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.iter().map(Buffer::bytes).sum()
+    }
+
+    pub(super) fn check(&self, pass: &HeightPass, widths: &[u32], count: u32) -> Result<(), InputError> {
+        let needed = Self::points(pass, widths, count);
+        self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
+    }
+}
+
+/// The prepared generation of a batch of windows: set the patches, then record as often as wanted.
+#[derive(Debug, Clone)]
+pub struct HeightJob {
+    pub(super) config: Config,
+    pub(super) count: u32,
+    pub(super) apron: u32,
+    pub(super) widths: Vec<u32>,
+    pub(super) origins: Vec<Buffer<[i32; 2]>>,
+    pub(super) features: FeatureIndex,
+    pub(super) job: Job,
+}
+
+impl HeightJob {
+    /// The number of heights that the output must hold.
+    pub fn output_points(config: &Config, count: u32, apron: u32) -> usize {
+        let width = (config.patch_size + 2 * apron) as usize;
+        count as usize * width * width
+    }
+
+    /// Sets the patches and features of the next recordings: at most `count` patches.
+    ///
+    /// # Errors
+    /// [`InputError`] for patches out of bounds; [`GpuError::Limit`] for more features than there is room for.
+    pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
+        if patches.len() > self.count as usize {
+            let bound = format!("must be at most {}, the batch's count", self.count);
+            return Err(InputError::new("patches.len", patches.len(), bound).into());
+        }
+        let mut origins = vec![Vec::with_capacity(patches.len()); self.widths.len()];
+        for &patch in patches {
+            let window = Window { patch, apron: self.apron };
+            window.validate(&self.config)?;
+            for (level, spans) in window.levels(&self.config).into_iter().enumerate() {
+                origins[level].push(spans.map(|span| span.first as i32));
+            }
+        }
+        for (buffer, origins) in self.origins.iter().zip(&origins) {
+            buffer.write(gpu, origins)?;
+        }
+        self.features.write(gpu, patches.len() as u32, |level, window| {
+            let spacing = self.config.sample_spacing() << (self.config.levels() as usize - level);
+            let origin = origins[level][window as usize].map(|first| i64::from(first) * spacing);
+            let lattice = Lattice { origin, width: self.widths[level], spacing };
+            features.on_lattice([0, 0], lattice.grown(), level > 0)
+        })?;
+        Ok(())
+    }
+
+    /// Records the generation of all windows.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.job.record(encoder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::config::Offset;
+    use crate::terrain::height::Blocks;
+    use crate::terrain::window::Span;
+
+    /// The scratch buffers are exactly as large as the largest level that they ever hold.
+    #[test]
+    fn scratch_holds_what_dispatches_leave() {
+        let gpu = Gpu::headless(&crate::gpu::Options::default()).expect("the suite needs an adapter");
+        let points = |size, coarse_levels, apron, levels| {
+            let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
+            let widths = level_widths(&config, apron);
+            let blocks = Blocks { cell_rows: 1, levels };
+            let pass = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
+            HeightScratch::points(&pass, &widths, 3)
+        };
+        // The levels before the last are 131, 68, 36, 20, … points wide.
+        assert_eq!(points(257, 0, 0, 1), [3 * 131 * 131, 3 * 68 * 68]);
+        assert_eq!(points(3, 0, 0, 1), [0, 0], "one dispatch");
+        assert_eq!(points(5, 0, 0, 1), [3 * 5 * 5, 0], "two");
+        if gpu.tuning().compiles_long_shaders() {
+            assert_eq!(points(257, 0, 0, 2), [3 * 68 * 68, 3 * 20 * 20]);
+            assert_eq!(points(5, 0, 0, 2), [0, 0], "one dispatch");
+            assert_eq!(points(9, 0, 0, 2), [3 * 6 * 6, 0], "one level, then two");
+        }
+    }
+
+    /// The widths of levels, which are the same for all windows, cover every window, whatever its alignment.
+    #[test]
+    fn level_widths_cover_every_alignment() {
+        for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {
+            let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
+            let widths = level_widths(&config, apron);
+            for patch in -300..300 {
+                let levels = Window { patch: [patch, 1 - patch], apron }.levels(&config);
+                for (spans, width) in levels.iter().zip(&widths) {
+                    let fits = |span: &Span| span.width() <= *width as usize;
+                    assert!(spans.iter().all(fits), "size {size} patch {patch}: {spans:?} exceeds {width}");
+                }
+            }
+        }
+    }
+}

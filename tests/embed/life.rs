@@ -1,0 +1,122 @@
+//! Instances that come and go: handles, growth, and long lives.
+
+use relievo::scene::{Camera, Placement, Play, Quality, View};
+
+use crate::frame::{Frame, device};
+use crate::harness::Difference;
+use crate::world::{SIZE, World, camera, model};
+
+/// Frames of a long life; `RELIEVO_FRAMES` asks for more.
+const FRAMES: u32 = 200;
+
+/// A handle names its instance alone: when that is gone, it names nothing, although its place is used again.
+#[test]
+fn stale_handles_are_errors() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 3);
+    let old = world.crowd[1];
+    world.scene.despawn(old).expect("there");
+    let new = world.spawn(1);
+    assert_ne!(old, new);
+    let path = |result: Result<(), relievo::InputError>| result.expect_err("refused").path;
+    let scene = &mut world.scene;
+    assert_eq!(path(scene.despawn(old)), "instance");
+    assert_eq!(path(scene.move_to(old, Placement::default())), "instance");
+    assert_eq!(path(scene.play(old, &Play::new("walk"))), "instance");
+    assert_eq!(path(scene.set_tint(old, [1.0; 4])), "instance");
+    assert_eq!(path(scene.set_word(old, 3)), "instance");
+    assert_eq!(path(scene.set_visibility(old, 1, true)), "instance");
+    assert_eq!(scene.play(new, &Play::new("hop")).expect_err("refused").path, "play.clip");
+    assert_eq!(scene.set_tint(new, [0.0, 2.0, 0.0, 1.0]).expect_err("refused").path, "tint[1]");
+    scene.remove(world.creature).expect("there");
+    assert_eq!(path(scene.despawn(new)), "object");
+    assert_eq!(path(scene.remove(world.creature)), "object");
+    assert!(
+        scene.spawn(world.land, Placement::default()).expect_err("refused").to_string().contains("terrain")
+    );
+}
+
+/// More instances than there is room for let an object grow: the picture is that of a scene with enough room.
+#[test]
+fn objects_grow_in_flight() {
+    let gpu = device();
+    let mut small = World::empty(&gpu, 1);
+    let creature = small.scene.add_character(&model(), 1).expect("added");
+    small.scene.remove(small.creature).expect("there");
+    small.creature = creature;
+    let mut large = World::empty(&gpu, 1);
+    let frame = Frame::plain(&gpu, SIZE);
+    let mut views = [small.view(0.5), large.view(0.5)];
+    // Of 64 instances, which a block holds, the last is beyond it.
+    for at in 0..70 {
+        for world in [&mut small, &mut large] {
+            world.spawn(at % 10);
+        }
+        if at % 23 == 0 || at == 69 {
+            let renderers = [&small, &large].map(|world| frame.renderer(&gpu, &world.scene));
+            let a = frame.shot(&mut small.scene, &mut views[0], &renderers[0]);
+            let b = frame.shot(&mut large.scene, &mut views[1], &renderers[1]);
+            assert!(a == b, "after {at}");
+        }
+    }
+}
+
+/// After frames of spawning, moving and despawning under two views, nothing has grown, and the picture in full detail after
+/// `refresh` is that of a fresh scene.
+#[test]
+fn a_long_life_leaves_no_trace() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 12);
+    let frame = Frame::plain(&gpu, SIZE);
+    let mut views = [world.view(1.0), world.view(4.0)];
+    let mut seed = 7_u32;
+    let mut draw = |range: u32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 16) % range
+    };
+    let mut shown: Vec<usize> = (0..12).collect();
+    let mut held = 0;
+    for at in 0..FRAMES {
+        let index = draw(12) as usize;
+        world.scene.despawn(world.crowd[index]).expect("there");
+        shown[index] = draw(15) as usize;
+        world.crowd[index] = world.spawn(shown[index]);
+        let moved = draw(12) as usize;
+        shown[moved] = draw(15) as usize;
+        let placement = world.placement(shown[moved]);
+        world.scene.move_to(world.crowd[moved], placement).expect("there");
+        let play = Play { start: World::start(shown[moved]), ..Play::new("walk") };
+        world.scene.play(world.crowd[moved], &play).expect("the clip");
+        world.scene.advance(1.0 / 60.0).expect("finite");
+        let eye = camera(SIZE);
+        let turned = glam::Mat4::from_rotation_y(0.02 * at as f32);
+        views[1].set(Camera { view_from_world: eye.view_from_world * turned, ..eye }).expect("a camera");
+        let mut encoder = gpu.encoder("frame");
+        let [a, b] = &mut views;
+        world.scene.record(&mut encoder, &mut [a, b]).expect("recorded");
+        gpu.queue().submit([encoder.finish()]);
+        gpu.wait().expect("done");
+        if at == 9 {
+            held = gpu.memory().now();
+        }
+    }
+    assert_eq!(gpu.memory().now(), held, "memory grows");
+    let full = |world: &mut World, view: &mut View| {
+        view.set_quality(Quality { pixels: 0.0 }).expect("a quality");
+        let renderer = frame.renderer(&gpu, &world.scene);
+        frame.shot(&mut world.scene, view, &renderer)
+    };
+    let kept = full(&mut world, &mut views[0]);
+    world.scene.refresh().expect("afresh");
+    let refreshed = full(&mut world, &mut views[0]);
+    let mut fresh = World::empty(&gpu, 12);
+    fresh.scene.advance(world.scene.time() as f32).expect("finite");
+    for at in &shown {
+        fresh.spawn(*at);
+    }
+    let mut view = fresh.view(0.0);
+    assert!(full(&mut fresh, &mut view) == refreshed, "another picture than a fresh scene");
+    // Without a refresh all that differs is the order in which rounding errors came.
+    let difference = Difference::of(&kept, &refreshed, 1);
+    assert!(difference.outliers < 0.01, "{difference:?}");
+}
