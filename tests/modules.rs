@@ -10,10 +10,12 @@ use std::collections::BTreeSet;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
 use harness::gpu;
 use relievo::animation::Wrap;
 use relievo::animation::keyframe_cursor::reference::inside_clip;
 use relievo::gpu::{Buffer, Gpu, shaders::MODULES};
+use relievo::lod::LodCamera;
 use relievo::skinning::palette::reference::dual;
 use relievo::surface::{Address, HeightMap, Method, SurfaceTextures};
 use relievo::terrain::blend::reference::zone_fractions;
@@ -213,6 +215,32 @@ fn vertices_go_where_a_palette_of_dual_quaternions_takes_them() {
         assert_near(&own[3..6], &normal, 5e-6);
         assert_near(&own[6..], &tangent, 0.0);
     }
+}
+
+/// What a camera allows is within the rounding of its formula, some 2e-6, of the reference's; placements are exact but for
+/// the square root in the rotation.
+#[test]
+fn cameras_allow_what_the_reference_says() {
+    let camera = LodCamera {
+        eye: Vec3::new(1.0, 2.0, 3.0),
+        focal: 500.0,
+        ahead: Vec3::NEG_Z,
+        pixels: 2.0,
+        near: 0.25,
+        perspective: 1.0,
+        unused_a: 0.0,
+        unused_b: 0.0,
+    };
+    let spheres =
+        [[1.0, 2.0, -97.0, 0.0], [11.0, -6.0, -7.0, 1.0], [1.0, 2.0, 2.0, 0.9], [4.0, 6.0, 15.0, 1.0]];
+    let words = run(&gpu(), "lod", &[], None, spheres.as_flattened(), spheres.len() + 9);
+    let expected = spheres.map(|[x, y, z, radius]| camera.allows(Vec3::new(x, y, z), radius));
+    // A pixel takes 1/500 of the distance, of which 1e-4 is kept back.
+    assert!((expected[0] - 0.9999 * 2.0 * 100.0 / 502.0).abs() < 1e-3 && expected[1] > 0.01, "{expected:?}");
+    assert!(expected[2] == 0.0 && expected[3] > 0.01, "{expected:?}");
+    assert_near(&words[..4], &expected, 4e-6);
+    assert_near(&words[4..7], &[257.0, 2.0, -252.5], 0.0);
+    assert_near(&words[7..], &[0.0, 0.0, -2.0, 0.0, -1.0, 0.0], 1e-6);
 }
 
 /// Declarations of a module without a comment above them.

@@ -78,12 +78,12 @@ pub(crate) fn random_instances(case: u32, count: usize) -> Vec<SceneInstance> {
     let mut draw = Draw::new(case ^ 0x1257);
     let random = |draw: &mut Draw| {
         let factor = |draw: &mut Draw| {
-            let sign = if draw.word() % 4 == 0 { -1.0 } else { 1.0 };
+            let sign = if draw.word().is_multiple_of(4) { -1.0 } else { 1.0 };
             sign * libm::exp2f(2.0 * draw.signed())
         };
         let sphere = [0.0; 3].map(|_: f32| draw.signed());
         let [x, y, z] = sphere;
-        let seldom = |draw: &mut Draw, flag| if draw.word() % 8 == 0 { 0 } else { flag };
+        let seldom = |draw: &mut Draw, flag| if draw.word().is_multiple_of(8) { 0 } else { flag };
         let flags = seldom(draw, INSTANCE_ALIVE) | seldom(draw, INSTANCE_CASTS);
         let near = IVec3::new((draw.word() % 3) as i32 - 1, 0, (draw.word() % 3) as i32 - 1);
         SceneInstance {

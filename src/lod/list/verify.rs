@@ -46,7 +46,7 @@ fn random_decisions(case: u32, kind: &str, blocks: &Blocks) -> Vec<u32> {
         _ if blocks.object_of(index).is_none() => 1 + draw.word() % OBJECT_LISTS,
         "none seen" => 0,
         "all in one list" => 1 + case,
-        "few" if draw.word() % 40 > 0 => 0,
+        "few" if !draw.word().is_multiple_of(40) => 0,
         _ => draw.word() % (1 + OBJECT_LISTS),
     };
     (0..BLOCK as usize * blocks.block_objects.len()).map(&mut decision).collect()
