@@ -3,13 +3,11 @@
 mod albedo;
 mod camera;
 mod crowd;
-#[allow(dead_code, reason = "scenes that use it are being built")]
 mod format;
 pub mod picture;
 mod pipeline;
 pub mod posed;
 pub mod relief;
-#[allow(dead_code, reason = "scenes that use it are being built")]
 mod renderer;
 pub mod skinned;
 mod square;

@@ -98,7 +98,11 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
         .collect();
     for vertex in of_stage("vertex") {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
-        all.extend(of_stage("fragment").into_iter().map(|fragment| {
+        // Entries of that name take the vertices of one.
+        let is_bumpy = |entry: &Value| name_of(entry).ends_with("_bumpy");
+        let fitting =
+            of_stage("fragment").into_iter().filter(|fragment| is_bumpy(vertex) == is_bumpy(fragment));
+        all.extend(fitting.map(|fragment| {
             // Fragment entries of this name write no colour.
             let is_deep = name_of(fragment).starts_with("depth_");
             let render = json!({

@@ -193,7 +193,7 @@ fn every_module_compiles_alone_before_a_shader_and_with_all_others() {
     let modules = &said().written.modules;
     assert_eq!(
         modules.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
-        ["animation", "skinning", "surface", "terrain"]
+        ["animation", "lod", "skinning", "surface", "terrain"]
     );
     for (name, _) in modules {
         assert_accepted(job(&format!("module {name}")));

@@ -6,8 +6,6 @@ import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
-// Whether a material has a normal map.
-override NORMAL_MAP: bool = false;
 
 // The cutoff of materials that ignore alpha.
 const CUTOFF_OPAQUE: f32 = -1.0;
@@ -40,79 +38,123 @@ struct SceneMaterial {
 // Filters both.
 @group(2) @binding(3) var filtering: sampler;
 
+// Each location costs about as much as any other, and what fragments load costs more than what vertices load where
+// triangles are small. Hence few locations, and colours that vertices look up.
 struct Vertex {
     // The layers of a view give equal bits.
     @invariant @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) tangent: vec4<f32>,
-    @location(2) uv: vec2<f32>,
-    @location(3) @interpolate(flat) tint: vec4<f32>,
-    @location(4) @interpolate(flat) material: u32,
-    // 1 if triangles seen from outside run counter-clockwise on the screen, else −1.
-    @location(5) @interpolate(flat) side: f32,
+    // The normal; w: above 0 if triangles seen from outside run counter-clockwise on the screen, else below.
+    @location(0) normal: vec4<f32>,
+    // Texture coordinates; z: the layer of the texture, below 0 without one; w: the index of the material. All vertices of
+    // a triangle have the same z and w.
+    @location(1) surface: vec4<f32>,
+    // The colour of the material and the instance.
+    @location(2) @interpolate(flat) color: vec4<f32>,
+}
+
+// A vertex of a part with normal maps.
+struct BumpyVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec4<f32>,
+    @location(1) surface: vec4<f32>,
+    @location(2) @interpolate(flat) color: vec4<f32>,
+    @location(3) tangent: vec4<f32>,
 }
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
+    return without_tangent(bumpy(vertex, instance));
+}
+
+@vertex
+fn vertex_bumpy(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> BumpyVertex {
+    return bumpy(vertex, instance);
+}
+
+fn bumpy(vertex: u32, instance: u32) -> BumpyVertex {
     let placed = placed_vertex(instance, vertex);
-    return Vertex(
+    let index = material_of[vertex];
+    let layer = materials[index].layer;
+    return BumpyVertex(
         view.clip_from_world * vec4<f32>(placed.position, 1.0),
-        placed.normal,
-        placed.tangent,
-        placed.uv,
-        placed.tint,
-        material_of[vertex],
-        view.side * placed.side);
+        vec4<f32>(placed.normal, view.side * placed.side),
+        vec4<f32>(placed.uv, select(f32(layer), -1.0, layer == NO_LAYER), f32(index)),
+        materials[index].color * unpack4x8unorm(placed.tint),
+        placed.tangent);
+}
+
+fn without_tangent(in: BumpyVertex) -> Vertex {
+    return Vertex(in.clip, in.normal, in.surface, in.color);
 }
 
 fn colored(in: Vertex) -> vec4<f32> {
-    let material = materials[in.material];
-    let is_plain = material.layer == NO_LAYER;
-    let texel = textureSample(albedo, filtering, in.uv, select(material.layer, 0u, is_plain));
-    return select(texel, vec4<f32>(1.0), is_plain) * material.color * in.tint;
+    let layer = in.surface.z + 0.5;
+    let texel = textureSample(albedo, filtering, in.surface.xy, u32(max(layer, 0.0)));
+    return select(texel, vec4<f32>(1.0), layer < 0.0) * in.color;
 }
 
-// The unit normal of the side that is seen.
-fn facing(in: Vertex, is_front: bool) -> vec3<f32> {
-    var normal = normalize(in.normal);
-    if NORMAL_MAP {
-        let material = materials[in.material];
-        let is_plain = material.normal_layer == NO_LAYER;
-        let texel = textureSample(normals, filtering, in.uv, select(material.normal_layer, 0u, is_plain));
-        let bump = (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, -material.normal_scale, 1.0);
-        let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
-        let bitangent = in.tangent.w * cross(normal, tangent);
-        let bumpy = normalize(bump.x * tangent + bump.y * bitangent + bump.z * normal);
-        normal = select(bumpy, normal, is_plain);
-    }
+// What the light makes of a colour; `outwards` is the unit normal.
+fn lit(color: vec4<f32>, outwards: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
+    var facing = outwards;
     if DOUBLE_SIDED {
-        normal = select(-normal, normal, is_front == (in.side > 0.0));
+        facing = select(-outwards, outwards, is_front == (in.normal.w > 0.0));
     }
-    return normal;
+    let direct = max(dot(facing, view.light.xyz), 0.0);
+    return vec4<f32>(scene_lit(color.rgb, direct), 1.0);
 }
 
-fn lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
-    let direct = max(dot(facing(in, is_front), view.light.xyz), 0.0);
-    return vec4<f32>(scene_lit(color.rgb, direct), 1.0);
+fn flat_lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
+    return lit(color, normalize(in.normal.xyz), in, is_front);
+}
+
+fn bumpy_lit(color: vec4<f32>, in: BumpyVertex, is_front: bool) -> vec4<f32> {
+    let normal = normalize(in.normal.xyz);
+    let material = materials[material_at(without_tangent(in))];
+    let is_plain = material.normal_layer == NO_LAYER;
+    let texel = textureSample(normals, filtering, in.surface.xy, select(material.normal_layer, 0u, is_plain));
+    let bump = (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, -material.normal_scale, 1.0);
+    let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
+    let bitangent = in.tangent.w * cross(normal, tangent);
+    let bumpy = normalize(bump.x * tangent + bump.y * bitangent + bump.z * normal);
+    return lit(color, select(bumpy, normal, is_plain), without_tangent(in), is_front);
+}
+
+fn material_at(in: Vertex) -> u32 {
+    return u32(in.surface.w + 0.5);
 }
 
 // Whether alpha leaves a pixel out.
 fn is_cut(alpha: f32, in: Vertex) -> bool {
-    let cutoff = materials[in.material].cutoff;
+    let cutoff = materials[material_at(in)].cutoff;
     return alpha < select(cutoff, surface_dither_threshold(vec2<u32>(in.clip.xy)), cutoff == CUTOFF_DITHERED);
 }
 
 // Ignores alpha. It is a separate entry point because shaders with a discard are tested for depth late.
 @fragment
 fn opaque(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
-    return lit(colored(in), in, is_front);
+    return flat_lit(colored(in), in, is_front);
+}
+
+@fragment
+fn opaque_bumpy(in: BumpyVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    return bumpy_lit(colored(without_tangent(in)), in, is_front);
 }
 
 @fragment
 fn cut_out(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     let color = colored(in);
-    let shaded = lit(color, in, is_front);
+    let shaded = flat_lit(color, in, is_front);
     if is_cut(color.a, in) {
+        discard;
+    }
+    return shaded;
+}
+
+@fragment
+fn cut_out_bumpy(in: BumpyVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    let color = colored(without_tangent(in));
+    let shaded = bumpy_lit(color, in, is_front);
+    if is_cut(color.a, without_tangent(in)) {
         discard;
     }
     return shaded;

@@ -60,7 +60,8 @@ struct Vertex {
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec2<f32>,
-    @location(4) @interpolate(flat) tint: vec4<f32>,
+    // The factor of the instance's colours, 8 bits each.
+    @location(4) @interpolate(flat) tint: u32,
     // World units per uv unit.
     @location(5) world: f32,
 }
@@ -118,7 +119,7 @@ fn in_frame(frame: Frame, direction: vec3<f32>) -> vec3<f32> {
 
 fn shaded(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> vec4<f32> {
     let hit = found.hit;
-    let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb * relief.color.rgb * in.tint.rgb;
+    let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb * relief.color.rgb * unpack4x8unorm(in.tint).rgb;
     var facing = surface_normal(heights, hit.uv, relief.scale, found.settings);
     if NORMAL_MAP {
         facing = surface_mapped_normal(textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy), GREEN_UP);

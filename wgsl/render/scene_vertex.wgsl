@@ -35,8 +35,8 @@ struct PlacedVertex {
     // Along u, of any length but 0; w: the bitangent along v is w · normal × tangent, of unit vectors.
     tangent: vec4<f32>,
     uv: vec2<f32>,
-    // The factor of the instance's colours and alpha.
-    tint: vec4<f32>,
+    // The factor of the instance's colours and alpha, 8 bits each.
+    tint: u32,
     // −1 if the placement mirrors, else 1.
     side: f32,
     // By how much the placement lengthens the direction of u.
@@ -68,7 +68,7 @@ fn placed_vertex(instance: u32, vertex: u32) -> PlacedVertex {
         side * placed_normal(placement, vertex_normal(middle, vertices[at + 2u])),
         vec4<f32>(along, side * tangent.w),
         texture_coordinates[vertex],
-        unpack4x8unorm(instances[index].tint),
+        instances[index].tint,
         side,
         length(along));
 }

@@ -65,6 +65,7 @@ pub(super) struct PipelineKey {
 /// The shader of a pipeline with its entry points and constants.
 struct Program {
     shader: &'static shaders::Shader,
+    vertex: &'static str,
     /// None where depth alone is written and nothing is left out.
     fragment: Option<&'static str>,
     constants: Vec<(&'static str, f64)>,
@@ -114,7 +115,7 @@ impl PipelineKey {
             layout: Some(&device.create_pipeline_layout(&layout)),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some("vertex"),
+                entry_point: Some(program.vertex),
                 compilation_options: options(),
                 buffers: &[Some(INSTANCES)],
             },
@@ -147,20 +148,20 @@ impl PipelineKey {
         match (self.kind, self.layer) {
             (Kind::Mesh { surface, normal_mapped }, layer) => Program {
                 shader: &shaders::RENDER_SCENE_MESH,
-                fragment: match (layer, surface.cut_out) {
-                    (Layer::Color, false) => Some("opaque"),
-                    (Layer::Color, true) => Some("cut_out"),
-                    (Layer::Depth, false) => depth_opaque,
-                    (Layer::Depth, true) => Some("depth_cut_out"),
+                vertex: if normal_mapped { "vertex_bumpy" } else { "vertex" },
+                fragment: match (layer, surface.cut_out, normal_mapped) {
+                    (Layer::Color, false, false) => Some("opaque"),
+                    (Layer::Color, false, true) => Some("opaque_bumpy"),
+                    (Layer::Color, true, false) => Some("cut_out"),
+                    (Layer::Color, true, true) => Some("cut_out_bumpy"),
+                    (Layer::Depth, false, _) => depth_opaque,
+                    (Layer::Depth, true, _) => Some("depth_cut_out"),
                 },
-                constants: scene_mesh::Constants {
-                    double_sided: surface.double_sided,
-                    normal_map: normal_mapped,
-                }
-                .list(),
+                constants: scene_mesh::Constants { double_sided: surface.double_sided }.list(),
             },
             (Kind::Relief { options, .. }, layer) => Program {
                 shader: &shaders::RENDER_SCENE_RELIEF,
+                vertex: "vertex",
                 fragment: Some(match layer {
                     Layer::Depth => "depth_relief",
                     // Without a depth attachment no shader may write depth.
@@ -171,6 +172,7 @@ impl PipelineKey {
             },
             (Kind::Terrain, layer) => Program {
                 shader: &shaders::RENDER_SCENE_TERRAIN,
+                vertex: "vertex",
                 fragment: if layer == Layer::Color { Some("fragment") } else { depth_opaque },
                 constants: Vec::new(),
             },

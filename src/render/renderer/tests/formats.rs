@@ -20,7 +20,8 @@ fn kinds() -> Vec<Kind> {
     let flags = || [false, true].into_iter();
     let surfaces =
         flags().flat_map(|cut_out| flags().map(move |double_sided| SurfaceKind { cut_out, double_sided }));
-    let meshes = surfaces.map(|surface| Kind::Mesh { surface, normal_mapped: surface.cut_out });
+    let meshes =
+        surfaces.flat_map(|surface| flags().map(move |normal_mapped| Kind::Mesh { surface, normal_mapped }));
     let reliefs = Method::ALL.into_iter().flat_map(|method| {
         [
             (Shadow::None, None, false),

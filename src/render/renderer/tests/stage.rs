@@ -74,27 +74,7 @@ impl Stage {
             shown: 1,
             ..LodObject::NONE
         };
-        let mirrored = |placement: &Affine| {
-            let [x, y, z] = placement.map(|row| Vec3::from_slice(&row));
-            x.dot(y.cross(z)) < 0.0
-        };
-        let list = |wanted: bool| -> Vec<u32> {
-            let all = (0..).zip(placements).filter(|(_, placement)| mirrored(placement) == wanted);
-            all.map(|(index, _)| index).collect()
-        };
-        let all = [list(false), list(true)];
-        // Words of other lists would be found out.
-        let mut lists = vec![u32::MAX; (4 * BLOCK) as usize];
-        let mut draws = vec![[0; 5]; 3];
-        for (at, list) in all.iter().enumerate() {
-            let first = lod.first_list as usize + at * BLOCK as usize;
-            lists[first..first + list.len()].copy_from_slice(list);
-        }
-        for [first, indices] in parts {
-            let count = |list: usize| all.get(list).map_or(0, |list| list.len() as u32);
-            draws.extend((0..OBJECT_LISTS as usize).map(|list| [*indices, count(list), *first, 0, 0]));
-        }
-        let draws: Vec<SceneDraw> = draws.into_iter().map(bytemuck::cast).collect();
+        let (lists, draws) = listed(&lod, placements, parts);
         let nowhere = vec![[f32::NAN; 4]; 3 * BLOCK as usize];
         let rows: Vec<[f32; 4]> = nowhere.into_iter().chain(placements.iter().flatten().copied()).collect();
         let instances = vec![SceneInstance::new([0.0; 4]); BLOCK as usize + placements.len()];
@@ -130,6 +110,31 @@ impl Stage {
     pub fn object<'a>(&'a self, drawable: &'a Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
         DrawnObject { drawable, lod: &self.lod, mirrors: true, ground }
     }
+}
+
+/// The lists of level 0 and the draws of all parts.
+fn listed(lod: &LodObject, placements: &[Affine], parts: &[[u32; 2]]) -> (Vec<u32>, Vec<SceneDraw>) {
+    let mirrored = |placement: &Affine| {
+        let [x, y, z] = placement.map(|row| Vec3::from_slice(&row));
+        x.dot(y.cross(z)) < 0.0
+    };
+    let list = |wanted: bool| -> Vec<u32> {
+        let all = (0..).zip(placements).filter(|(_, placement)| mirrored(placement) == wanted);
+        all.map(|(index, _)| index).collect()
+    };
+    let all = [list(false), list(true)];
+    // Words of other lists would be found out.
+    let mut lists = vec![u32::MAX; (4 * BLOCK) as usize];
+    let mut draws = vec![[0; 5]; lod.first_draw as usize];
+    for (at, list) in all.iter().enumerate() {
+        let first = lod.first_list as usize + at * BLOCK as usize;
+        lists[first..first + list.len()].copy_from_slice(list);
+    }
+    for [first, indices] in parts {
+        let count = |list: usize| all.get(list).map_or(0, |list| list.len() as u32);
+        draws.extend((0..OBJECT_LISTS as usize).map(|list| [*indices, count(list), *first, 0, 0]));
+    }
+    (lists, draws.into_iter().map(bytemuck::cast).collect())
 }
 
 /// A renderer with the pipelines of one object.
@@ -218,18 +223,7 @@ impl Canvas {
         gpu.run("draw", |encoder| {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 color_attachments: &attachments,
-                depth_stencil_attachment: depth.as_ref().map(|(view, depth)| {
-                    let far = if depth.reversed { 0.0 } else { 1.0 };
-                    let has_stencil = depth.format.has_stencil_aspect();
-                    wgpu::RenderPassDepthStencilAttachment {
-                        view,
-                        depth_ops: Some(wgpu::Operations {
-                            load: wgpu::LoadOp::Clear(far),
-                            store: wgpu::StoreOp::Store,
-                        }),
-                        stencil_ops: has_stencil.then(wgpu::Operations::default),
-                    }
-                }),
+                depth_stencil_attachment: depth.as_ref().map(|(view, depth)| cleared(view, depth)),
                 ..Default::default()
             });
             draw(&mut pass);
@@ -247,5 +241,18 @@ impl Canvas {
         })
         .expect("drawn");
         buffer.read_blocking(gpu).expect("read")
+    }
+}
+
+/// The attachment of a depth, cleared to the distance.
+fn cleared<'a>(
+    view: &'a wgpu::TextureView,
+    depth: &DepthFormat,
+) -> wgpu::RenderPassDepthStencilAttachment<'a> {
+    let far = if depth.reversed { 0.0 } else { 1.0 };
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(far), store: wgpu::StoreOp::Store }),
+        stencil_ops: depth.format.has_stencil_aspect().then(wgpu::Operations::default),
     }
 }
