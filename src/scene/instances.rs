@@ -90,6 +90,11 @@ impl Instances {
         self.generations.get(index) == Some(&generation) && self.all[index].flags & INSTANCE_ALIVE != 0
     }
 
+    /// All instances, those that do not exist too.
+    pub fn all(&self) -> &[SceneInstance] {
+        &self.all
+    }
+
     /// Changes an instance.
     pub fn change(&mut self, index: u32, change: impl FnOnce(&mut SceneInstance)) {
         change(&mut self.all[index as usize]);

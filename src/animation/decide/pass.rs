@@ -84,7 +84,7 @@ impl DecidePass {
         let kernels = match dispatches {
             Dispatches::One => match Decider::new(gpu, gate, |mode| whole(gpu, mode))? {
                 Decider::Gate(gate, kernel) => Kernels::One(gate, kernel),
-                Decider::Budget(pass) => Kernels::each(gpu, GatePass::of_budget(pass))?,
+                Decider::Budget(pass) => Kernels::each(gpu, GatePass::of_budget(*pass))?,
             },
             Dispatches::Each => Kernels::each(gpu, GatePass::new(gpu, gate)?)?,
         };
