@@ -85,6 +85,7 @@ fn shaders_are_flat_and_described() {
     assert_eq!(modules.len(), relievo::gpu::shaders::MODULES.len());
     for (module, functions) in modules.iter().zip([
         &["slerp", "inside_clip"][..],
+        &["camera_allows", "instance_axes"],
         &["rows_of_dual", "placed_normal"],
         &["surface_trace", "surface_soft_shadow"],
         &["zone_fraction", "slope_normal", "threefry2x32"],

@@ -99,7 +99,7 @@ fn places_that_cannot_be_drawn_are_refused_and_change_nothing() {
     let gone = stage.add(&[[9, 9]], HERE);
     stage.scene.remove(gone);
     for (id, patches, words) in [
-        (id, &[HERE, HERE][..], "patches = 2: must be at most 1"),
+        (id, &[HERE, HERE][..], "patches.len = 2: must be at most 1"),
         (id, &[[HERE[0] + (1 << 20), 0]], "2^24"),
         (gone, &[HERE], "fields = 1: must be fields of this scene"),
     ] {
