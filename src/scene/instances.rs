@@ -90,6 +90,18 @@ impl Instances {
         self.generations.get(index) == Some(&generation) && self.all[index].flags & INSTANCE_ALIVE != 0
     }
 
+    /// Index and generation of all instances that exist, in ascending order.
+    pub fn each(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let all = self.all.iter().zip(&self.generations).zip(0_u32..);
+        let alive = all.filter(|((instance, _), _)| instance.flags & INSTANCE_ALIVE != 0);
+        alive.map(|((_, generation), index)| [index, *generation])
+    }
+
+    /// An instance as the device has it.
+    pub fn get(&self, index: u32) -> &SceneInstance {
+        &self.all[index as usize]
+    }
+
     /// Changes an instance.
     pub fn change(&mut self, index: u32, change: impl FnOnce(&mut SceneInstance)) {
         change(&mut self.all[index as usize]);

@@ -27,14 +27,7 @@ pub(super) fn object(
     capacity: usize,
 ) -> Result<Object, Error> {
     check(model, capacity)?;
-    let mut rest = at_rest(model)?;
-    if model.clips.is_empty() {
-        // The levels were made for this pose. Vertices and their order are the same.
-        for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
-            mesh.levels.clone_from(&from.levels);
-        }
-    }
-    let merged = merged(&rest, OBJECT_LEVELS as usize)?;
+    let merged = merged_at_rest(model)?;
     let corners = merged.model.meshes.iter().flat_map(|mesh| &mesh.positions);
     let sphere = BoundingSphere::around(corners.map(|position| (*position).into()));
     let mut drawables = Vec::new();
@@ -48,6 +41,23 @@ pub(super) fn object(
     Ok(Object::new(Kind::Mesh, (instances, sphere), (errors(&merged), 1.0), (drawables, draws)))
 }
 
+/// The meshes of a model at rest, merged.
+pub(crate) fn merged_at_rest(model: &Model) -> Result<Merged, InputError> {
+    let mut rest = at_rest(model)?;
+    if model.clips.is_empty() {
+        // The levels were made for this pose. Vertices and their order are the same.
+        for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
+            mesh.levels.clone_from(&from.levels);
+        }
+    }
+    merged(&rest, OBJECT_LEVELS as usize)
+}
+
+/// The meshes of a character, merged.
+pub(crate) fn merged_character(model: &Model) -> Result<Merged, InputError> {
+    merged(model, OBJECT_LEVELS as usize)
+}
+
 /// An object of a model that has clips.
 pub(super) fn character(
     gpu: &Gpu,
@@ -57,7 +67,7 @@ pub(super) fn character(
     shares: Shares,
 ) -> Result<Object, Error> {
     check(model, capacity)?;
-    let merged = merged(model, OBJECT_LEVELS as usize)?;
+    let merged = merged_character(model)?;
     let instances = Instances::new(capacity);
     let character = Character::new(gpu, merged, instances.capacity())?;
     let drawn = (character.drawables(gpu, layouts)?, character.draws());
