@@ -14,12 +14,14 @@ struct LocalToModelParams {
     words: u32,
     first_chain: u32,
     chains: u32,
+    // The word at which the updated bits begin.
+    first_word: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: LocalToModelParams;
 @group(0) @binding(1) var<storage, read> slots: array<Slot>;
 @group(0) @binding(2) var<storage, read> chains: array<Chain>;
-// One bit per slot of each instance.
+// From `first_word` on, one bit per slot of each instance.
 @group(0) @binding(3) var<storage, read> updated_bones: array<u32>;
 @group(0) @binding(4) var<storage, read> updated_instances: array<u32>;
 // In the first vector, w is the number of updated instances.
@@ -83,7 +85,7 @@ fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
     if start >= end {
         return end;
     }
-    let first_word = instance * params.words;
+    let first_word = params.first_word + instance * params.words;
     var word = start / 32u;
     var bits = updated_bones[first_word + word] & (0xffffffffu << (start % 32u));
     while bits == 0u {

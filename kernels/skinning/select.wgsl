@@ -1,13 +1,14 @@
 // Selects the clusters that are skinned, among those of instances that are seen, at their level of detail:
 // clusters with an updated bone, clusters of instances whose influences changed, clusters beyond the level of
 // the frame before, and, with morph targets, clusters of instances whose weights changed. A thread decides for
-// one cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame, and
-// the first thread writes the arguments of the dispatch.
+// one cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame and, with
+// CLEAR, clears its updated bones; the first thread writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 
 override FINISH: bool = false;
+override CLEAR: bool = false;
 
 // Words per instance in `skinned`, before its weights.
 const SKINNED_WORDS: u32 = 4u;
@@ -39,7 +40,7 @@ struct Dispatched {
 // The bones of each cluster, one bit per bone.
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
 // The updated bones of each instance, one bit per bone.
-@group(0) @binding(2) var<storage, read> updated_bones: array<u32>;
+@group(0) @binding(2) var<storage, read_write> updated_bones: array<u32>;
 // One per instance.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // The weights of each instance's targets, as bits.
@@ -68,6 +69,11 @@ fn finish(index: u32) {
         skinned[to + 3u] = select(min(skinned[to + 3u] + 1u, 2u), 0u, now.max_influences == 0u);
         for (var target_index = 0u; target_index < params.targets; target_index++) {
             skinned[to + SKINNED_WORDS + target_index] = weights[index * params.targets + target_index];
+        }
+        if CLEAR {
+            for (var word = 0u; word < params.words; word++) {
+                updated_bones[index * params.words + word] = 0u;
+            }
         }
     }
     if index == 0u {

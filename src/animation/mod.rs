@@ -32,6 +32,8 @@ pub mod pose;
 pub mod priority;
 pub mod root_motion;
 pub mod sample;
+#[cfg(feature = "gpu")]
+pub mod updated_bones;
 #[cfg(feature = "verify")]
 pub mod verify;
 
@@ -51,3 +53,5 @@ pub use order::Order;
 pub use pose::Pose;
 pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;
+#[cfg(feature = "gpu")]
+pub use updated_bones::UpdatedBones;

@@ -4,6 +4,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::InputError;
+use crate::animation::updated_bones::UpdatedBones;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
@@ -14,7 +15,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 #[derive(Debug, Clone)]
 pub struct ModelMatrices {
     matrices: Buffer<Affine>,
-    updated_bones: Option<Buffer<u32>>,
+    updated_bones: Option<UpdatedBones>,
     consumer: ExclusiveConsumer,
 }
 
@@ -25,11 +26,10 @@ impl ModelMatrices {
         Self { matrices: matrices.clone(), updated_bones: None, consumer: ExclusiveConsumer::default() }
     }
 
-    /// The same matrices, of which a frame changes only those whose bit is set in this buffer, which has the
-    /// layout of [`Active::updated_bones`](super::active::Active::updated_bones).
+    /// The same matrices, of which frames change only those whose bit is set here.
     #[must_use]
-    pub fn with_updated_bones(&self, bits: &Buffer<u32>) -> Self {
-        Self { updated_bones: Some(bits.clone()), ..self.clone() }
+    pub fn with_updated_bones(&self, updated: &UpdatedBones) -> Self {
+        Self { updated_bones: Some(updated.clone()), ..self.clone() }
     }
 
     /// Another buffer of the same crowd, which shares the record of what was prepared.
@@ -37,9 +37,8 @@ impl ModelMatrices {
         Self { matrices, updated_bones: None, consumer: self.consumer.clone() }
     }
 
-    /// One bit per slot of each instance for the matrices that a frame updated, in the layout of
-    /// [`Active::updated_bones`](super::active::Active::updated_bones). If `None`, any matrix may have changed.
-    pub fn updated_bones(&self) -> Option<&Buffer<u32>> {
+    /// The matrices that frames updated since skinning last followed them. If `None`, any matrix may have changed.
+    pub fn updated_bones(&self) -> Option<&UpdatedBones> {
         self.updated_bones.as_ref()
     }
 

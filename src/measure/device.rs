@@ -116,7 +116,8 @@ impl Play for Device {
         let active = &self.gated.frame.active;
         self.stale = self.gated.crowd.model_matrices().read_blocking(&self.gpu)?;
         self.fresh = self.full.crowd.model_matrices().read_blocking(&self.gpu)?;
-        let updated_bones = active.updated_bones.read_blocking(&self.gpu)?;
+        let bits = active.bits.read_blocking(&self.gpu)?;
+        let updated_bones = &bits[active.updated_words()];
         Ok(Played {
             interpolated: active.pairs.dispatched.read_blocking(&self.gpu)?[3] as usize,
             concatenated: updated_bones.iter().map(|word| word.count_ones() as usize).sum(),

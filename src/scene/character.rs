@@ -7,21 +7,22 @@ use crate::asset::Model;
 use crate::asset::mesh::bone_radii;
 use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
 use crate::lod::assign::{AssignBuffers, AssignPass};
-use crate::scene::Shares;
+use crate::lod::{LodObject, SceneDraw, SceneInstance, SelectView};
 use crate::scene::drawable::Drawable;
 use crate::scene::instances::Changed;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
+use crate::scene::paging::{Needs, Paging, needs};
 use crate::scene::placement::{ClipTime, Play};
+use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
-use crate::shared::lod::object::SceneDraw;
 use crate::skinning::bounding_sphere::BoundingSphere;
-use crate::skinning::clusters::CLUSTER;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::PagedSkin;
+use crate::skinning::pages::PageBuffers;
 #[cfg(feature = "verify")]
 use crate::skinning::vertex::Vertex;
 use crate::skinning::{Extent, poses_of};
@@ -64,8 +65,10 @@ struct Runtime {
     crowd: Crowd,
     frame: GatedFrame,
     skins: Vec<PagedSkin>,
+    /// One for each of `skins`.
+    paging: Vec<Paging>,
     weights: Vec<MorphWeightsJob>,
-    assign: Vec<(Uniform<AssignParams>, Job)>,
+    assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
     /// The layout for which `assign` was prepared.
     version: u64,
 }
@@ -107,6 +110,11 @@ impl Character {
     /// The errors of all levels.
     pub fn errors(&self) -> Vec<f32> {
         mesh::errors(&self.merged)
+    }
+
+    /// The pages of each mesh.
+    pub fn pages(&self) -> impl Iterator<Item = &PageBuffers> {
+        self.runtime.skins.iter().map(|skin| &skin.pages)
     }
 
     /// What is drawn: each mesh, from the vertices of each instance.
@@ -192,17 +200,49 @@ impl Character {
         let runtime = &mut self.runtime;
         runtime.assign.clear();
         for skin in &runtime.skins {
-            let params = Uniform::new(gpu, "assign", &params)?;
+            let uniform = Uniform::new(gpu, "assign", &params)?;
             let buffers = AssignBuffers {
-                params: &params,
+                params: &uniform,
                 allowed: &layout.allowed,
                 lods: &runtime.frame.state.lods,
                 instance_lods: &skin.crowd.instance_lods,
             };
             let job = pass.prepare(gpu, buffers, instances)?;
-            runtime.assign.push((params, job));
+            runtime.assign.push((uniform, params, job));
         }
         runtime.version = layout.version;
+        Ok(())
+    }
+
+    /// Provides the pages that the views of a frame need. Returns the factor by which levels of detail must be coarser
+    /// (1 unless a binding is too small), and whether pages were replaced.
+    pub fn provide(
+        &mut self,
+        gpu: &Gpu,
+        views: &[SelectView],
+        object: &LodObject,
+        instances: &[SceneInstance],
+    ) -> Result<(f32, bool), Error> {
+        let Runtime { skins, paging, .. } = &mut self.runtime;
+        if skins.iter().zip(&*paging).all(|(skin, paging)| skin.pages.pages() as u32 >= paging.full) {
+            return Ok((1.0, false));
+        }
+        let Needs { pages, coarsening } = needs(views, object, instances, paging);
+        let mut is_replaced = false;
+        for ((skin, paging), needed) in skins.iter_mut().zip(&*paging).zip(pages) {
+            if needed as usize > skin.pages.pages() {
+                skin.set_pages(gpu, paging.enough(needed))?;
+                is_replaced = true;
+            }
+        }
+        Ok((coarsening, is_replaced))
+    }
+
+    /// Stages the fraction of the allowed displacement that levels of detail use.
+    pub fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
+        for (params, values, _) in &self.runtime.assign {
+            staged.uniform(params, &AssignParams { mesh_fraction: fraction, ..*values })?;
+        }
         Ok(())
     }
 
@@ -240,7 +280,7 @@ impl Character {
     /// Adds sampling, gating and skinning to a compute pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         let runtime = &self.runtime;
-        runtime.assign.iter().for_each(|(_, job)| job.dispatch(pass));
+        runtime.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
         runtime.frame.dispatch(pass);
         runtime.weights.iter().for_each(|weights| weights.dispatch(pass));
         runtime.skins.iter().for_each(|skin| skin.dispatch(pass));
@@ -259,11 +299,11 @@ impl Runtime {
         let clips = ClipBuffers::new(gpu, set)?;
         let frame = GatedFrame::new(gpu, &model.skeleton, &clips, &crowd, gate)?;
         let every: Vec<usize> = (0..model.clips.len()).collect();
-        let (mut skins, mut weights) = (Vec::new(), Vec::new());
+        let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (index, mesh) in model.meshes.iter().enumerate() {
-            let clusters = mesh.vertices().div_ceil(CLUSTER);
-            let pages = (capacity * clusters) as u32;
-            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, pages)?;
+            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
+            paging.push(Paging::new(clusters, capacity, gpu.max_binding()));
             if !mesh.targets.is_empty() {
                 let keys = WeightSet::new(mesh, set, &every)?;
                 weights.push(MorphWeightsPass::new(gpu)?.prepare(
@@ -275,6 +315,9 @@ impl Runtime {
             }
             skins.push(skin);
         }
-        Ok(Self { crowd, frame, skins, weights, assign: Vec::new(), version: 0 })
+        for (skin, paging) in skins.iter_mut().zip(&paging) {
+            skin.set_pages(gpu, paging.initial())?;
+        }
+        Ok(Self { crowd, frame, skins, paging, weights, assign: Vec::new(), version: 0 })
     }
 }

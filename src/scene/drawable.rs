@@ -7,6 +7,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{PartMaterials, ReliefMaterial};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::shared::render::scene_vertex::MeshParams;
+use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::Vertex;
 use crate::terrain::materials::Materials;
 
@@ -79,6 +80,21 @@ impl MeshDrawable {
             page_table: geometry.page_table.slice(),
         };
         Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, clusters, parts })
+    }
+
+    /// The same mesh, whose vertices lie in other pages.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn with_pages(
+        &self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        pages: &PageBuffers,
+    ) -> Result<Self, GpuError> {
+        let (vertices, page_table) = (pages.skinned.clone(), pages.table.clone());
+        let geometry = MeshGeometry { vertices, page_table, ..self.geometry.clone() };
+        Self::new(gpu, layouts, geometry, self.clusters, self.parts.clone())
     }
 }
 

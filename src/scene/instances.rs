@@ -97,9 +97,9 @@ impl Instances {
         alive.map(|((_, generation), index)| [index, *generation])
     }
 
-    /// An instance as the device has it.
-    pub fn get(&self, index: u32) -> &SceneInstance {
-        &self.all[index as usize]
+    /// All instances, those that do not exist too.
+    pub fn all(&self) -> &[SceneInstance] {
+        &self.all
     }
 
     /// Changes an instance.

@@ -4,10 +4,8 @@ use glam::Vec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
-use crate::scene::handles::Slots;
-use crate::scene::object::Object;
 use crate::shared::lod::instance::SceneInstance;
-use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
 /// The place of an object in the buffers.
 #[derive(Debug, Clone, Copy, Default)]
@@ -40,50 +38,31 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Lays out the objects, one after the other, and tells each its range.
+    /// Allocates the buffers of objects that were laid out one after the other, up to `end`.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub(super) fn new(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Self, Error> {
-        let mut range = ObjectRange::default();
-        let (mut all, mut block_objects, mut draws) = (Vec::new(), Vec::new(), Vec::new());
-        for object in objects.iter_mut() {
-            object.range = range;
-            let instances = object.instances.capacity() as u32;
-            block_objects.resize(block_objects.len() + (instances / BLOCK) as usize, all.len() as u32);
-            all.push(lod_object(object));
-            draws.extend_from_slice(&object.draws);
-            range.first += instances;
-            range.first_list += 2 * object.errors.len() as u32 * instances;
-            range.first_draw += object.draws.len() as u32;
-        }
-        let count = range.first as usize;
+    pub(super) fn new(
+        gpu: &Gpu,
+        (objects, draws): (&[LodObject], Vec<SceneDraw>),
+        end: ObjectRange,
+        version: u64,
+    ) -> Result<Self, Error> {
+        let of_object =
+            |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
+        let block_objects: Vec<u32> = (0..).zip(objects).flat_map(of_object).collect();
+        let count = end.first as usize;
         Ok(Self {
             version,
             instances: Buffer::new(gpu, "instances", count)?,
             allowed: Buffer::new(gpu, "allowed displacements", count)?,
-            objects: Buffer::from_slice(gpu, "objects", &all)?,
-            object_count: all.len() as u32,
+            objects: Buffer::from_slice(gpu, "objects", objects)?,
+            object_count: objects.len() as u32,
             block_objects: Buffer::from_slice(gpu, "objects of blocks", &block_objects)?,
             blocks: block_objects.len() as u32,
-            list_words: range.first_list,
+            list_words: end.first_list,
             draws,
         })
-    }
-}
-
-/// An object as kernels see it.
-pub(super) fn lod_object(object: &Object) -> LodObject {
-    LodObject {
-        first: object.range.first,
-        instances: object.instances.capacity() as u32,
-        levels: object.errors.len() as u32,
-        first_list: object.range.first_list,
-        first_draw: object.range.first_draw,
-        parts: object.draws.len() as u32 / OBJECT_LISTS,
-        mesh_fraction: object.mesh_fraction,
-        shown: u32::from(object.is_shown),
-        errors: error_vectors(&object.errors).map(Into::into),
     }
 }
 

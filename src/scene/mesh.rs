@@ -2,13 +2,9 @@
 
 use crate::asset::{Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::scene::Shares;
-use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
-use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::PartMaterials;
-use crate::scene::object::{Kind, Object};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::at_rest::at_rest;
@@ -19,30 +15,12 @@ use crate::skinning::merged::{Merged, Part, merged};
 use crate::skinning::pages::PageBuffers;
 use crate::{Error, InputError};
 
-/// An object of a model's meshes at rest.
-pub(super) fn object(
-    gpu: &Gpu,
-    layouts: &SceneLayouts,
-    model: &Model,
-    capacity: usize,
-) -> Result<Object, Error> {
-    check(model, capacity)?;
-    let merged = merged_at_rest(model)?;
-    let corners = merged.model.meshes.iter().flat_map(|mesh| &mesh.positions);
-    let sphere = BoundingSphere::around(corners.map(|position| (*position).into()));
-    let mut drawables = Vec::new();
-    let mut draws = Vec::new();
-    for (index, mesh) in merged.model.meshes.iter().enumerate() {
-        let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
-        draws.extend(part_draws(&merged, index, &buffers));
-        drawables.push(drawable((gpu, layouts), &merged, index, (&buffers, &clusters), None)?);
-    }
-    let instances = Instances::new(capacity);
-    Ok(Object::new(Kind::Mesh, (instances, sphere), (errors(&merged), 1.0), (drawables, draws)))
-}
+/// What an object is drawn from: how, and for each part the draws of all lists.
+pub(super) type Drawn = (Vec<Drawable>, Vec<SceneDraw>);
 
-/// The meshes of a model at rest, merged.
-pub(crate) fn merged_at_rest(model: &Model) -> Result<Merged, InputError> {
+/// A model's meshes at rest, merged, with a sphere around them.
+pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
+    check(model)?;
     let mut rest = at_rest(model)?;
     if model.clips.is_empty() {
         // The levels were made for this pose. Vertices and their order are the same.
@@ -50,45 +28,34 @@ pub(crate) fn merged_at_rest(model: &Model) -> Result<Merged, InputError> {
             mesh.levels.clone_from(&from.levels);
         }
     }
-    merged(&rest, OBJECT_LEVELS as usize)
+    let merged = merged(&rest, OBJECT_LEVELS as usize)?;
+    let corners = merged.model.meshes.iter().flat_map(|mesh| &mesh.positions);
+    let sphere = BoundingSphere::around(corners.map(|position| (*position).into()));
+    Ok((merged, sphere))
 }
 
-/// The meshes of a character, merged.
-pub(crate) fn merged_character(model: &Model) -> Result<Merged, InputError> {
+/// The meshes of a model with clips, merged.
+pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
+    check(model)?;
     merged(model, OBJECT_LEVELS as usize)
 }
 
-/// An object of a model that has clips.
-pub(super) fn character(
-    gpu: &Gpu,
-    layouts: &SceneLayouts,
-    model: &Model,
-    capacity: usize,
-    shares: Shares,
-) -> Result<Object, Error> {
-    check(model, capacity)?;
-    let merged = merged_character(model)?;
-    let instances = Instances::new(capacity);
-    let character = Character::new(gpu, merged, instances.capacity())?;
-    let drawn = (character.drawables(gpu, layouts)?, character.draws());
-    let (sphere, errors) = (character.sphere(), character.errors());
-    let kind = Kind::Character(Box::new(character));
-    Ok(Object::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
+/// Uploads meshes that all instances share.
+pub(super) fn drawn(gpu: &Gpu, layouts: &SceneLayouts, merged: &Merged) -> Result<Drawn, Error> {
+    let (mut drawables, mut draws) = (Vec::new(), Vec::new());
+    for (index, mesh) in merged.model.meshes.iter().enumerate() {
+        let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
+        draws.extend(part_draws(merged, index, &buffers));
+        drawables.push(drawable((gpu, layouts), merged, index, (&buffers, &clusters), None)?);
+    }
+    Ok((drawables, draws))
 }
 
-fn check(model: &Model, capacity: usize) -> Result<(), InputError> {
+fn check(model: &Model) -> Result<(), InputError> {
     if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
         return Err(InputError::new("model.meshes", "none", "must have a triangle"));
     }
-    check_capacity(capacity)
-}
-
-/// Refuses no room, and more than a million instances.
-pub(super) fn check_capacity(capacity: usize) -> Result<(), InputError> {
-    match (1..=1 << 20).contains(&capacity) {
-        true => Ok(()),
-        false => Err(InputError::new("capacity", capacity, "must be in 1..=1048576")),
-    }
+    Ok(())
 }
 
 /// The errors of all levels, the mesh itself included.

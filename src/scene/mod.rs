@@ -17,7 +17,9 @@ pub(crate) mod layouts;
 pub(crate) mod material;
 pub(crate) mod mesh;
 pub(crate) mod object;
+mod paging;
 mod placement;
+mod quality;
 pub(crate) mod query;
 mod relief;
 mod terrain;
@@ -28,13 +30,15 @@ use std::sync::Arc;
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
 pub use placement::{ClipTime, Placement, Play};
+pub use quality::{Quality, Shares};
 pub use relief::Relief;
 pub use terrain::TerrainSource;
-pub use view::{Quality, View};
+pub use view::View;
 
 use crate::animation::Frame;
 use crate::asset::{Light, Model};
 use crate::gpu::{Gpu, Staged, StagingRing, Upload as _, compute_pass};
+use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
@@ -49,45 +53,6 @@ use object::{Kind, Object};
 
 /// The number of recordings that may wait for their submission or execution.
 pub const RECORDINGS: usize = 4;
-
-/// How the distance by which an instance may be off is divided, in fractions that add up to at most 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shares {
-    /// For the levels of detail of characters' meshes. Those of static meshes may use all of it.
-    pub mesh: f32,
-    /// For bones that keep an old pose.
-    pub bones: f32,
-    /// For influences that are left out.
-    pub influences: f32,
-}
-
-impl Default for Shares {
-    /// 0.7 for meshes, 0.25 for bones and 0.05 for influences: triangles cost most.
-    fn default() -> Self {
-        Self { mesh: 0.7, bones: 0.25, influences: 0.05 }
-    }
-}
-
-impl Shares {
-    /// Checks the fractions.
-    ///
-    /// # Errors
-    /// [`InputError`] that names the field.
-    pub fn validate(&self) -> Result<(), InputError> {
-        for (path, value) in
-            [("shares.mesh", self.mesh), ("shares.bones", self.bones), ("shares.influences", self.influences)]
-        {
-            if !(0.0..=1.0).contains(&value) {
-                return Err(InputError::new(path, value, "must be in 0..=1"));
-            }
-        }
-        let sum = self.mesh + self.bones + self.influences;
-        if sum > 1.000_001 {
-            return Err(InputError::new("shares", sum, "must add up to at most 1"));
-        }
-        Ok(())
-    }
-}
 
 /// Everything there is, on the device.
 #[derive(Debug)]
@@ -157,7 +122,7 @@ impl Scene {
     /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
     /// [`GpuError`].
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
-        let object = terrain::object(&self.gpu, &self.layouts_of_groups, source)?;
+        let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source)?;
         Ok(self.add(object))
     }
 
@@ -183,7 +148,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for a model without meshes or with invalid ones; [`GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        let object = mesh::object(&self.gpu, &self.layouts_of_groups, model, capacity)?;
+        let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(self.add(object))
     }
 
@@ -197,7 +162,7 @@ impl Scene {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
         }
-        let object = mesh::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares)?;
+        let object = Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares)?;
         Ok(self.add(object))
     }
 
@@ -207,7 +172,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for maps, options or a mesh that do not fit each other; [`GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
-        let object = relief::object(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
         Ok(self.add(object))
     }
 
@@ -236,11 +201,9 @@ impl Scene {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
             // Until the next layout, the object's entry is written alone.
-            let (value, range) = (layout::lod_object(entry), entry.range);
+            let (value, number) = (entry.lod_object(), entry.number);
             if let Some(layout) = &self.layout {
-                let at =
-                    self.objects.iter().position(|object| object.range.first == range.first).unwrap_or(0);
-                self.staged.elements(&layout.objects, at, &[value])?;
+                self.staged.elements(&layout.objects, number, &[value])?;
             }
         }
         Ok(())
@@ -508,7 +471,7 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = Layout::new(&self.gpu, &mut self.objects, self.layouts)?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
@@ -526,6 +489,11 @@ impl Scene {
 
     fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
+        let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
+        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        for object in self.objects.iter_mut() {
+            object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
+        }
         let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
         for (at, view) in views.iter().enumerate() {
             view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;

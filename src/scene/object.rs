@@ -1,18 +1,25 @@
 //! Objects: what all instances of one model or one terrain share.
 
-use crate::Error;
+use glam::Vec3;
+
+use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
-use crate::scene::Shares;
 use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable};
+use crate::scene::handles::Slots;
 use crate::scene::instances::Instances;
-use crate::scene::layout::{self, Layout, ObjectRange};
+use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::terrain::Terrain;
+use crate::scene::mesh;
+use crate::scene::quality::Shares;
+use crate::scene::relief::{self, Relief};
+use crate::scene::terrain::{self, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::{Error, InputError};
 
 /// An object of a scene.
 #[derive(Debug)]
@@ -24,6 +31,10 @@ pub(crate) struct Object {
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
+    /// The factor by which its levels are coarser than the views ask for: 1 unless its vertices exceed a binding.
+    pub(super) coarsening: f32,
+    /// Its number among the objects of the layout.
+    pub(super) number: usize,
     pub(super) is_shown: bool,
     /// What is drawn, part by part.
     pub(crate) drawables: Vec<Drawable>,
@@ -58,6 +69,8 @@ impl Object {
             sphere,
             errors,
             mesh_fraction,
+            coarsening: 1.0,
+            number: 0,
             is_shown: true,
             drawables,
             draws,
@@ -67,11 +80,74 @@ impl Object {
         }
     }
 
+    /// Terrain.
+    pub(super) fn terrain(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Self, Error> {
+        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source)?;
+        let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+        Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// A model's meshes at rest.
+    pub(super) fn mesh(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        model: &Model,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let (merged, sphere) = mesh::at_rest_merged(model)?;
+        let drawn = mesh::drawn(gpu, layouts, &merged)?;
+        Ok(Self::new(Kind::Mesh, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+    }
+
+    /// A mesh with relief.
+    pub(super) fn relief(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        relief: &Relief,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
+        Ok(Self::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// A model that has clips.
+    pub(super) fn character(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        model: &Model,
+        capacity: usize,
+        shares: Shares,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
+        let drawn = (character.drawables(gpu, layouts)?, character.draws());
+        let (sphere, errors) = (character.sphere(), character.errors());
+        let kind = Kind::Character(Box::new(character));
+        Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
+    }
+
     /// World units between the samples of a terrain.
     pub(super) fn spacing(&self) -> Option<f64> {
         match &self.kind {
             Kind::Terrain(terrain) => Some(terrain.spacing),
             Kind::Mesh | Kind::Character(_) => None,
+        }
+    }
+
+    /// The object as kernels see it.
+    pub(super) fn lod_object(&self) -> LodObject {
+        LodObject {
+            first: self.range.first,
+            instances: self.instances.capacity() as u32,
+            levels: self.errors.len() as u32,
+            first_list: self.range.first_list,
+            first_draw: self.range.first_draw,
+            parts: self.draws.len() as u32 / OBJECT_LISTS,
+            mesh_fraction: self.coarsening * self.mesh_fraction,
+            shown: u32::from(self.is_shown),
+            errors: error_vectors(&self.errors).map(Into::into),
         }
     }
 
@@ -86,7 +162,30 @@ impl Object {
         self.instances.change_all();
         if let Kind::Character(character) = &mut self.kind {
             character.grow(gpu, self.instances.capacity())?;
-            self.drawables = character.drawables(gpu, layouts)?;
+            rebind(&mut self.drawables, gpu, layouts, character)?;
+        }
+        Ok(())
+    }
+
+    /// Provides what the views of a frame need of a character. Where a binding is too small for it, its levels of detail
+    /// are coarser.
+    pub(super) fn provide(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        views: &[SelectView],
+        (staged, layout): (&mut Staged, &Layout),
+    ) -> Result<(), Error> {
+        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object() };
+        let Kind::Character(character) = &mut self.kind else { return Ok(()) };
+        let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
+        if is_replaced {
+            rebind(&mut self.drawables, gpu, layouts, character)?;
+        }
+        if coarsening != self.coarsening {
+            self.coarsening = coarsening;
+            character.stage_mesh_fraction(staged, coarsening * self.mesh_fraction)?;
+            staged.elements(&layout.objects, self.number, &[self.lod_object()])?;
         }
         Ok(())
     }
@@ -103,7 +202,7 @@ impl Object {
             return Ok(());
         }
         self.fitted = layout.version;
-        let mut lod = layout::lod_object(self);
+        let mut lod = self.lod_object();
         self.lods.clear();
         for drawable in &self.drawables {
             self.lods.push(lod);
@@ -127,4 +226,48 @@ impl Object {
     pub(crate) fn capacity(&self) -> usize {
         self.instances.capacity()
     }
+}
+
+/// Binds a character's pages, after they were replaced.
+fn rebind(
+    drawables: &mut [Drawable],
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    character: &Character,
+) -> Result<(), Error> {
+    for (drawable, pages) in drawables.iter_mut().zip(character.pages()) {
+        if let Drawable::Mesh(mesh) = drawable {
+            *mesh = mesh.with_pages(gpu, layouts, pages)?;
+        }
+    }
+    Ok(())
+}
+
+/// Room for at least `capacity` instances.
+fn room(capacity: usize) -> Result<Instances, InputError> {
+    match (1..=1 << 20).contains(&capacity) {
+        true => Ok(Instances::new(capacity)),
+        false => Err(InputError::new("capacity", capacity, "must be in 1..=1048576")),
+    }
+}
+
+/// Lays out objects, one after the other, and tells each its range.
+///
+/// # Errors
+/// [`crate::gpu::GpuError`].
+pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
+    let mut range = ObjectRange::default();
+    let (mut all, mut draws) = (Vec::new(), Vec::new());
+    for object in objects.iter_mut() {
+        object.range = range;
+        object.number = all.len();
+        object.coarsening = 1.0;
+        let instances = object.instances.capacity() as u32;
+        all.push(object.lod_object());
+        draws.extend_from_slice(&object.draws);
+        range.first += instances;
+        range.first_list += 2 * object.errors.len() as u32 * instances;
+        range.first_draw += object.draws.len() as u32;
+    }
+    Layout::new(gpu, (&all, draws), range, version)
 }

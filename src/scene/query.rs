@@ -26,7 +26,7 @@ impl Scene {
     pub fn placement(&self, instance: InstanceId) -> Result<Placement, InputError> {
         let InstanceId { object, index, .. } = self.existing(instance)?;
         let SceneInstance { cell, offset, rotation, scale, .. } =
-            *self.object_at(object)?.instances.get(index);
+            self.object_at(object)?.instances.all()[index as usize];
         let turn = glam::Quat::from_array(rotation);
         Ok(Placement { cell, at: offset.into(), turn, scale: scale.into() })
     }
@@ -109,8 +109,9 @@ mod drawn {
                 }
             }
             let all = entry.instances.each();
-            let shown =
-                all.filter(|[index, _]| entry.is_shown && view.may_show(entry.instances.get(*index).flags));
+            let shown = all.filter(|[index, _]| {
+                entry.is_shown && view.may_show(entry.instances.all()[*index as usize].flags)
+            });
             let instance = |[index, generation]: [u32; 2]| DrawnInstance {
                 instance: InstanceId { object, index, generation },
                 drawn: drawn[index as usize],

@@ -4,11 +4,9 @@ use glam::{Vec2, Vec3};
 
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
-use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{ReliefLook, ReliefMaterial};
-use crate::scene::mesh::NOTHING;
-use crate::scene::object::{Kind, Object};
+use crate::scene::mesh::{Drawn, NOTHING};
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -46,6 +44,12 @@ pub struct Relief {
 }
 
 impl Relief {
+    /// A square wall with an edge of one world unit, centered at the origin and facing +Z, that shows the maps `tiles` times
+    /// along each edge. Otherwise as [`Relief::new`].
+    pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
+        Self::new(SurfaceMesh::square(tiles), heights, albedo)
+    }
+
     /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self {
@@ -62,14 +66,12 @@ impl Relief {
     }
 }
 
-/// An object of a mesh with relief.
-pub(super) fn object(
+/// Uploads a mesh with relief; a sphere around it, and how it is drawn.
+pub(super) fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     relief: &Relief,
-    capacity: usize,
-) -> Result<Object, Error> {
-    super::mesh::check_capacity(capacity)?;
+) -> Result<(BoundingSphere, Drawn), Error> {
     relief.mesh.validate()?;
     if relief.mesh.indices.is_empty() {
         return Err(InputError::new("relief.mesh.indices.len", 0, "must be at least 3").into());
@@ -95,8 +97,7 @@ pub(super) fn object(
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
     draws[..2].fill(draw);
     let sphere = BoundingSphere::around(vertices.iter().map(|vertex| vertex.position.into()));
-    let instances = Instances::new(capacity);
-    Ok(Object::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), (vec![drawable], draws)))
+    Ok((sphere, (vec![drawable], draws)))
 }
 
 fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<ReliefMaterial, Error> {

@@ -6,8 +6,7 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::mesh::NOTHING;
-use crate::scene::object::{Kind, Object};
+use crate::scene::mesh::{Drawn, NOTHING};
 use crate::scene::placement::Placement;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
@@ -83,8 +82,12 @@ impl Terrain {
     }
 }
 
-/// Generates terrain.
-pub(super) fn object(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Object, Error> {
+/// Generates terrain: what a scene keeps of it, its patches as instances, and how it is drawn.
+pub(super) fn generated(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    source: &TerrainSource,
+) -> Result<(Terrain, Instances, Drawn), Error> {
     let TerrainSource { recipe, patches, textures, .. } = source;
     let config = &recipe.config;
     if patches.is_empty() {
@@ -110,9 +113,8 @@ pub(super) fn object(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) 
         None => Texture::of_zones(&config.zones)?,
     };
     let (drawable, draws) = drawable((gpu, layouts), source, &fields, &textures)?;
-    let kind = Kind::Terrain(Terrain { ground, spacing: config.terrain_scale });
-    let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
-    Ok(Object::new(kind, (instances, sphere), (vec![0.0], 1.0), (vec![drawable], draws)))
+    let terrain = Terrain { ground, spacing: config.terrain_scale };
+    Ok((terrain, instances, (vec![drawable], draws)))
 }
 
 fn drawable(

@@ -16,27 +16,12 @@ use crate::scene::camera::{Camera, Depth};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::placement::Placement;
+use crate::scene::quality::Quality;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
-
-/// How fine a view is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quality {
-    /// The largest number of pixels by which anything may be off in the view, at least 0; 0 shows everything in full
-    /// detail. It becomes a distance in the world that each instance is allowed, and [`Shares`](super::Shares) divide
-    /// that among levels of detail, bones and influences. Not bounded are shading, textures, and shadow edges.
-    pub pixels: f32,
-}
-
-impl Default for Quality {
-    /// One pixel.
-    fn default() -> Self {
-        Self { pixels: 1.0 }
-    }
-}
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 #[derive(Debug)]
@@ -72,7 +57,7 @@ pub(crate) struct ViewLists {
 
 impl View {
     pub(super) fn new(gpu: &Gpu, scene: &Arc<()>, quality: Quality) -> Result<Self, Error> {
-        check_pixels(quality)?;
+        quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
@@ -105,7 +90,7 @@ impl View {
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite.
     pub fn set_quality(&mut self, quality: Quality) -> Result<(), InputError> {
-        check_pixels(quality)?;
+        quality.validate()?;
         self.quality = quality;
         Ok(())
     }
@@ -186,10 +171,24 @@ impl View {
         spacings: &[f64],
         is_first: bool,
     ) -> Result<(), Error> {
+        let (camera, view) = self.select_view(blocks, is_first)?;
+        staged.uniform(&self.select, &view)?;
+        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
+        let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
+        for ((uniform, _), spacing) in terrain.zip(spacings) {
+            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
+        }
+        Ok(())
+    }
+
+    /// The view as kernels see it.
+    pub(super) fn select_view(
+        &self,
+        blocks: u32,
+        is_first: bool,
+    ) -> Result<(Camera, SelectView), InputError> {
         let Some(camera) = self.camera else {
-            return Err(
-                InputError::new("view.camera", "none", "must be set before a frame is recorded").into()
-            );
+            return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
         };
         let own = [camera];
         let cameras = if self.lod_cameras.is_empty() { &own[..] } else { &self.lod_cameras };
@@ -206,13 +205,7 @@ impl View {
         for (to, from) in view.cameras.iter_mut().zip(cameras) {
             *to = lod_camera(from, camera.cell, self.quality.pixels)?;
         }
-        staged.uniform(&self.select, &view)?;
-        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
-        let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
-        for ((uniform, _), spacing) in terrain.zip(spacings) {
-            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
-        }
-        Ok(())
+        Ok((camera, view))
     }
 
     /// Adds culling, choice of levels and lists to a compute pass.
@@ -343,11 +336,4 @@ fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera,
     let offset = glam::DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
     own.eye = (own.eye.as_dvec3() + offset).as_vec3();
     Ok(own)
-}
-
-fn check_pixels(quality: Quality) -> Result<(), InputError> {
-    if quality.pixels >= 0.0 && quality.pixels.is_finite() {
-        return Ok(());
-    }
-    Err(InputError::new("quality.pixels", quality.pixels, "must be finite, and not negative"))
 }

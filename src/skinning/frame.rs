@@ -1,14 +1,17 @@
 //! The skinning of a crowd in one object: everything between the bones' matrices and vertices that can be
 //! drawn.
 
+use std::sync::Arc;
+
 use super::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use super::clusters::Clusters;
 use super::morph::MorphPass;
 use super::palette::PalettePass;
 use super::select::{SelectBuffers, SelectPass};
 use super::skin::SkinPass;
-use crate::animation::ModelMatrices;
 use crate::animation::model_matrices::Consumer;
+use crate::animation::updated_bones::UpdatedBonesReader;
+use crate::animation::{ModelMatrices, UpdatedBones};
 use crate::asset::Model;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
@@ -24,7 +27,7 @@ pub struct SkinFrame {
     /// InstanceLods and weights of morph targets, which the caller may write.
     pub crowd: SkinnedCrowd,
     /// The updated bones: those that the model matrices record, or, if they record none, those that the caller
-    /// writes.
+    /// writes. [`SkinFrame::record_updated_bones`] clears the latter.
     pub select: SelectBuffers,
     /// The clusters that the last [`SkinFrame::record_updated_bones`] selected.
     pub active: ActiveClusters,
@@ -32,11 +35,13 @@ pub struct SkinFrame {
     /// detail are out of date.
     pub skinned: Buffer<Vertex>,
     palette: Job,
-    selection: Job,
+    /// The selection that keeps the updated bones, and the one that clears them.
+    selections: [Job; 2],
     /// The jobs of morph targets and of vertices.
     all: [Job; 2],
     /// The same jobs for selected clusters.
     some: Vec<IndirectJob>,
+    reader: Arc<UpdatedBonesReader>,
 }
 
 impl SkinFrame {
@@ -64,13 +69,16 @@ impl SkinFrame {
         let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
         let mut select = SelectBuffers::new(gpu, &mesh, &crowd)?;
-        if let Some(updated) = matrices.updated_bones() {
-            select.updated_bones = updated.clone();
-        }
+        let updated = match matrices.updated_bones() {
+            Some(updated) => updated.clone(),
+            None => UpdatedBones::over(select.updated_bones),
+        };
+        select.updated_bones = updated.bits().clone();
+        let reader = Arc::new(updated.reader());
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
         let morph = MorphPass::new(gpu)?;
-        let selection = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
+        let selections = SelectPass::new(gpu)?.prepare_both(gpu, &mesh, &crowd, &select, &active)?;
         let pass = SkinPass::new(gpu, blend)?;
         let all =
             [morph.prepare(gpu, &mesh, &crowd)?, pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?];
@@ -78,26 +86,30 @@ impl SkinFrame {
         let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
         // This comes last: it claims the matrices for its kind of blending, which a refused frame must not do.
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
-        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selection, all, some })
+        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selections, all, some, reader })
     }
 
-    /// Records the skinning of every vertex of the instances that are seen, at their level of detail.
+    /// Records the skinning of every vertex of the instances that are seen, at their level of detail. Updated bones
+    /// stay updated, since instances that are not seen did not follow them.
     pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder) {
         [&self.palette].into_iter().chain(&self.all).for_each(|job| job.record(encoder));
     }
 
-    /// Records the skinning of instances that are seen, at their level of detail, for these clusters: those
-    /// with an updated bone or a changed morph weight, those beyond the level of the frame before, and all
-    /// clusters of instances whose influences changed or that were not seen in the frame before. The first
-    /// recording thus skins everything that is seen. It counts frames ([`SelectBuffers::skinned`]): record it
-    /// once per frame.
+    /// Records the skinning of instances that are seen, at their level of detail, for these clusters: those with a
+    /// bone that was updated since the last such recording or with a changed morph weight, those beyond the level of
+    /// the frame before, and all clusters of instances whose influences changed or that were not seen in the frame
+    /// before. The first recording thus skins everything that is seen. It counts frames ([`SelectBuffers::skinned`]):
+    /// record it at most once per frame; frames may do without. The last of several frames of skinning over the same
+    /// model matrices clears the updated bones ([`UpdatedBones`]).
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch_updated_bones(&mut compute_pass(encoder, "skinning"));
     }
 
     /// Adds the same work as [`SkinFrame::record_updated_bones`] to a compute pass that is being recorded.
     pub fn dispatch_updated_bones(&self, pass: &mut wgpu::ComputePass<'_>) {
-        [&self.palette, &self.selection].into_iter().for_each(|job| job.dispatch(pass));
+        self.palette.dispatch(pass);
+        let [keeping, clearing] = &self.selections;
+        if self.reader.read() { clearing } else { keeping }.dispatch(pass);
         self.some.iter().for_each(|job| job.dispatch(pass));
     }
 

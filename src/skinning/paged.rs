@@ -1,5 +1,7 @@
 //! The skinning of a crowd whose vertices lie in pages: memory follows what is seen, not the number of instances.
 
+use std::sync::Arc;
+
 use super::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use super::clusters::Clusters;
 use super::morph::MorphPass;
@@ -10,6 +12,7 @@ use super::skin::SkinPass;
 use crate::Error;
 use crate::InputError;
 use crate::animation::ModelMatrices;
+use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::asset::Model;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
 use crate::skinning::vertex::{Blend, Vertex};
@@ -27,13 +30,17 @@ pub struct PagedSkin {
     pub pages: PageBuffers,
     select: SelectBuffers,
     active: ActiveClusters,
-    before: [Job; 3],
+    /// The jobs of pages and of palettes.
+    before: [Job; 2],
+    /// The selection that keeps the updated bones, and the one that clears them.
+    selections: [Job; 2],
     after: Vec<IndirectJob>,
+    reader: Arc<UpdatedBonesReader>,
 }
 
 impl PagedSkin {
-    /// Prepares a model's mesh for `instances` instances, whose bones are posed by `matrices`, which must record the updated
-    /// bones, with `pages` pages.
+    /// Prepares a model's mesh for `instances` instances, whose bones are posed by `matrices`, which must record the
+    /// updated bones, with `pages` pages.
     ///
     /// # Errors
     /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for matrices
@@ -49,24 +56,25 @@ impl PagedSkin {
         let Some(mesh) = model.meshes.get(mesh) else {
             return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
         };
-        let Some(updated_bones) = matrices.updated_bones() else {
+        let Some(updated) = matrices.updated_bones() else {
             return Err(InputError::new("matrices.updated_bones", "none", "must be recorded").into());
         };
         let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
-        let select =
-            SelectBuffers { updated_bones: updated_bones.clone(), ..SelectBuffers::new(gpu, &mesh, &crowd)? };
+        let updated_bones = updated.bits().clone();
+        let select = SelectBuffers { updated_bones, ..SelectBuffers::new(gpu, &mesh, &crowd)? };
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let pages = PageBuffers::new(gpu, &mesh, &crowd, pages)?;
         let before = [
             PagesPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &pages)?,
             PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?,
-            SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?,
         ];
+        let selections = SelectPass::new(gpu)?.prepare_both(gpu, &mesh, &crowd, &select, &active)?;
         let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(gpu, &mesh, &crowd, &pages, &active)?;
         let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
         let after = morph.into_iter().chain([skin]).collect();
-        Ok(Self { mesh, clusters, crowd, pages, select, active, before, after })
+        let reader = Arc::new(updated.reader());
+        Ok(Self { mesh, clusters, crowd, pages, select, active, before, selections, after, reader })
     }
 
     /// Replaces the pages by so many others. Everything that is seen is dealt out and skinned anew in the next frame.
@@ -79,8 +87,8 @@ impl PagedSkin {
         // A new record of what was skinned: frames that are recorded already go on with the old one.
         let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
         self.select = SelectBuffers { skinned, ..self.select.clone() };
-        self.before[2] =
-            SelectPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &self.select, &self.active)?;
+        self.selections =
+            SelectPass::new(gpu)?.prepare_both(gpu, &self.mesh, &self.crowd, &self.select, &self.active)?;
         let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(
             gpu,
             &self.mesh,
@@ -95,14 +103,17 @@ impl PagedSkin {
     }
 
     /// Adds to a compute pass: pages for what is seen, palettes, and the vertices of clusters with an updated bone, a
-    /// changed morph weight, or a new page.
+    /// changed morph weight, or a new page. The last of several skins over the same model matrices clears the updated
+    /// bones ([`UpdatedBones`](crate::animation::UpdatedBones)).
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.before.iter().for_each(|job| job.dispatch(pass));
+        let [keeping, clearing] = &self.selections;
+        if self.reader.read() { clearing } else { keeping }.dispatch(pass);
         self.after.iter().for_each(|job| job.dispatch(pass));
     }
 
-    /// Reads the vertices of an instance that have a page, in the mesh's own order; `None` for the others. Waits for the
-    /// device.
+    /// Reads the vertices of an instance that have a page, in the mesh's own order; `None` for the others. Waits for
+    /// the device.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].

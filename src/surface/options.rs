@@ -7,8 +7,8 @@ use crate::surface::relief::Method;
 #[cfg(feature = "gpu")]
 use crate::surface::relief::textures::SurfaceTextures;
 
-/// Options that are fixed when a pipeline is compiled. [`Material`] has the parameters that may change without
-/// a new pipeline.
+/// Options that are fixed when a pipeline is compiled. [`Material`](crate::surface::Material) has the
+/// parameters that may change without a new pipeline.
 ///
 /// The default uses [`Method::Quadtree`], without shadow, with normals from the heights, without silhouette,
 /// with the polygon's depth, and with mip level 0.

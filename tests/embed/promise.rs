@@ -67,7 +67,7 @@ impl Stage {
         let mut all: Option<Displacement> = None;
         for at in 0..frames {
             self.frame(at as f32 / frames as f32);
-            if at % (frames / measured.clamp(1, frames)) == 0 {
+            if at.is_multiple_of(frames / measured.clamp(1, frames)) {
                 let found = self.meter.measure(&self.scene, &self.view).expect("measured");
                 all = Some(all.map_or(found, |all| all.and(found)));
             }
@@ -81,7 +81,7 @@ fn spawn(scene: &mut Scene, object: ObjectId, model: &Model, at: usize) {
     let sphere = BoundingSphere::in_clip(model, 0);
     let size = Vec3::splat(1.0 / sphere.radius);
     let uneven = Vec3::new(-1.4, 0.7, 1.1);
-    let scale = if at % 2 == 0 { size } else { uneven * size };
+    let scale = if at.is_multiple_of(2) { size } else { uneven * size };
     let turn = Quat::from_euler(glam::EulerRot::YXZ, 0.9 * at as f32, 0.2, -0.1 * at as f32);
     let place = Vec3::new([-3.0, 3.0, 1.2, -1.5][at % 4], 1.0, 6.0 - 8.0 * at as f32);
     let placement =

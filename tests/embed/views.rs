@@ -145,7 +145,7 @@ fn casters_outside_the_view_are_in_the_shadow_map() {
     world.scene.show(world.land, false).expect("terrain");
     let all = depths(&mut world, &mut eye, &mut sun);
     assert!(all > 200, "{all} texels");
-    for instance in world.crowd[..5].to_vec() {
+    for instance in world.crowd[..5].iter().copied() {
         world.scene.set_visibility(instance, u16::MAX, false).expect("there");
     }
     let half = depths(&mut world, &mut eye, &mut sun);

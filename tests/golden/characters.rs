@@ -1,10 +1,10 @@
 //! Several characters in one picture, near and far: seen, faded, skinned and drawn together.
 
 use glam::{Vec3, camera};
-use relievo::animation::ModelMatrices;
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::order::Order;
 use relievo::animation::sample::reference::sample;
+use relievo::animation::{ModelMatrices, UpdatedBones};
 use relievo::asset::Light;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
@@ -49,7 +49,7 @@ impl Instances {
         let matrices =
             ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &models).expect("uploaded"));
         let words = COUNT * Order::new(&model.skeleton).words();
-        let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
+        let updated = UpdatedBones::new(gpu, words).expect("allocated");
         Self {
             matrices: if gated { matrices.with_updated_bones(&updated) } else { matrices },
             placements: Buffer::from_slice(gpu, "placements", &places).expect("uploaded"),

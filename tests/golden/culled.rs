@@ -140,12 +140,12 @@ fn what_is_not_seen_is_not_skinned_and_comes_back_whole() {
     let (gpu, [culled, whole]) = (&stage.gpu, [stage.crowd(), stage.crowd()]);
     let target = Target::new(gpu, SIZE).expect("allocated");
     let words = culled.skin.mesh.mask_words;
-    culled.skin.select.updated_bones.write(gpu, &stage.moved(words)).expect("written");
     let clusters = culled.skin.clusters.len();
     let mut seen_before = [0_u32; CREATURES];
     let (mut skinned, mut empty, mut back) = (0, 0, 0);
     for frame in 0..FRAMES {
         stage.pose(frame);
+        culled.skin.select.updated_bones.write(gpu, &stage.moved(words)).expect("written");
         gpu.run("frame", |encoder| {
             culled.lod.record(encoder);
             culled.skin.record_updated_bones(encoder);

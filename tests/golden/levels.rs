@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
-use relievo::animation::ModelMatrices;
 use relievo::animation::order::Order;
+use relievo::animation::{ModelMatrices, UpdatedBones};
 use relievo::asset::Light;
 use relievo::asset::transform::Affine;
 use relievo::asset::{MeshLevel, Model};
@@ -148,7 +148,7 @@ fn a_crowd_with_levels() {
     let clay: Albedo = ColorTexture::linear(gpu, &clay, true).expect("uploaded").into();
     let words = COUNT * Order::new(&model.skeleton).words();
     let models = Buffer::from_slice(gpu, "model matrices", models).expect("uploaded");
-    let updated = Buffer::new(gpu, "updated bones", words).expect("allocated");
+    let updated = UpdatedBones::new(gpu, words).expect("allocated");
     let character = Character {
         model,
         matrices: &ModelMatrices::new(&models).with_updated_bones(&updated),

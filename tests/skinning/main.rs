@@ -12,3 +12,5 @@ mod merged;
 mod rigs;
 mod scales;
 mod shapes;
+#[cfg(feature = "verify")]
+mod updated;

@@ -20,6 +20,7 @@ struct CompactParams {
 @group(0) @binding(15) var<uniform> compact_params: CompactParams;
 // Binding 14 holds the bits.
 @group(0) @binding(16) var<storage, read> slots: array<Slot>;
+// The updated bones of this frame and of those before, until readers have followed all of them.
 @group(0) @binding(17) var<storage, read_write> updated_bones: array<u32>;
 // The number of active pairs of each instance; after the scan, of all instances before it.
 @group(0) @binding(18) var<storage, read_write> counts: array<u32>;
@@ -63,7 +64,12 @@ fn spread_word(instance: u32, word: u32, chosen: u32, so_far: Spread) -> Spread 
         below |= run(bit, min(end - first, 32u));
         rest &= ~below;
     }
-    updated_bones[instance * compact_params.words + word] = below;
+    let all_words = compact_params.instances * compact_params.words;
+    let at = instance * compact_params.words + word;
+    bits[2u * all_words + at] = below;
+    if below != 0u {
+        updated_bones[at] |= below;
+    }
     return Spread(so_far.count + countOneBits(chosen), end);
 }
 

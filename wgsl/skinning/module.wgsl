@@ -3,5 +3,6 @@
 // composed with WESL: put that text before your own code.
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
+import package::wgsl::skinning::page::NO_PAGE;
 import package::wgsl::skinning::rows::{LEAST_LENGTH, Rows, placed_normal, placed_position, rows_of_dual};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};

@@ -3,6 +3,7 @@
 use crate::animation::crowd::Crowd;
 use crate::animation::model_matrices::ExclusiveConsumer;
 use crate::animation::order::Order;
+use crate::animation::updated_bones::UpdatedBones;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::shared::animation::compact::WIDTH;
 use crate::{Error, InputError};
@@ -50,10 +51,11 @@ impl ActivePairs {
 #[derive(Debug, Clone)]
 pub struct Active {
     /// One bit per slot of each instance, in [`Order::words`] words per instance: the bones that are sampled;
-    /// then, in the same layout, those of them that are sampled ahead. A gate or the caller writes them.
+    /// then, in the same layout, those of them that are sampled ahead. A gate or the caller writes them. Then
+    /// come those whose model matrices the frame updates ([`Active::updated_words`]).
     pub bits: Buffer<u32>,
-    /// In the same layout: the bones whose model matrices are updated.
-    pub updated_bones: Buffer<u32>,
+    /// The bones whose model matrices this frame or one before updated, until skinning has followed them.
+    pub updated_bones: UpdatedBones,
     /// The pairs to be sampled.
     pub pairs: ActivePairs,
     /// Indices of the instances that have an active bone.
@@ -85,8 +87,8 @@ impl Active {
         let dispatches: Vec<[u32; 4]> =
             std::iter::once([0, 1, 1, 0]).chain(chains).chain(std::iter::once(cursors)).collect();
         Ok(Self {
-            bits: Buffer::new(gpu, "active bits", 2 * instances * words)?,
-            updated_bones: Buffer::new(gpu, "updated bones", instances * words)?,
+            bits: Buffer::new(gpu, "active bits", 3 * instances * words)?,
+            updated_bones: UpdatedBones::new(gpu, instances * words)?,
             pairs: ActivePairs::new(gpu, crowd)?,
             instances: Buffer::new(gpu, "updated instances", instances)?,
             dispatches: Buffer::from_slice(gpu, "dispatches", &dispatches)?,
@@ -94,5 +96,12 @@ impl Active {
             counts: Buffer::new(gpu, "counts", instances)?,
             words: words as u32,
         })
+    }
+
+    /// The words of [`Active::bits`] that hold the bones whose model matrices the frame updates: active ones, and all
+    /// below them.
+    pub fn updated_words(&self) -> std::ops::Range<usize> {
+        let words = self.instances.len() * self.words as usize;
+        2 * words..3 * words
     }
 }

@@ -35,7 +35,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             let words = (3 * bits.bits.len() + 2 * chosen as usize) / 2;
             let copied = copy_of(gpu, words)?;
             let contenders = vec![
-                Contender::job(Backend::Gpu, &job),
+                Contender::job(Backend::Gpu, &job.job),
                 Contender::job(Backend::Copy, &copied),
                 Contender::host(Backend::Reference, || drop(std::hint::black_box(compact(&order, &bits)))),
             ];

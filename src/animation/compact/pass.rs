@@ -3,8 +3,9 @@
 use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
+use crate::animation::updated_bones::UpdatedBones;
 use crate::gpu::bindings::animation::compact as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::{ALL, CompactParams, SCAN, SCATTER, SPREAD};
 
 /// How threads divide the work.
@@ -36,7 +37,24 @@ pub struct CompactPass {
 }
 
 /// The prepared lists.
-pub type CompactJob = Job;
+#[derive(Debug, Clone)]
+pub struct CompactJob {
+    pub(crate) job: Job,
+    updated: UpdatedBones,
+}
+
+impl CompactJob {
+    /// Records the lists.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.dispatch(&mut compute_pass(encoder, "animation/compact"));
+    }
+
+    /// Adds the lists to a compute pass that is being recorded, and tells the readers of [`Active::updated_bones`].
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.updated.update();
+        self.job.dispatch(pass);
+    }
+}
 
 impl CompactPass {
     /// Compiles the pipelines.
@@ -86,7 +104,8 @@ impl CompactPass {
                 step(scatter, params.instances * params.words)?,
             ],
         };
-        Ok(Job::new(gpu, "animation/compact", steps)?)
+        let job = Job::new(gpu, "animation/compact", steps)?;
+        Ok(CompactJob { job, updated: active.updated_bones.clone() })
     }
 }
 
@@ -96,7 +115,7 @@ pub(crate) fn group<'a>(uniform: &'a Uniform<CompactParams>, active: &'a Active)
         bits: active.bits.slice(),
         compact_params: uniform,
         slots: active.slots.slice(),
-        updated_bones: active.updated_bones.slice(),
+        updated_bones: active.updated_bones.bits().slice(),
         counts: active.counts.slice(),
         pairs: active.pairs.pairs.slice(),
         pair_dispatch: active.pairs.dispatched.slice().cast(),

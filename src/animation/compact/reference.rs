@@ -17,6 +17,11 @@ pub struct Work {
     pub instances: Vec<u32>,
 }
 
+/// The updated bones of this frame and of those before that readers have not yet followed.
+pub fn accumulated(before: &[u32], updated_bones: &[u32]) -> Vec<u32> {
+    before.iter().zip(updated_bones).map(|(before, now)| before | now).collect()
+}
+
 /// The work for the given bits, of which there are [`Order::words`] words per instance.
 pub fn compact(order: &Order, chosen: &Chosen) -> Work {
     let Chosen { bits, ahead } = chosen;

@@ -2,11 +2,12 @@
 
 use crate::Error;
 use crate::animation::active::Active;
-use crate::animation::compact::reference::{Work, compact};
+use crate::animation::compact::reference::{Work, accumulated, compact};
 use crate::animation::compact::{CompactPass, Stages};
 use crate::animation::crowd::Crowd;
 use crate::animation::gate::reference::Chosen;
 use crate::animation::order::Order;
+use crate::animation::updated_bones::UpdatedBones;
 use crate::animation::verify::{Draw, SIZES, random_crowd};
 use crate::harness::Cases;
 use crate::harness::compare::{Comparison, exact};
@@ -67,11 +68,17 @@ fn add(
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let mut active = Active::new(gpu, order, crowd)?;
-    active.bits.write(gpu, &chosen.words())?;
-    let updated_bones = Poisoned::<u32>::new(gpu, chosen.bits.len())?;
+    let words = chosen.bits.len();
+    let bits = Poisoned::<u32>::new(gpu, 3 * words)?;
+    bits.buffer.write(gpu, &chosen.words())?;
+    active.bits = bits.buffer.clone();
+    // Bits of frames before, which stay.
+    let before: Vec<u32> = chosen.bits.iter().zip(0..).map(|(word, at)| scattered(*word, at)).collect();
+    let updated_bones = Poisoned::<u32>::new(gpu, words)?;
+    updated_bones.buffer.write(gpu, &before)?;
     let pairs = Poisoned::<u32>::new(gpu, crowd.pairs())?;
     let instances = Poisoned::<u32>::new(gpu, crowd.len())?;
-    active.updated_bones = updated_bones.buffer.clone();
+    active.updated_bones = UpdatedBones::over(updated_bones.buffer.clone());
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
     let job = CompactPass::new(gpu)?.prepare_stages(gpu, crowd, &active, stages)?;
@@ -82,12 +89,20 @@ fn add(
     let shown = padded(expected_instances, crowd.len());
     cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
     cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
+    let all = [chosen.words(), expected.updated_bones.clone()].concat();
+    cases.add(format!("{name}: bits"), bits.check(gpu, |actual| exact(actual, &all))?);
+    let accumulated = accumulated(&before, &expected.updated_bones);
     cases.add(
         format!("{name}: updated bones"),
-        updated_bones.check(gpu, |actual| exact(actual, &expected.updated_bones))?,
+        updated_bones.check(gpu, |actual| exact(actual, &accumulated))?,
     );
     cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected)?);
     Ok(())
+}
+
+/// Some bits that depend on a word and its place.
+fn scattered(word: u32, at: u32) -> u32 {
+    (word ^ at).wrapping_mul(0x9e37_79b9) & at.wrapping_mul(0x85eb_ca6b)
 }
 
 /// A list, followed by poison.

@@ -48,7 +48,7 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     let chosen = decide().pairs.len();
     // For each instance the kernel reads 12 words and writes 6; it writes bits twice and reads them once, and
     // writes a pair and its slot.
-    let words = (18 * count + 3 * active.updated_bones.len() + 2 * chosen) / 2;
+    let words = (18 * count + 3 * active.updated_bones.bits().len() + 2 * chosen) / 2;
     let copied = copy_of(gpu, words)?;
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),

@@ -10,6 +10,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::pass::{self as gate_pass, Decider, GateTime, Mode, UploadedGate, no_budget};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
+use crate::animation::updated_bones::UpdatedBones;
 use crate::gpu::bindings::animation as bindings;
 use crate::gpu::shaders::{self, BindingKind};
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, Upload, compute_pass};
@@ -83,7 +84,7 @@ impl DecidePass {
         let kernels = match dispatches {
             Dispatches::One => match Decider::new(gpu, gate, |mode| whole(gpu, mode))? {
                 Decider::Gate(gate, kernel) => Kernels::One(gate, kernel),
-                Decider::Budget(pass) => Kernels::each(gpu, GatePass::of_budget(pass))?,
+                Decider::Budget(pass) => Kernels::each(gpu, GatePass::of_budget(*pass))?,
             },
             Dispatches::Each => Kernels::each(gpu, GatePass::new(gpu, gate)?)?,
         };
@@ -111,7 +112,7 @@ impl DecidePass {
                 lists: steps.compact.prepare(gpu, crowd, active)?,
             },
         };
-        Ok(DecideJob { leads: self.leads, work })
+        Ok(DecideJob { leads: self.leads, work, updated: active.updated_bones.clone() })
     }
 }
 
@@ -197,6 +198,7 @@ fn group<'a>(
 pub struct DecideJob {
     leads: bool,
     work: Work,
+    updated: UpdatedBones,
 }
 
 #[derive(Debug, Clone)]
@@ -250,8 +252,10 @@ impl DecideJob {
         self.dispatch(&mut compute_pass(encoder, "animation/decide"));
     }
 
-    /// Adds the decision to a compute pass that is being recorded.
+    /// Adds the decision to a compute pass that is being recorded, and tells the readers of
+    /// [`Active::updated_bones`].
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.updated.update();
         match &self.work {
             Work::One { job, .. } => job.dispatch(pass),
             Work::Each { clip_clock, gate, lists } => {

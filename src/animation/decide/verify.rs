@@ -5,7 +5,7 @@ use crate::animation::active::Active;
 use crate::animation::clip_clock::ClipClock;
 use crate::animation::clip_clock::verify as clip_clock;
 use crate::animation::clip_set::ClipSet;
-use crate::animation::compact::reference::compact as lists;
+use crate::animation::compact::reference::{accumulated, compact as lists};
 use crate::animation::compact::verify as compact;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::decide::reference::Decider;
@@ -17,6 +17,7 @@ use crate::animation::instance::Instance;
 use crate::animation::layers::Layer;
 use crate::animation::lod::{Lod, OMEGA_ONE, Sampling};
 use crate::animation::order::Order;
+use crate::animation::updated_bones::UpdatedBones;
 use crate::animation::verify::{Draw, SIZES, random_clips, random_crowd};
 use crate::gpu::GpuError;
 use crate::harness::Cases;
@@ -88,6 +89,8 @@ impl Play<'_> {
         let mut state = GateState::new(gpu, &crowd)?;
         let mut active = Active::new(gpu, self.order, &crowd)?;
         let outputs = self.poison(cases, &crowd, &mut state, &mut active)?;
+        let mut updated_bones = vec![0x0101_8000; count * self.order.words()];
+        outputs.updated_bones.buffer.write(gpu, &updated_bones)?;
         let mut decider = Decider::new(self.set, self.gate, count);
         let job = pass.prepare(gpu, &clips, &crowd, &state, &active)?;
         for (number, elapsed) in [0.0, 0.25, 0.5, 300.0].into_iter().enumerate() {
@@ -110,17 +113,23 @@ impl Play<'_> {
             cases.add(name("clip_clocks"), outputs.clip_clocks.check(gpu, same)?);
             let actual = state.clip_clocks.read_blocking(gpu)?;
             let chosen = decider.bits(&frame, &lods, &actual[..count]);
-            let bits = chosen.words();
-            cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
             let work = lists(self.order, &chosen);
+            let bits = [chosen.words(), work.updated_bones.clone()].concat();
+            cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
             let pairs = compact::padded(&work.pairs, crowd.pairs());
             let listed = compact::padded(&work.instances, count);
             cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs))?);
             cases.add(name("instances"), outputs.instances.check(gpu, |actual| exact(actual, &listed))?);
+            // They are cleared after two frames.
+            updated_bones = accumulated(&updated_bones, &work.updated_bones);
             cases.add(
                 name("updated_bones"),
-                outputs.updated_bones.check(gpu, |actual| exact(actual, &work.updated_bones))?,
+                outputs.updated_bones.check(gpu, |actual| exact(actual, &updated_bones))?,
             );
+            if number == 1 {
+                updated_bones.fill(0);
+                outputs.updated_bones.buffer.write(gpu, &updated_bones)?;
+            }
             cases.add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work)?);
         }
         let kept = exact(&state.history.read_blocking(gpu)?, &decider.history);
@@ -137,17 +146,17 @@ impl Play<'_> {
         state: &mut GateState,
         active: &mut Active,
     ) -> Result<Outputs, Error> {
-        let (gpu, words) = (cases.gpu, active.updated_bones.len());
+        let (gpu, words) = (cases.gpu, active.updated_bones.bits().len());
         let outputs = Outputs {
             clip_clocks: Poisoned::new(gpu, crowd.len())?,
-            bits: Poisoned::new(gpu, 2 * words)?,
+            bits: Poisoned::new(gpu, 3 * words)?,
             updated_bones: Poisoned::new(gpu, words)?,
             pairs: Poisoned::new(gpu, crowd.pairs())?,
             instances: Poisoned::new(gpu, crowd.len())?,
         };
         state.clip_clocks = outputs.clip_clocks.buffer.clone();
         active.bits = outputs.bits.buffer.clone();
-        active.updated_bones = outputs.updated_bones.buffer.clone();
+        active.updated_bones = UpdatedBones::over(outputs.updated_bones.buffer.clone());
         active.pairs.pairs = outputs.pairs.buffer.clone();
         active.instances = outputs.instances.buffer.clone();
         Ok(outputs)
@@ -157,9 +166,7 @@ impl Play<'_> {
 impl Outputs {
     fn poison(&self, gpu: &crate::gpu::Gpu) -> Result<(), GpuError> {
         self.clip_clocks.poison(gpu)?;
-        [&self.bits, &self.updated_bones, &self.pairs, &self.instances]
-            .iter()
-            .try_for_each(|output| output.poison(gpu))
+        [&self.bits, &self.pairs, &self.instances].iter().try_for_each(|output| output.poison(gpu))
     }
 }
 

@@ -23,7 +23,7 @@ pub struct GatePass {
 #[derive(Debug, Clone)]
 pub(crate) enum Decider<K> {
     Gate(UploadedGate, K),
-    Budget(BudgetPass),
+    Budget(Box<BudgetPass>),
 }
 
 impl GatePass {
@@ -38,7 +38,7 @@ impl GatePass {
 
     /// A gate whose decisions are made by the pass of a budget.
     pub(crate) fn of_budget(pass: BudgetPass) -> Self {
-        Self { decider: Decider::Budget(pass) }
+        Self { decider: Decider::Budget(Box::new(pass)) }
     }
 
     /// Prepares the decision from a crowd's clip clocks.
@@ -111,7 +111,7 @@ impl<K> Decider<K> {
                 (mode, TableBuffers::of_bounds(gpu, table)?)
             }
             Gate::Budget { table, bones } => {
-                return Ok(Self::Budget(BudgetPass::new(gpu, table, *bones)?));
+                return Ok(Self::Budget(Box::new(BudgetPass::new(gpu, table, *bones)?)));
             }
         };
         Ok(Self::Gate(UploadedGate { mode, table }, kernel(mode)?))

@@ -99,7 +99,8 @@ impl LocalToModelPass {
         active.pairs.check_crowd(crowd)?;
         let binder = Binder::new(gpu, skeleton, crowd)?;
         let lists = Lists {
-            updated_bones: &active.updated_bones,
+            updated_bones: &active.bits,
+            first_word: active.updated_words().start as u32,
             instances: &active.instances,
             dispatches: &active.dispatches,
         };
@@ -124,6 +125,8 @@ impl LocalToModelPass {
 /// The instances and slots that are walked.
 struct Lists<'a> {
     updated_bones: &'a Buffer<u32>,
+    /// The word at which the updated bones begin.
+    first_word: u32,
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
 }
@@ -140,7 +143,12 @@ impl Nothing {
     }
 
     fn lists(&self) -> Lists<'_> {
-        Lists { updated_bones: &self.words, instances: &self.words, dispatches: &self.dispatches }
+        Lists {
+            updated_bones: &self.words,
+            first_word: 0,
+            instances: &self.words,
+            dispatches: &self.dispatches,
+        }
     }
 }
 
@@ -172,6 +180,7 @@ impl<'a> Binder<'a> {
             words: self.order.words() as u32,
             first_chain: level[0],
             chains: level[1] - level[0],
+            first_word: lists.first_word,
         };
         let uniform = Uniform::new(gpu, "local_to_model", &params)?;
         let group = bindings::Group {

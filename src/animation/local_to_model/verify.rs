@@ -105,6 +105,8 @@ fn add_updated(cases: &mut Cases<'_>, case: u32, skeleton: &Skeleton, count: usi
         crowd.model_matrices = ModelMatrices::new(&output.buffer);
         let active = Active::new(gpu, &order, &crowd)?;
         active.bits.write(gpu, &chosen.bits)?;
+        // Bones that frames before updated are not updated again.
+        active.updated_bones.write(gpu, &vec![u32::MAX; chosen.bits.len()])?;
         let lists = CompactPass::new(gpu)?.prepare_stages(gpu, &crowd, &active, Stages::Three)?;
         let job = LocalToModelPass::with_walk(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
         gpu.run("verify", |encoder| {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::tree::Tree;
 use crate::animation;
 use crate::asset::{Mesh, Model};
-use crate::scene::mesh::{merged_at_rest, merged_character};
+use crate::scene::mesh::{at_rest_merged, moving_merged};
 use crate::scene::{ClipTime, InstanceId, ObjectId, Scene};
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::Merged;
@@ -56,7 +56,7 @@ pub(super) enum Sample {
 impl Watched {
     pub fn new(scene: &Scene, object: ObjectId, model: &Model) -> Result<Self, InputError> {
         let is_character = scene.is_character(object)?;
-        let merged = if is_character { merged_character(model)? } else { merged_at_rest(model)? };
+        let merged = if is_character { moving_merged(model)? } else { at_rest_merged(model)?.0 };
         let primitives = (0..merged.model.meshes.len()).flat_map(|mesh| primitives(&merged, mesh)).collect();
         let Model { meshes, skins, skeleton, .. } = &merged.model;
         let still = meshes.iter().filter(|_| !is_character);

@@ -9,8 +9,8 @@ use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, Sk
 /// The inputs of a selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
 pub struct SelectBuffers {
-    /// The bones of each instance that were updated this frame, one bit per slot of the skeleton's order, in
-    /// [`MeshBuffers::mask_words`] words per instance. Under a gate,
+    /// The bones of each instance that were updated since the last selection, one bit per slot of the skeleton's
+    /// order, in [`MeshBuffers::mask_words`] words per instance. Under a gate,
     /// [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
     /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) for it. Every bone below an
     /// updated one must be set too.
@@ -48,6 +48,7 @@ impl SelectBuffers {
 pub struct SelectPass {
     select: Kernel,
     finish: Kernel,
+    finish_and_clear: Kernel,
 }
 
 impl SelectPass {
@@ -56,11 +57,15 @@ impl SelectPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |finish| bindings::kernel(gpu, &bindings::Constants { finish });
-        Ok(Self { select: kernel(false)?, finish: kernel(true)? })
+        let kernel = |finish, clear| bindings::kernel(gpu, &bindings::Constants { finish, clear });
+        Ok(Self {
+            select: kernel(false, false)?,
+            finish: kernel(true, false)?,
+            finish_and_clear: kernel(true, true)?,
+        })
     }
 
-    /// Prepares the list of clusters to be skinned.
+    /// Prepares the list of clusters to be skinned. The updated bones stay as they are.
     ///
     /// # Errors
     /// [`crate::InputError`] for buffers of another crowd; [`GpuError`].
@@ -71,6 +76,47 @@ impl SelectPass {
         crowd: &SkinnedCrowd,
         buffers: &SelectBuffers,
         active: &ActiveClusters,
+    ) -> Result<Job, Error> {
+        self.job(gpu, mesh, crowd, (buffers, active), &self.finish)
+    }
+
+    /// As [`SelectPass::prepare`]; afterwards no bone is updated any more.
+    ///
+    /// # Errors
+    /// As [`SelectPass::prepare`].
+    pub fn prepare_clearing(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        buffers: &SelectBuffers,
+        active: &ActiveClusters,
+    ) -> Result<Job, Error> {
+        self.job(gpu, mesh, crowd, (buffers, active), &self.finish_and_clear)
+    }
+
+    /// Both selections: the one that keeps the updated bones, and the one that clears them.
+    pub(crate) fn prepare_both(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        buffers: &SelectBuffers,
+        active: &ActiveClusters,
+    ) -> Result<[Job; 2], Error> {
+        Ok([
+            self.prepare(gpu, mesh, crowd, buffers, active)?,
+            self.prepare_clearing(gpu, mesh, crowd, buffers, active)?,
+        ])
+    }
+
+    fn job(
+        &self,
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        (buffers, active): (&SelectBuffers, &ActiveClusters),
+        finish: &Kernel,
     ) -> Result<Job, Error> {
         let pairs = crowd.instances * mesh.clusters();
         buffers.updated_bones.check_holds("updated_bones", crowd.instances * mesh.mask_words)?;
@@ -108,7 +154,7 @@ impl SelectPass {
                 kernel: kernel.clone(),
             })
         };
-        let steps = [step(&self.select, pairs), step(&self.finish, crowd.instances)];
+        let steps = [step(&self.select, pairs), step(finish, crowd.instances)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "skinning/select", steps)?)
     }

@@ -91,7 +91,10 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let output = Poisoned::<u32>::new(gpu, clusters.len() * instances)?;
         active.pairs = output.buffer.clone();
-        let job = pass.prepare(gpu, &mesh, &crowd, &buffers, &active)?;
+        let updated_bones = Poisoned::<u32>::new(gpu, instances * clusters.mask_words)?;
+        buffers.updated_bones = updated_bones.buffer.clone();
+        let keeping = pass.prepare(gpu, &mesh, &crowd, &buffers, &active)?;
+        let clearing = pass.prepare_clearing(gpu, &mesh, &crowd, &buffers, &active)?;
         let mut last = vec![Skinned::nothing(shape.targets); instances];
         let mut draw = Draw::new(case ^ 0xb17);
         let mut frame = Frame {
@@ -99,18 +102,23 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             instance_lods: vec![InstanceLod::UNSEEN; instances],
             weights: vec![0.0; instances * shape.targets],
         };
-        for given in FRAMES {
+        for (number, given) in FRAMES.into_iter().enumerate() {
             frame = frame.next(&mut draw, case, given);
             crowd.instance_lods.write(gpu, &frame.instance_lods)?;
             crowd.weights.write(gpu, &frame.weights)?;
             buffers.updated_bones.write(gpu, &frame.updated_bones)?;
             output.poison(gpu)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            let clears = number % 3 == 1;
+            gpu.run("verify", |encoder| if clears { &clearing } else { &keeping }.record(encoder))?;
             let expected = select(&clusters, &frame.now(), &last);
             remember(&frame.now(), &mut last);
             let dispatched = active.dispatched.read_blocking(gpu)?;
             let name = format!("{} clusters × {instances}, {}", clusters.len(), given.0);
             cases.add(name, output.check(gpu, |actual| listed(actual, &dispatched, &expected))?);
+            let name = format!("{} clusters × {instances}, {}: updated bones", clusters.len(), given.0);
+            let left: Vec<u32> =
+                frame.updated_bones.iter().map(|word| if clears { 0 } else { *word }).collect();
+            cases.add(name, updated_bones.check(gpu, |actual| compare::exact(actual, &left))?);
             let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
             cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last)))?);
         }

@@ -1,0 +1,71 @@
+//! How fine a view is, and what the permitted displacement is spent on.
+
+use crate::InputError;
+
+/// How fine a view is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quality {
+    /// The largest number of pixels by which anything may be off in the view, at least 0; 0 shows everything in full
+    /// detail. It becomes a distance in the world that each instance is allowed, and [`Shares`] divide
+    /// that among levels of detail, bones and influences. Not bounded are shading, textures, and shadow edges.
+    pub pixels: f32,
+}
+
+impl Default for Quality {
+    /// One pixel.
+    fn default() -> Self {
+        Self { pixels: 1.0 }
+    }
+}
+
+impl Quality {
+    /// Checks the number of pixels.
+    ///
+    /// # Errors
+    /// [`InputError`] for pixels that are negative or not finite.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if self.pixels >= 0.0 && self.pixels.is_finite() {
+            return Ok(());
+        }
+        Err(InputError::new("quality.pixels", self.pixels, "must be finite, and not negative"))
+    }
+}
+
+/// How the distance by which an instance may be off is divided, in fractions that add up to at most 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// For the levels of detail of characters' meshes. Those of static meshes may use all of it.
+    pub mesh: f32,
+    /// For bones that keep an old pose.
+    pub bones: f32,
+    /// For influences that are left out.
+    pub influences: f32,
+}
+
+impl Default for Shares {
+    /// 0.7 for meshes, 0.25 for bones and 0.05 for influences: triangles cost most.
+    fn default() -> Self {
+        Self { mesh: 0.7, bones: 0.25, influences: 0.05 }
+    }
+}
+
+impl Shares {
+    /// Checks the fractions.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        for (path, value) in
+            [("shares.mesh", self.mesh), ("shares.bones", self.bones), ("shares.influences", self.influences)]
+        {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(InputError::new(path, value, "must be in 0..=1"));
+            }
+        }
+        let sum = self.mesh + self.bones + self.influences;
+        if sum > 1.000_001 {
+            return Err(InputError::new("shares", sum, "must add up to at most 1"));
+        }
+        Ok(())
+    }
+}
