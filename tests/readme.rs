@@ -196,11 +196,15 @@ fn characters(
 #[test]
 fn rust_is_compiled_as_it_stands_there() {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-    let compiled = squeezed(include_str!("readme.rs"));
+    let compiled =
+        squeezed(include_str!("readme.rs")) + &squeezed(include_str!("../examples/engine/main.rs"));
     let lines = code("rust", "//");
     assert!(!lines.is_empty());
     for line in lines {
-        assert!(compiled.contains(&squeezed(line)), "tests/readme.rs does not hold `{line}`");
+        assert!(
+            compiled.contains(&squeezed(line)),
+            "neither tests/readme.rs nor examples/engine holds `{line}`"
+        );
     }
 }
 

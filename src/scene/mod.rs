@@ -71,6 +71,7 @@ pub struct Scene {
     layouts: u64,
     staging: StagingRing,
     staged: Staged,
+    uploaded: usize,
     passes: Passes,
     layouts_of_groups: SceneLayouts,
 }
@@ -106,6 +107,7 @@ impl Scene {
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),
             staged: Staged::default(),
+            uploaded: 0,
             passes,
             layouts_of_groups: SceneLayouts::new(gpu)?,
         })
@@ -120,7 +122,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
-    /// [`GpuError`].
+    /// [`crate::gpu::GpuError`].
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source)?;
         Ok(self.add(object))
@@ -146,7 +148,7 @@ impl Scene {
     /// that let it grow, which allocates.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`GpuError`].
+    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(self.add(object))
@@ -157,7 +159,7 @@ impl Scene {
     /// instances; more than that let it grow, which allocates and lets all of them start afresh.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`GpuError`].
+    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
@@ -170,7 +172,7 @@ impl Scene {
     /// allocates.
     ///
     /// # Errors
-    /// [`InputError`] for maps, options or a mesh that do not fit each other; [`GpuError`].
+    /// [`InputError`] for maps, options or a mesh that do not fit each other; [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
         Ok(self.add(object))
@@ -196,7 +198,7 @@ impl Scene {
     /// Shows or hides all instances of an object. Hidden ones cost nothing, and go on playing.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene; [`GpuError`].
+    /// [`InputError`] for an object that is not of this scene; [`crate::gpu::GpuError`].
     pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
@@ -214,7 +216,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain, whose patches are its instances, and as
-    /// [`Placement::checked`]; [`GpuError`].
+    /// [`Placement::checked`]; [`crate::gpu::GpuError`].
     pub fn spawn(&mut self, object: ObjectId, placement: Placement) -> Result<InstanceId, Error> {
         let placement = placement.checked()?;
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
@@ -345,6 +347,11 @@ impl Scene {
         Ok(())
     }
 
+    /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
+    pub fn uploaded(&self) -> usize {
+        self.uploaded
+    }
+
     /// The time of the scene in seconds.
     pub fn time(&self) -> f64 {
         self.now
@@ -353,7 +360,7 @@ impl Scene {
     /// A view into the scene.
     ///
     /// # Errors
-    /// [`InputError`] for pixels that are negative or not finite; [`GpuError`].
+    /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
         View::new(&self.gpu, &self.token, quality)
     }
@@ -361,7 +368,7 @@ impl Scene {
     /// Gives up all recordings whose encoders were dropped, and lets everything start afresh.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`crate::gpu::GpuError`].
     pub fn invalidate(&mut self) -> Result<(), Error> {
         self.staging.invalidate();
         self.staged = Staged::default();
@@ -372,7 +379,7 @@ impl Scene {
     /// is the picture of a scene that was made anew.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`crate::gpu::GpuError`].
     pub fn refresh(&mut self) -> Result<(), Error> {
         for object in self.objects.iter_mut() {
             object.refresh(&self.gpu, &self.layouts_of_groups)?;
@@ -387,7 +394,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been
-    /// recorded that the device has not executed; [`GpuError`].
+    /// recorded that the device has not executed; [`crate::gpu::GpuError`].
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -397,6 +404,7 @@ impl Scene {
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
+        self.uploaded = self.staged.len();
         if !self.staging.record(&gpu, encoder, &mut self.staged)? {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());

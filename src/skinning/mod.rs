@@ -20,6 +20,7 @@ pub mod lod;
 pub mod merged;
 pub mod morph;
 pub mod morph_weights;
+#[cfg(feature = "gpu")]
 pub mod paged;
 pub mod pages;
 pub mod palette;

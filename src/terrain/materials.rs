@@ -19,7 +19,7 @@ impl Materials {
     /// Uploads zones and their textures, one texture per zone.
     ///
     /// # Errors
-    /// [`InputError`] when their numbers differ; [`GpuError`].
+    /// [`InputError`] when their numbers differ; [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[Texture]) -> Result<Self, Error> {
         if zones.is_empty() || zones.len() != textures.len() {
             let bound = format!("must be one for each of the {} zones", zones.len());

@@ -7,7 +7,9 @@ use crate::harness::Difference;
 use crate::world::{SIZE, World, camera, model};
 
 /// Frames of a long life; `RELIEVO_FRAMES` asks for more.
-const FRAMES: u32 = 200;
+fn frames() -> u32 {
+    std::env::var("RELIEVO_FRAMES").ok().and_then(|frames| frames.parse().ok()).unwrap_or(200)
+}
 
 /// A handle names its instance alone: when that is gone, it names nothing, although its place is used again.
 #[test]
@@ -76,7 +78,7 @@ fn a_long_life_leaves_no_trace() {
     };
     let mut shown: Vec<usize> = (0..12).collect();
     let mut held = 0;
-    for at in 0..FRAMES {
+    for at in 0..frames() {
         let index = draw(12) as usize;
         world.scene.despawn(world.crowd[index]).expect("there");
         shown[index] = draw(15) as usize;
@@ -159,4 +161,31 @@ fn pages_follow_what_is_seen() {
     // 320 instances in full detail would take 68 MB of pages.
     assert!(held[2] > held[1] + 1_000_000, "no page was added: {held:?}");
     assert!(held[2] < held[0] + 30_000_000, "more pages than are seen: {held:?}");
+}
+
+/// The host writes what has changed and not what there is.
+#[test]
+fn frames_upload_changes_alone() {
+    let gpu = device();
+    let mut world = World::empty(&gpu, 1000);
+    world.crowd = (0..1000).map(|at| world.spawn(at % 15)).collect();
+    let mut view = world.view(1.0);
+    let mut record = |world: &mut World, moved: usize| {
+        for at in 0..moved {
+            let placement = world.placement(at % 15);
+            // Far from each other in the buffer.
+            world.scene.move_to(world.crowd[(37 * at) % 1000], placement).expect("there");
+        }
+        world.scene.advance(1.0 / 60.0).expect("finite");
+        let mut encoder = gpu.encoder("frame");
+        world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+        gpu.queue().submit([encoder.finish()]);
+        gpu.wait().expect("done");
+        world.scene.uploaded()
+    };
+    let first = record(&mut world, 0);
+    let [still, one, twenty] = [0, 1, 20].map(|moved| record(&mut world, moved));
+    println!("bytes: first {first}, still {still}, one moved {one}, twenty {twenty}");
+    assert!(first > 80_000 && still < 2_000, "{first}, {still}");
+    assert_eq!((one - still, twenty - still), (80, 20 * 80));
 }

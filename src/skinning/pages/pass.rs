@@ -16,8 +16,7 @@ impl SeenAs<PageState> for u32 {}
 pub struct PageBuffers {
     /// The skinned vertices, 64 a page.
     pub skinned: Buffer<Vertex>,
-    /// The page of each cluster of each instance, at `instance · clusters + cluster`, or
-    /// [`NO_PAGE`](super::NO_PAGE).
+    /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Buffer<u32>,
     /// For each instance the number of clusters, from the first on, that have a page.
     pub held: Buffer<u32>,

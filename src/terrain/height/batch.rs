@@ -21,7 +21,7 @@ impl HeightBatch {
     /// each part.
     ///
     /// # Errors
-    /// [`InputError`] as [`HeightPass::prepare`]; [`GpuError`].
+    /// [`InputError`] as [`HeightPass::prepare`]; [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
         pass: &HeightPass,
