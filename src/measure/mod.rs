@@ -9,6 +9,9 @@
 //! | [`scene()`] | whole frames without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
 //! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
 //!
+//! [`DisplacementMeter`] measures frames of the caller's own [`Scene`](crate::scene::Scene): how many pixels what a view
+//! draws is off, with the caller's camera, however it moves.
+//!
 //! # What stays the same
 //!
 //! Every instance plays the same clip in a loop, from its own start time, which is drawn from a seed. The camera
@@ -45,6 +48,7 @@ mod animation;
 mod bounds;
 mod cpu;
 mod device;
+mod displacement;
 mod drawing;
 mod errors;
 mod gates;
@@ -62,6 +66,7 @@ mod tally;
 mod vertices;
 
 pub use animation::{AnimationReport, AnimationRow, DrawnRow, animation, drawn};
+pub use displacement::{Displacement, DisplacementMeter};
 pub use errors::{Errors, Jump};
 pub use gates::{GateMode, GateName};
 pub use levels::LevelReport;

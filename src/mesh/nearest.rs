@@ -1,55 +1,69 @@
 //! The nearest point on a triangle.
 
+#[cfg(any(test, feature = "verify"))]
+use glam::DVec3;
 use glam::Vec3;
 
-/// The point on a triangle that is nearest to `point` (Ericson, "Real-Time Collision Detection", section
-/// 5.1.5): it depends on which Voronoi region of the triangle, of a corner, an edge or the inside, the point
-/// projects onto. A triangle may be degenerate, a line or a point. For sizes and distances of 1e-8 to 1e9,
-/// whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of the larger of the two.
-/// Beyond that range the result still lies on the triangle, so that a measured distance may be too large but is
-/// never too small.
-pub(crate) fn nearest_on_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, point - a);
-    let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
-    if to_b <= 0.0 && to_c <= 0.0 {
-        return a;
-    }
-    let bp = point - b;
-    let (b_to_b, b_to_c) = (ab.dot(bp), ac.dot(bp));
-    if b_to_b >= 0.0 && b_to_c <= b_to_b {
-        return b;
-    }
-    let cp = point - c;
-    let (c_to_b, c_to_c) = (ab.dot(cp), ac.dot(cp));
-    if c_to_c >= 0.0 && c_to_b <= c_to_c {
-        return c;
-    }
-    let over_c = to_b * b_to_c - b_to_b * to_c;
-    if over_c <= 0.0 && to_b >= 0.0 && b_to_b <= 0.0 {
-        return a + ab * part(to_b, -b_to_b);
-    }
-    let over_b = c_to_b * to_c - to_b * c_to_c;
-    if over_b <= 0.0 && to_c >= 0.0 && c_to_c <= 0.0 {
-        return a + ac * part(to_c, -c_to_c);
-    }
-    let over_a = b_to_b * c_to_c - c_to_b * b_to_c;
-    if over_a <= 0.0 && b_to_c >= b_to_b && c_to_b >= c_to_c {
-        return b + (c - b) * part(b_to_c - b_to_b, c_to_b - c_to_c);
-    }
-    let all = over_a + over_b + over_c;
-    let [to_b, to_c] = [over_b, over_c].map(|over| ratio(over, all));
-    a + ab * to_b + ac * to_c.min(1.0 - to_b)
+/// Defines the search for vectors of one kind.
+macro_rules! nearest_on_triangle {
+    ($(#[$documentation:meta])* $name:ident, $vector:ty, $number:ty) => {
+        $(#[$documentation])*
+        pub(crate) fn $name(point: $vector, [a, b, c]: [$vector; 3]) -> $vector {
+            // `one / all` where that is in 0..=1; 0 otherwise, also for 0 / 0 and NaN.
+            let ratio = |one: $number, all: $number| {
+                let ratio = one / all;
+                if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
+            };
+            // `one` as a fraction of the sum of both.
+            let part = |one: $number, other: $number| ratio(one, one + other);
+            let (ab, ac, ap) = (b - a, c - a, point - a);
+            let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
+            if to_b <= 0.0 && to_c <= 0.0 {
+                return a;
+            }
+            let bp = point - b;
+            let (b_to_b, b_to_c) = (ab.dot(bp), ac.dot(bp));
+            if b_to_b >= 0.0 && b_to_c <= b_to_b {
+                return b;
+            }
+            let cp = point - c;
+            let (c_to_b, c_to_c) = (ab.dot(cp), ac.dot(cp));
+            if c_to_c >= 0.0 && c_to_b <= c_to_c {
+                return c;
+            }
+            let over_c = to_b * b_to_c - b_to_b * to_c;
+            if over_c <= 0.0 && to_b >= 0.0 && b_to_b <= 0.0 {
+                return a + ab * part(to_b, -b_to_b);
+            }
+            let over_b = c_to_b * to_c - to_b * c_to_c;
+            if over_b <= 0.0 && to_c >= 0.0 && c_to_c <= 0.0 {
+                return a + ac * part(to_c, -c_to_c);
+            }
+            let over_a = b_to_b * c_to_c - c_to_b * b_to_c;
+            if over_a <= 0.0 && b_to_c >= b_to_b && c_to_b >= c_to_c {
+                return b + (c - b) * part(b_to_c - b_to_b, c_to_b - c_to_c);
+            }
+            let all = over_a + over_b + over_c;
+            let [to_b, to_c] = [over_b, over_c].map(|over| ratio(over, all));
+            a + ab * to_b + ac * to_c.min(1.0 - to_b)
+        }
+    };
 }
 
-/// `one` as a fraction of the sum of both.
-fn part(one: f32, other: f32) -> f32 {
-    ratio(one, one + other)
+nearest_on_triangle! {
+    /// The point on a triangle that is nearest to `point` (Ericson, "Real-Time Collision Detection", section
+    /// 5.1.5): it depends on which Voronoi region of the triangle, of a corner, an edge or the inside, the point
+    /// projects onto. A triangle may be degenerate, a line or a point. For sizes and distances of 1e-8 to 1e9,
+    /// whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of the larger of the two.
+    /// Beyond that range the result still lies on the triangle, so that a measured distance may be too large but is
+    /// never too small.
+    nearest_on_triangle, Vec3, f32
 }
 
-/// `one / all` where that is in 0..=1; 0 otherwise, also for 0 / 0 and NaN.
-fn ratio(one: f32, all: f32) -> f32 {
-    let ratio = one / all;
-    if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
+nearest_on_triangle! {
+    /// As [`nearest_on_triangle`], in double precision.
+    #[cfg(any(test, feature = "verify"))]
+    precise_nearest_on_triangle, DVec3, f64
 }
 
 #[cfg(test)]
@@ -70,6 +84,17 @@ mod tests {
         // A point above the middle of the long edge, displaced along the edge's normal.
         let [x, y] = found(2.0 + 3.0, 1.5 + 4.0);
         assert!((x - 2.0).abs() < 1e-6 && (y - 1.5).abs() < 1e-6, "{x} {y}");
+    }
+
+    #[test]
+    fn both_precisions_agree() {
+        for at in 0..200 {
+            let [x, y, z] = [1.7, 2.9, 4.3].map(|turn| 6.0 * libm::sinf(turn * at as f32));
+            let point = Vec3::new(x, y, z);
+            let found =
+                precise_nearest_on_triangle(point.as_dvec3(), CORNERS.map(|corner| corner.as_dvec3()));
+            assert!(found.distance(nearest_on_triangle(point, CORNERS).as_dvec3()) < 1e-5, "{point}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
 use crate::scene::paging::{Needs, Paging, needs};
-use crate::scene::placement::Play;
+use crate::scene::placement::{ClipTime, Play};
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -23,6 +23,8 @@ use crate::skinning::merged::Merged;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::PagedSkin;
 use crate::skinning::pages::PageBuffers;
+#[cfg(feature = "verify")]
+use crate::skinning::vertex::Vertex;
 use crate::skinning::{Extent, poses_of};
 use crate::{Error, InputError};
 
@@ -155,6 +157,20 @@ impl Character {
             .clip(name)
             .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+    }
+
+    /// The clip that an instance plays, and the time in it at a time of the scene.
+    pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
+        let play = &self.plays[index as usize];
+        let duration = self.merged.model.clips[play.clip as usize].duration();
+        let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
+        Ok(ClipTime { clip: play.clip as usize, seconds })
+    }
+
+    /// The skinned vertices of an instance, mesh by mesh.
+    #[cfg(feature = "verify")]
+    pub fn skinned(&self, gpu: &Gpu, index: u32) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
+        self.runtime.skins.iter().map(|skin| skin.read(gpu, index as usize)).collect()
     }
 
     /// Prepares the assignment of levels for a layout, unless it is prepared.

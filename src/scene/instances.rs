@@ -90,6 +90,13 @@ impl Instances {
         self.generations.get(index) == Some(&generation) && self.all[index].flags & INSTANCE_ALIVE != 0
     }
 
+    /// Index and generation of all instances that exist, in ascending order.
+    pub fn each(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let all = self.all.iter().zip(&self.generations).zip(0_u32..);
+        let alive = all.filter(|((instance, _), _)| instance.flags & INSTANCE_ALIVE != 0);
+        alive.map(|((_, generation), index)| [index, *generation])
+    }
+
     /// All instances, those that do not exist too.
     pub fn all(&self) -> &[SceneInstance] {
         &self.all

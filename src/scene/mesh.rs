@@ -19,7 +19,7 @@ use crate::{Error, InputError};
 pub(super) type Drawn = (Vec<Drawable>, Vec<SceneDraw>);
 
 /// A model's meshes at rest, merged, with a sphere around them.
-pub(super) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
+pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
     check(model)?;
     let mut rest = at_rest(model)?;
     if model.clips.is_empty() {
@@ -35,7 +35,7 @@ pub(super) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), 
 }
 
 /// The meshes of a model with clips, merged.
-pub(super) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
+pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
     check(model)?;
     merged(model, OBJECT_LEVELS as usize)
 }

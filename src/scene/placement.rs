@@ -132,6 +132,15 @@ impl<'a> Play<'a> {
     }
 }
 
+/// The clip that a character plays, and the time in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipTime {
+    /// Index of the clip in the model.
+    pub clip: usize,
+    /// Seconds since the clip's start, between 0 and its duration.
+    pub seconds: f32,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,6 +8,8 @@ use crate::asset::Light;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Staged, Uniform, Upload as _};
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
+#[cfg(feature = "verify")]
+use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{LodCamera, planes};
 use crate::lod::{SelectView, VIEW_CAMERAS};
 use crate::scene::camera::{Camera, Depth};
@@ -43,6 +45,8 @@ pub(crate) struct ViewLists {
     pub lists: Buffer<u32>,
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
+    /// For each instance that is seen, the rows of its transform from the model's space to the corner of the view's cell.
+    pub rows: Buffer<[f32; 4]>,
     /// Bind group 0.
     pub group: Group,
     /// For each terrain, in the order of the objects, where its samples lie, and bind group 1.
@@ -91,6 +95,11 @@ impl View {
         Ok(())
     }
 
+    /// The quality of the next frame.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+
     /// Lets other cameras decide the levels of detail: the finest that any of them needs. A shadow view takes those of
     /// the main views, so that shadows fit what casts them. Without any, the view's own camera decides.
     ///
@@ -122,6 +131,13 @@ impl View {
     /// The camera, if it was set.
     pub fn camera(&self) -> Option<&Camera> {
         self.camera.as_ref()
+    }
+
+    /// Whether the view shows an instance with these flags if it is inside the view volume.
+    #[cfg(feature = "verify")]
+    pub(super) fn may_show(&self, flags: u32) -> bool {
+        let is_in_mask = flags >> INSTANCE_MASK_SHIFT & u32::from(self.mask) != 0;
+        flags & INSTANCE_ALIVE != 0 && is_in_mask && (!self.casters || flags & INSTANCE_CASTS != 0)
     }
 
     pub(crate) fn is_of(&self, scene: &Arc<()>) -> bool {
@@ -244,7 +260,7 @@ impl ViewLists {
             Ok((uniform, group))
         };
         let terrain = (0..terrains).map(|_| ground()).collect::<Result<_, GpuError>>()?;
-        Ok(Self { version: layout.version, lists, arguments, group, terrain, select, list })
+        Ok(Self { version: layout.version, lists, arguments, rows, group, terrain, select, list })
     }
 }
 

@@ -30,6 +30,8 @@ pub struct Merged {
     pub errors: Vec<f32>,
     /// For each mesh, the material of each of its vertices, as an index in the model.
     pub materials: Vec<Vec<Option<usize>>>,
+    /// For each mesh, the mesh of the model from which each of its vertices comes, as an index.
+    pub sources: Vec<Vec<u32>>,
     /// What is drawn at once. Every triangle belongs to one part.
     pub parts: Vec<Part>,
 }
@@ -70,7 +72,8 @@ pub fn merged(model: &Model, levels: usize) -> Result<Merged, InputError> {
     let parts = parts::parts(model, &groups, &keys);
     let draws = 2 * parts.len().max(1);
     let errors = level_errors_within(&model.meshes, levels.min(MAX_DRAWS / draws));
-    let mut merged = Merged { model: bare(model), errors, materials: Vec::new(), parts: Vec::new() };
+    let mut merged =
+        Merged { model: bare(model), errors, materials: Vec::new(), sources: Vec::new(), parts: Vec::new() };
     let mut union = Union::default();
     for group in 0..groups.len() {
         merged.add(model, &mut union, parts.iter().filter(|part| part.group == group))?;
@@ -139,6 +142,9 @@ impl Merged {
         let mesh = joined(model, &meshes, &own, &self.errors, union)?;
         let each = |mesh: &&crate::asset::Mesh| std::iter::repeat_n(mesh.material, mesh.vertices());
         self.materials.push(meshes.iter().flat_map(each).collect());
+        let all = sources.iter().zip(&meshes);
+        let own_source = all.flat_map(|(at, mesh)| std::iter::repeat_n(*at as u32, mesh.vertices()));
+        self.sources.push(own_source.collect());
         let mut begins = vec![0_u32; self.errors.len() + 1];
         let mut first = 0;
         for part in parts {

@@ -7,6 +7,8 @@ mod harness;
 mod frame;
 mod life;
 mod placements;
+#[cfg(feature = "verify")]
+mod promise;
 mod targets;
 mod views;
 mod world;

@@ -1,0 +1,180 @@
+//! The surfaces of a model that are compared: triangles of each primitive at each level of detail, and samples of them.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+
+use super::tree::Tree;
+use crate::animation;
+use crate::asset::{Mesh, Model};
+use crate::scene::mesh::{at_rest_merged, moving_merged};
+use crate::scene::{ClipTime, InstanceId, ObjectId, Scene};
+use crate::skinning::clusters::Clusters;
+use crate::skinning::merged::Merged;
+use crate::skinning::morph::reference::morph;
+use crate::skinning::palette::reference::palette_for;
+use crate::skinning::skin::reference::skin;
+use crate::skinning::{Blend, InstanceLod, Vertex, own_levels};
+use crate::{Error, InputError};
+
+/// An object of a scene, and the model from which it was made.
+pub(super) struct Watched {
+    pub object: ObjectId,
+    pub primitives: Vec<Primitive>,
+    merged: Merged,
+    /// The order of the vertices of static meshes on the device; empty for a character.
+    clusters: Vec<Clusters>,
+}
+
+/// A primitive of the model, as a part of a merged mesh.
+pub(super) struct Primitive {
+    /// Index of the merged mesh.
+    pub mesh: usize,
+    /// Its triangles at each level of the object.
+    pub levels: Vec<Surface>,
+}
+
+/// Triangles, and samples of them.
+#[derive(Default)]
+pub(super) struct Surface {
+    pub triangles: Vec<[u32; 3]>,
+    /// The vertices that triangles use, in ascending order, then the middles of edges and of triangles.
+    pub samples: Vec<Sample>,
+}
+
+/// A point of a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Sample {
+    /// A vertex.
+    Vertex(u32),
+    /// The middle of an edge.
+    Edge([u32; 2]),
+    /// The middle of a triangle.
+    Triangle([u32; 3]),
+}
+
+impl Watched {
+    pub fn new(scene: &Scene, object: ObjectId, model: &Model) -> Result<Self, InputError> {
+        let is_character = scene.is_character(object)?;
+        let merged = if is_character { moving_merged(model)? } else { at_rest_merged(model)?.0 };
+        let primitives = (0..merged.model.meshes.len()).flat_map(|mesh| primitives(&merged, mesh)).collect();
+        let Model { meshes, skins, skeleton, .. } = &merged.model;
+        let still = meshes.iter().filter(|_| !is_character);
+        let clusters = still.map(|mesh| Clusters::new(mesh, skins, skeleton)).collect::<Result<_, _>>()?;
+        Ok(Self { object, primitives, merged, clusters })
+    }
+
+    /// The positions of all vertices at full detail in the model's space, mesh by mesh, by the CPU references.
+    pub fn posed(&self, time: Option<ClipTime>) -> Vec<Vec<DVec3>> {
+        let model = &self.merged.model;
+        let Some(ClipTime { clip, seconds }) = time else {
+            return model.meshes.iter().map(|mesh| precise(&mesh.positions)).collect();
+        };
+        let pose = animation::Pose::on_host(&model.skeleton, &model.clips[clip], seconds);
+        let skinned = |mesh: &Mesh| {
+            let palette = palette_for(&model.skins[mesh.skin], &pose.model_matrices, Blend::Linear);
+            let vertices = morph(mesh, &mesh.weights_at(clip, seconds));
+            let all = skin(&vertices, &mesh.influences, &palette, InstanceLod::FULL);
+            precise(&all.iter().map(|vertex| vertex.position).collect::<Vec<_>>())
+        };
+        model.meshes.iter().map(skinned).collect()
+    }
+
+    /// The positions of the vertices that are drawn of an instance at a level, in the model's space, mesh by mesh. Vertices
+    /// that are not drawn are not numbers.
+    pub fn drawn(&self, scene: &Scene, instance: InstanceId, level: u32) -> Result<Vec<Vec<DVec3>>, Error> {
+        let mut skinned = scene.drawn_vertices(instance)?;
+        for (clusters, vertices) in self.clusters.iter().zip(&mut skinned) {
+            *vertices = clusters.in_mesh_order(vertices);
+        }
+        for Primitive { mesh, levels } in &self.primitives {
+            let of_level = levels[level as usize].triangles.as_flattened();
+            if let Some(vertex) = of_level.iter().find(|vertex| skinned[*mesh][**vertex as usize].is_none()) {
+                let bound = "must lie in a page, since it is drawn";
+                return Err(
+                    InputError::new(format!("meshes[{mesh}].vertices[{vertex}]"), "none", bound).into()
+                );
+            }
+        }
+        let position = |vertex: &Option<Vertex>| {
+            vertex.map_or(DVec3::NAN, |vertex| glam::Vec3::from(vertex.position).as_dvec3())
+        };
+        Ok(skinned.iter().map(|mesh| mesh.iter().map(position).collect()).collect())
+    }
+}
+
+fn precise(positions: &[[f32; 3]]) -> Vec<DVec3> {
+    positions.iter().map(|position| glam::Vec3::from(*position).as_dvec3()).collect()
+}
+
+/// The primitives of a merged mesh.
+fn primitives(merged: &Merged, index: usize) -> Vec<Primitive> {
+    let (mesh, sources) = (&merged.model.meshes[index], &merged.sources[index]);
+    let all: BTreeSet<u32> = sources.iter().copied().collect();
+    let own = own_levels(mesh, &merged.errors);
+    let surface = |source: u32, level: u32| {
+        let all = mesh.triangles(level).as_chunks::<3>().0.iter();
+        Surface::new(all.filter(|corners| sources[corners[0] as usize] == source).copied().collect())
+    };
+    (all.into_iter())
+        .map(|source| Primitive {
+            mesh: index,
+            levels: own.iter().map(|level| surface(source, *level)).collect(),
+        })
+        .collect()
+}
+
+impl Surface {
+    fn new(triangles: Vec<[u32; 3]>) -> Self {
+        let edges = |corners: &[u32; 3]| {
+            [[0, 1], [1, 2], [2, 0]].map(|edge| {
+                let [a, b] = edge.map(|at: usize| corners[at]);
+                Sample::Edge([a.min(b), a.max(b)])
+            })
+        };
+        let vertices = triangles.as_flattened().iter().map(|vertex| Sample::Vertex(*vertex));
+        let mut samples: Vec<Sample> = vertices.chain(triangles.iter().flat_map(edges)).collect();
+        samples.extend(triangles.iter().map(|corners| Sample::Triangle(*corners)));
+        samples.sort_unstable();
+        samples.dedup();
+        Self { triangles, samples }
+    }
+
+    /// Whether a triangle uses a vertex.
+    pub fn has(&self, vertex: u32) -> bool {
+        self.samples.binary_search(&Sample::Vertex(vertex)).is_ok()
+    }
+
+    /// The triangles between points.
+    pub fn tree(&self, points: &[DVec3]) -> Option<Tree> {
+        let corners = self.triangles.iter().map(|corners| corners.map(|vertex| points[vertex as usize]));
+        (!self.triangles.is_empty()).then(|| Tree::new(corners.collect()))
+    }
+}
+
+impl Sample {
+    /// Its position, given those of vertices.
+    pub fn position(&self, points: &[DVec3]) -> DVec3 {
+        let point = |vertex: &u32| points[*vertex as usize];
+        match self {
+            Self::Vertex(vertex) => point(vertex),
+            Self::Edge(ends) => ends.iter().map(point).sum::<DVec3>() / 2.0,
+            Self::Triangle(corners) => corners.iter().map(point).sum::<DVec3>() / 3.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_has_eleven_samples() {
+        let square = Surface::new(vec![[0, 1, 2], [2, 1, 3]]);
+        assert_eq!(square.samples.len(), 4 + 5 + 2);
+        assert!(square.has(3) && !square.has(4));
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE].map(|point| 6.0 * point);
+        assert_eq!(Sample::Edge([1, 2]).position(&points), DVec3::new(3.0, 3.0, 0.0));
+        assert_eq!(Sample::Triangle([0, 1, 2]).position(&points), DVec3::new(2.0, 2.0, 0.0));
+    }
+}

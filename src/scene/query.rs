@@ -1,0 +1,140 @@
+//! What a scene knows of its instances, and, for measurements, what a view draws of them.
+
+use super::handles::stale;
+use super::object::{Kind, Object};
+use super::{ClipTime, InstanceId, ObjectId, Placement, Scene};
+use crate::InputError;
+use crate::shared::lod::instance::SceneInstance;
+
+#[cfg(feature = "verify")]
+pub(crate) use drawn::DrawnInstance;
+
+impl Scene {
+    /// All instances of an object, in the order in which views list them. Those of terrain are its patches.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene.
+    pub fn instances(&self, object: ObjectId) -> Result<Vec<InstanceId>, InputError> {
+        let all = self.object_at(object)?.instances.each();
+        Ok(all.map(|[index, generation]| InstanceId { object, index, generation }).collect())
+    }
+
+    /// Where an instance stands.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    pub fn placement(&self, instance: InstanceId) -> Result<Placement, InputError> {
+        let InstanceId { object, index, .. } = self.existing(instance)?;
+        let SceneInstance { cell, offset, rotation, scale, .. } =
+            self.object_at(object)?.instances.all()[index as usize];
+        let turn = glam::Quat::from_array(rotation);
+        Ok(Placement { cell, at: offset.into(), turn, scale: scale.into() })
+    }
+
+    /// The clip that an instance plays, and the time in it at the time of the scene; `None` for what is no character.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    pub fn clip_time(&self, instance: InstanceId) -> Result<Option<ClipTime>, InputError> {
+        let InstanceId { object, index, .. } = self.existing(instance)?;
+        match &self.object_at(object)?.kind {
+            Kind::Character(character) => character.clip_time(index, self.now).map(Some),
+            Kind::Mesh | Kind::Terrain(_) => Ok(None),
+        }
+    }
+
+    fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
+        let ObjectId { index, generation } = object;
+        self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
+    }
+
+    /// The instance, if it exists.
+    fn existing(&self, instance: InstanceId) -> Result<InstanceId, InputError> {
+        let InstanceId { object, index, generation } = instance;
+        match self.object_at(object)?.instances.contains([index, generation]) {
+            true => Ok(instance),
+            false => Err(stale("instance", index, generation)),
+        }
+    }
+}
+
+#[cfg(feature = "verify")]
+mod drawn {
+    use super::*;
+    use crate::Error;
+    use crate::asset::Affine;
+    use crate::scene::View;
+    use crate::scene::drawable::{Drawable, MeshDrawable};
+    use crate::skinning::vertex::Vertex;
+
+    /// An instance that a view may show, as the view's last frame drew it.
+    #[derive(Debug, Clone, Copy)]
+    pub(crate) struct DrawnInstance {
+        pub instance: InstanceId,
+        /// The level of detail, and the transform from the model's space to the corner of the view's cell; `None` if the
+        /// instance was not drawn.
+        pub drawn: Option<(u32, Affine)>,
+    }
+
+    impl Scene {
+        /// Whether the instances of an object are animated.
+        pub(crate) fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {
+            Ok(matches!(self.object_at(object)?.kind, Kind::Character(_)))
+        }
+
+        /// The instances of an object that a view may show, as its last frame, which must be submitted, drew them. Waits
+        /// for the device.
+        pub(crate) fn drawn_instances(
+            &self,
+            view: &View,
+            object: ObjectId,
+        ) -> Result<Vec<DrawnInstance>, Error> {
+            let entry = self.object_at(object)?;
+            let Some(buffers) = view.lists.as_ref().filter(|_| view.is_of(&self.token)) else {
+                return Err(
+                    InputError::new("view", "not recorded", "must be of this scene, and recorded").into()
+                );
+            };
+            let (range, capacity) = (entry.range, entry.instances.capacity());
+            let draws = buffers.arguments.read_blocking(&self.gpu)?;
+            let lists = buffers.lists.read_blocking(&self.gpu)?;
+            let rows = buffers.rows.read_blocking(&self.gpu)?;
+            let mut drawn = vec![None; capacity];
+            for list in 0..2 * entry.errors.len() {
+                let count = draws[range.first_draw as usize + list].instances as usize;
+                for index in &lists[range.first_list as usize + list * capacity..][..count] {
+                    let first = 3 * (range.first + index) as usize;
+                    let placed: Affine = [0, 1, 2].map(|row| rows[first + row]);
+                    drawn[*index as usize] = Some(((list / 2) as u32, placed));
+                }
+            }
+            let all = entry.instances.each();
+            let shown = all.filter(|[index, _]| {
+                entry.is_shown && view.may_show(entry.instances.all()[*index as usize].flags)
+            });
+            let instance = |[index, generation]: [u32; 2]| DrawnInstance {
+                instance: InstanceId { object, index, generation },
+                drawn: drawn[index as usize],
+            };
+            Ok(shown.map(instance).collect())
+        }
+
+        /// The vertices that are drawn of an instance, for each of its merged meshes: those of its pages in the mesh's own
+        /// order if it is a character, those without a page `None`; and those that all instances share, slot by slot, if
+        /// it is a mesh. Waits for the device.
+        pub(crate) fn drawn_vertices(&self, instance: InstanceId) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
+            let InstanceId { object, index, .. } = self.existing(instance)?;
+            let object = self.object_at(object)?;
+            if let Kind::Character(character) = &object.kind {
+                return character.skinned(&self.gpu, index);
+            }
+            let meshes = object.drawables.iter().filter_map(|drawable| match drawable {
+                Drawable::Mesh(mesh) => Some(mesh),
+                Drawable::Terrain(_) => None,
+            });
+            let vertices = |mesh: &MeshDrawable| mesh.geometry.vertices.read_blocking(&self.gpu);
+            let all = meshes.map(|mesh| Ok(vertices(mesh)?.into_iter().map(Some).collect()));
+            all.collect()
+        }
+    }
+}
