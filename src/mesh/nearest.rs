@@ -61,7 +61,7 @@ nearest_on_triangle! {
 }
 
 nearest_on_triangle! {
-    /// As [`nearest_on_triangle`], in double precision.
+    /// As [`nearest_on_triangle()`], in double precision.
     #[cfg(any(test, feature = "verify"))]
     precise_nearest_on_triangle, DVec3, f64
 }

@@ -63,16 +63,18 @@ mod drawn {
     use super::*;
     use crate::Error;
     use crate::asset::Affine;
+    use crate::lod::OBJECT_LISTS;
     use crate::scene::View;
     use crate::scene::drawable::{Drawable, MeshDrawable};
+    use crate::scene::view::ViewLists;
     use crate::skinning::vertex::Vertex;
 
     /// An instance that a view may show, as the view's last frame drew it.
     #[derive(Debug, Clone, Copy)]
     pub(crate) struct DrawnInstance {
         pub instance: InstanceId,
-        /// The level of detail, and the transform from the model's space to the corner of the view's cell; `None` if the
-        /// instance was not drawn.
+        /// Its list, 2 · level + mirrored, and the transform from the model's space to the corner of the view's cell; `None`
+        /// if the instance was not drawn.
         pub drawn: Option<(u32, Affine)>,
     }
 
@@ -90,11 +92,7 @@ mod drawn {
             object: ObjectId,
         ) -> Result<Vec<DrawnInstance>, Error> {
             let entry = self.object_at(object)?;
-            let Some(buffers) = view.lists.as_ref().filter(|_| view.is_of(&self.token)) else {
-                return Err(
-                    InputError::new("view", "not recorded", "must be of this scene, and recorded").into()
-                );
-            };
+            let buffers = self.lists_of(view)?;
             let (range, capacity) = (entry.range, entry.instances.capacity());
             let draws = buffers.arguments.read_blocking(&self.gpu)?;
             let lists = buffers.lists.read_blocking(&self.gpu)?;
@@ -105,7 +103,7 @@ mod drawn {
                 for index in &lists[range.first_list as usize + list * capacity..][..count] {
                     let first = 3 * (range.first + index) as usize;
                     let placed: Affine = [0, 1, 2].map(|row| rows[first + row]);
-                    drawn[*index as usize] = Some(((list / 2) as u32, placed));
+                    drawn[*index as usize] = Some((list as u32, placed));
                 }
             }
             let all = entry.instances.each();
@@ -117,6 +115,35 @@ mod drawn {
                 drawn: drawn[index as usize],
             };
             Ok(shown.map(instance).collect())
+        }
+
+        fn lists_of<'a>(&self, view: &'a View) -> Result<&'a ViewLists, InputError> {
+            let lists = view.lists.as_ref().filter(|_| view.is_of(&self.token));
+            let bound = "must be of this scene, and recorded";
+            lists.ok_or_else(|| InputError::new("view", "not recorded", bound))
+        }
+
+        /// The triangles that a view draws of the instances of an object's list, for each of its merged meshes; corners are
+        /// slots of vertices. Waits for the device.
+        pub(crate) fn drawn_triangles(
+            &self,
+            view: &View,
+            object: ObjectId,
+            list: u32,
+        ) -> Result<Vec<Vec<[u32; 3]>>, Error> {
+            let object = self.object_at(object)?;
+            let draws = self.lists_of(view)?.arguments.read_blocking(&self.gpu)?;
+            let mut all = Vec::new();
+            for (drawable, lod) in object.drawables.iter().zip(&object.lods) {
+                let Drawable::Mesh(mesh) = drawable else { continue };
+                let indices = mesh.geometry.indices.read_blocking(&self.gpu)?;
+                let of_part = |part: u32| {
+                    let draw = &draws[(lod.first_draw + OBJECT_LISTS * part + list) as usize];
+                    indices[draw.first_index as usize..][..draw.indices as usize].as_chunks::<3>().0
+                };
+                all.push((0..mesh.parts.len() as u32).flat_map(of_part).copied().collect());
+            }
+            Ok(all)
         }
 
         /// The vertices that are drawn of an instance, for each of its merged meshes: those of its pages in the mesh's own

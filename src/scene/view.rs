@@ -46,6 +46,7 @@ pub(crate) struct ViewLists {
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
     /// For each instance that is seen, the rows of its transform from the model's space to the corner of the view's cell.
+    #[cfg(feature = "verify")]
     pub rows: Buffer<[f32; 4]>,
     /// Bind group 0.
     pub group: Group,
@@ -260,7 +261,17 @@ impl ViewLists {
             Ok((uniform, group))
         };
         let terrain = (0..terrains).map(|_| ground()).collect::<Result<_, GpuError>>()?;
-        Ok(Self { version: layout.version, lists, arguments, rows, group, terrain, select, list })
+        Ok(Self {
+            version: layout.version,
+            lists,
+            arguments,
+            #[cfg(feature = "verify")]
+            rows,
+            group,
+            terrain,
+            select,
+            list,
+        })
     }
 }
 

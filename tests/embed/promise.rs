@@ -196,4 +196,19 @@ fn displacements_are_those_of_a_closed_form() {
     let expected = focal * f64::from(way) / depth;
     assert!((found.largest / expected - 1.0).abs() < 1e-4, "{found:?}, not {expected}");
     assert!((found.largest_in_world - f64::from(way)).abs() < 1e-5 && found.left_out == 0, "{found:?}");
+    // Samples just behind the near plane do not count, and those of an instance that was not drawn are missing.
+    let close = |ahead, near| Camera::looking_at(eye, ahead, field_of_view, [near, 60.0], VIEWPORT);
+    let mut measure = |recorded: Camera, measured: Camera| {
+        let mut encoder = gpu.encoder("frame");
+        view.set(recorded).expect("a camera");
+        scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+        gpu.queue().submit([encoder.finish()]);
+        view.set(measured).expect("a camera");
+        meter.measure(&scene, &view).expect("measured")
+    };
+    let near = close(ahead, depth as f32 - 0.01);
+    let found = measure(near, near);
+    assert!(found.left_out > 0 && found.left_out < found.samples && found.missing == 0, "{found:?}");
+    let found = measure(close(eye + Vec3::Z, 0.5), close(ahead, 0.5));
+    assert!(found.missing > 0 && found.missing == found.samples, "{found:?}");
 }

@@ -1,12 +1,12 @@
 //! How far what a view of a scene draws lies from its place, in pixels.
 //!
 //! Two surfaces of each instance are compared: the model at full detail, posed by the CPU references at the time of the
-//! scene; and what is drawn, that is the triangles of the level of detail that the view has chosen, between the vertices
-//! that the device has skinned, with bones that keep old poses and influences that have faded. Both have samples: vertices,
-//! the middles of edges and those of triangles, as far as they lie inside the view volume, hidden or not. The partner of a
-//! sample is the same vertex if the other surface has it. Otherwise it is the nearest point on the other surface, among all
-//! triangles of the same primitive (which collapses made which triangle is not recorded). The displacement is the distance
-//! between sample and partner in the picture.
+//! scene; and what is drawn, that is the triangles in the draw of the list that the view has put the instance into, between
+//! the vertices that the device has skinned, with bones that keep old poses and influences that have faded. Both have
+//! samples: vertices, the middles of edges and those of triangles, as far as they lie inside the view volume, hidden or not.
+//! The partner of a sample is the same vertex if the other surface has it. Otherwise it is the nearest point on the other
+//! surface, among all triangles of the same primitive (which collapses made which triangle is not recorded). The
+//! displacement is the distance between sample and partner in the picture.
 //!
 //! Terrain and reliefs have one level of detail and are not measured.
 
@@ -109,16 +109,17 @@ impl DisplacementMeter {
         let eye = Eye::new(camera)?;
         let mut frame = Displacement::none(view.quality().pixels);
         let mut offsets = HashMap::new();
-        for watched in &self.watched {
+        for watched in &mut self.watched {
             for instance in scene.drawn_instances(view, watched.object)? {
+                if let Some((list, _)) = instance.drawn {
+                    watched.read_list(scene, view, list)?;
+                    frame.levels[list as usize / 2] += 1;
+                }
                 let all = instance_found(scene, watched, &instance, camera, &eye)?;
                 for (mesh, found) in all {
                     frame.add(&found, instance.drawn.is_some());
                     let vertex = |(vertex, offset)| ((instance.instance, mesh, vertex), offset);
                     offsets.extend(found.offsets.into_iter().map(vertex));
-                }
-                if let Some((level, _)) = instance.drawn {
-                    frame.levels[level as usize] += 1;
                 }
             }
         }
@@ -177,16 +178,18 @@ fn instance_found(
 ) -> Result<Vec<(usize, Found)>, Error> {
     let placed = placed(&scene.placement(*instance)?, camera.cell);
     let right = transformed(&watched.posed(scene.clip_time(*instance)?), &placed);
-    let Some((level, rows)) = drawn else {
-        let missing = |Primitive { mesh, levels }: &Primitive| {
-            (*mesh, inside(&Side::new(&levels[0], &right[*mesh], &eye.right, false)))
+    let Some((list, rows)) = drawn else {
+        let missing = |Primitive { mesh, full, .. }: &Primitive| {
+            (*mesh, inside(&Side::new(full, &right[*mesh], &eye.right, false)))
         };
         return Ok(watched.primitives.par_iter().map(missing).collect());
     };
-    let shown = transformed(&watched.drawn(scene, *instance, *level)?, &matrix(rows));
-    let both = |Primitive { mesh, levels }: &Primitive| {
-        let full = Side::new(&levels[0], &right[*mesh], &eye.right, true);
-        let coarse = Side::new(&levels[*level as usize], &shown[*mesh], &eye.drawn, true);
+    let shown = transformed(&watched.drawn(scene, *instance, *list)?, &matrix(rows));
+    let nothing = Surface::default();
+    let both = |Primitive { mesh, full, lists, .. }: &Primitive| {
+        let coarse = lists[*list as usize].as_ref().unwrap_or(&nothing);
+        let full = Side::new(full, &right[*mesh], &eye.right, true);
+        let coarse = Side::new(coarse, &shown[*mesh], &eye.drawn, true);
         let back = Found { offsets: Vec::new(), ..compared(eye, &coarse, &full) };
         [(*mesh, compared(eye, &full, &coarse)), (*mesh, back)]
     };

@@ -1,4 +1,4 @@
-//! The surfaces of a model that are compared: triangles of each primitive at each level of detail, and samples of them.
+//! The surfaces of a model that are compared: the triangles of each primitive, all of them and those drawn, and samples.
 
 use std::collections::BTreeSet;
 
@@ -7,14 +7,15 @@ use glam::DVec3;
 use super::tree::Tree;
 use crate::animation;
 use crate::asset::{Mesh, Model};
+use crate::lod::OBJECT_LISTS;
 use crate::scene::mesh::{at_rest_merged, moving_merged};
-use crate::scene::{ClipTime, InstanceId, ObjectId, Scene};
+use crate::scene::{ClipTime, InstanceId, ObjectId, Scene, View};
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::Merged;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::palette::reference::palette_for;
 use crate::skinning::skin::reference::skin;
-use crate::skinning::{Blend, InstanceLod, Vertex, own_levels};
+use crate::skinning::{Blend, InstanceLod, Vertex};
 use crate::{Error, InputError};
 
 /// An object of a scene, and the model from which it was made.
@@ -22,7 +23,8 @@ pub(super) struct Watched {
     pub object: ObjectId,
     pub primitives: Vec<Primitive>,
     merged: Merged,
-    /// The order of the vertices of static meshes on the device; empty for a character.
+    is_character: bool,
+    /// For each merged mesh, the order of its vertices on the device.
     clusters: Vec<Clusters>,
 }
 
@@ -30,8 +32,12 @@ pub(super) struct Watched {
 pub(super) struct Primitive {
     /// Index of the merged mesh.
     pub mesh: usize,
-    /// Its triangles at each level of the object.
-    pub levels: Vec<Surface>,
+    /// Index of the model's own mesh.
+    source: u32,
+    /// All of its triangles.
+    pub full: Surface,
+    /// For each list of the object, the triangles that its instances are drawn with, once they are known.
+    pub lists: Vec<Option<Surface>>,
 }
 
 /// Triangles, and samples of them.
@@ -59,9 +65,24 @@ impl Watched {
         let merged = if is_character { moving_merged(model)? } else { at_rest_merged(model)?.0 };
         let primitives = (0..merged.model.meshes.len()).flat_map(|mesh| primitives(&merged, mesh)).collect();
         let Model { meshes, skins, skeleton, .. } = &merged.model;
-        let still = meshes.iter().filter(|_| !is_character);
-        let clusters = still.map(|mesh| Clusters::new(mesh, skins, skeleton)).collect::<Result<_, _>>()?;
-        Ok(Self { object, primitives, merged, clusters })
+        let all = meshes.iter().map(|mesh| Clusters::new(mesh, skins, skeleton));
+        let clusters = all.collect::<Result<_, _>>()?;
+        Ok(Self { object, is_character, primitives, merged, clusters })
+    }
+
+    /// Reads the triangles that a view draws of the instances of a list, unless they are known.
+    pub fn read_list(&mut self, scene: &Scene, view: &View, list: u32) -> Result<(), Error> {
+        if self.primitives.iter().all(|primitive| primitive.lists[list as usize].is_some()) {
+            return Ok(());
+        }
+        let drawn = scene.drawn_triangles(view, self.object, list)?;
+        for Primitive { mesh, source, lists, .. } in &mut self.primitives {
+            let (order, sources) = (&self.clusters[*mesh].order, &self.merged.sources[*mesh]);
+            let all = drawn[*mesh].iter().map(|slots| slots.map(|slot| order[slot as usize]));
+            let own = all.filter(|corners| sources[corners[0] as usize] == *source);
+            lists[list as usize] = Some(Surface::new(own.collect()));
+        }
+        Ok(())
     }
 
     /// The positions of all vertices at full detail in the model's space, mesh by mesh, by the CPU references.
@@ -80,16 +101,18 @@ impl Watched {
         model.meshes.iter().map(skinned).collect()
     }
 
-    /// The positions of the vertices that are drawn of an instance at a level, in the model's space, mesh by mesh. Vertices
+    /// The positions of the vertices that are drawn of an instance of a list, in the model's space, mesh by mesh. Vertices
     /// that are not drawn are not numbers.
-    pub fn drawn(&self, scene: &Scene, instance: InstanceId, level: u32) -> Result<Vec<Vec<DVec3>>, Error> {
+    pub fn drawn(&self, scene: &Scene, instance: InstanceId, list: u32) -> Result<Vec<Vec<DVec3>>, Error> {
         let mut skinned = scene.drawn_vertices(instance)?;
-        for (clusters, vertices) in self.clusters.iter().zip(&mut skinned) {
-            *vertices = clusters.in_mesh_order(vertices);
+        if !self.is_character {
+            for (clusters, vertices) in self.clusters.iter().zip(&mut skinned) {
+                *vertices = clusters.in_mesh_order(vertices);
+            }
         }
-        for Primitive { mesh, levels } in &self.primitives {
-            let of_level = levels[level as usize].triangles.as_flattened();
-            if let Some(vertex) = of_level.iter().find(|vertex| skinned[*mesh][**vertex as usize].is_none()) {
+        for Primitive { mesh, lists, .. } in &self.primitives {
+            let mut drawn = lists[list as usize].iter().flat_map(|surface| surface.triangles.as_flattened());
+            if let Some(vertex) = drawn.find(|vertex| skinned[*mesh][**vertex as usize].is_none()) {
                 let bound = "must lie in a page, since it is drawn";
                 return Err(
                     InputError::new(format!("meshes[{mesh}].vertices[{vertex}]"), "none", bound).into()
@@ -111,17 +134,13 @@ fn precise(positions: &[[f32; 3]]) -> Vec<DVec3> {
 fn primitives(merged: &Merged, index: usize) -> Vec<Primitive> {
     let (mesh, sources) = (&merged.model.meshes[index], &merged.sources[index]);
     let all: BTreeSet<u32> = sources.iter().copied().collect();
-    let own = own_levels(mesh, &merged.errors);
-    let surface = |source: u32, level: u32| {
-        let all = mesh.triangles(level).as_chunks::<3>().0.iter();
+    let full = |source: u32| {
+        let all = mesh.indices.as_chunks::<3>().0.iter();
         Surface::new(all.filter(|corners| sources[corners[0] as usize] == source).copied().collect())
     };
-    (all.into_iter())
-        .map(|source| Primitive {
-            mesh: index,
-            levels: own.iter().map(|level| surface(source, *level)).collect(),
-        })
-        .collect()
+    let none = || (0..OBJECT_LISTS).map(|_| None).collect();
+    let primitive = |source| Primitive { mesh: index, source, full: full(source), lists: none() };
+    all.into_iter().map(primitive).collect()
 }
 
 impl Surface {
