@@ -347,6 +347,19 @@ impl Scene {
         Ok(())
     }
 
+    /// The factor by which the displacement that levels of detail may use was enlarged in the last frame, because the
+    /// vertices of what is seen of a character exceed what one binding of the device holds. It is 1 where the views'
+    /// [`Quality::pixels`] holds.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene.
+    pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
+        let ObjectId { index, generation } = object;
+        let entry =
+            self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))?;
+        Ok(entry.coarsening)
+    }
+
     /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
     pub fn uploaded(&self) -> usize {
         self.uploaded
