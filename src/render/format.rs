@@ -1,20 +1,69 @@
 //! The targets into which a scene is drawn: what they are, and nothing of what is drawn.
 
+use wgpu::TextureFormat as Format;
+
+use super::renderer::Layer;
 use crate::InputError;
 
 /// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.
 ///
-/// The crate's shading writes the first colour attachment. Others may belong to the caller's own draws: what a
-/// renderer draws leaves them as they are.
+/// The first colour attachments are written; [`Contents`] says how many, and with what. Others may belong to the caller's
+/// own draws: what a renderer draws leaves them as they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with holes as in the pass. The first is written as it says, in linear light; its
-    /// format must hold floats.
+    /// Colour attachments, at most 8, with holes as in the pass. Those that hold what [`TargetFormat::contents`] says are
+    /// written as they say.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
+    /// What the first colours hold.
+    pub contents: Contents,
     /// The depth attachment. Without one, what is drawn last covers the rest.
     pub depth: Option<DepthFormat>,
     /// Samples per pixel: 1 or 4.
     pub samples: u32,
+}
+
+/// What the first colour attachments of a target hold, and so, which layers can be drawn into it. All but the first
+/// kind need a depth attachment, and no blending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Contents {
+    /// One colour in linear light, of floats: [`Layer::Color`] if it is there, [`Layer::Depth`] if there is depth.
+    #[default]
+    Color,
+    /// Normals, of `Rgba16Float` or `Rgba32Float`; colours, of four floats; and numbers, of `Rg16Uint` or `Rg32Uint`:
+    /// [`Layer::Surface`] and [`Layer::Depth`].
+    Surface,
+    /// Positions, of `Rgba32Float`, and numbers, of `Rg32Uint`, one sample each: [`Layer::Measure`] and [`Layer::Depth`].
+    Measure,
+}
+
+impl Contents {
+    /// What each of the first colours must be, and in words.
+    fn wanted(self) -> &'static [(fn(Format) -> bool, &'static str)] {
+        match self {
+            Self::Color => &[(is_float, "must be a colour of floats")],
+            Self::Surface => &[
+                (
+                    |format| matches!(format, Format::Rgba16Float | Format::Rgba32Float),
+                    "must be Rgba16Float or Rgba32Float",
+                ),
+                (|format| is_float(format) && format.components() == 4, "must be a colour of four floats"),
+                (
+                    |format| matches!(format, Format::Rg16Uint | Format::Rg32Uint),
+                    "must be Rg16Uint or Rg32Uint",
+                ),
+            ],
+            Self::Measure => &[
+                (|format| format == Format::Rgba32Float, "must be Rgba32Float"),
+                (|format| format == Format::Rg32Uint, "must be Rg32Uint"),
+            ],
+        }
+    }
+}
+
+fn is_float(format: Format) -> bool {
+    matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }))
+        && format.has_color_aspect()
 }
 
 /// A depth attachment, and the direction of its values.
@@ -35,7 +84,25 @@ impl TargetFormat {
 
     /// No colour, for shadow maps and prepasses of their own: depth that grows with distance, and one sample.
     pub fn depth_only(format: wgpu::TextureFormat) -> Self {
-        Self { color: Vec::new(), depth: Some(DepthFormat { format, reversed: false }), samples: 1 }
+        let depth = Some(DepthFormat { format, reversed: false });
+        Self { color: Vec::new(), contents: Contents::Color, depth, samples: 1 }
+    }
+
+    /// For [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, 20 of the 32 bytes that WebGPU allows a sample,
+    /// `Depth32Float` that grows with distance, and one sample.
+    pub fn surface() -> Self {
+        Self::holding(Contents::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
+    }
+
+    /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, 24 of the 32 bytes that WebGPU allows a sample,
+    /// `Depth32Float` that grows with distance, and one sample.
+    pub fn measure() -> Self {
+        Self::holding(Contents::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
+    }
+
+    fn holding(contents: Contents, formats: &[Format]) -> Self {
+        let color = formats.iter().map(|format| Some((*format).into())).collect();
+        Self { color, contents, ..Self::depth_only(Format::Depth32Float) }
     }
 
     /// The same with one more colour attachment.
@@ -77,16 +144,7 @@ impl TargetFormat {
         if self.depth.is_none() && self.color.iter().all(Option::is_none) {
             return Err(InputError::new("format", "no attachment", "must have a colour or a depth"));
         }
-        for (at, color) in self.color.iter().enumerate() {
-            let Some(color) = color else { continue };
-            let is_float =
-                matches!(color.format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
-            if !color.format.has_color_aspect() || at == 0 && !is_float {
-                let bound = if at == 0 { "must be a colour of floats" } else { "must be a colour" };
-                let value = format!("{:?}", color.format);
-                return Err(InputError::new(format!("format.color[{at}].format"), value, bound));
-            }
-        }
+        self.check_colors()?;
         if let Some(DepthFormat { format, .. }) = self.depth.filter(|depth| !depth.format.has_depth_aspect())
         {
             return Err(InputError::new("format.depth.format", format!("{format:?}"), "must have depth"));
@@ -97,9 +155,67 @@ impl TargetFormat {
         Ok(())
     }
 
-    /// Whether there is a colour for the crate's shading.
-    pub(super) fn is_colored(&self) -> bool {
-        self.color.first().is_some_and(Option::is_some)
+    fn check_colors(&self) -> Result<(), InputError> {
+        let refused = |at: usize, format: Format, bound: &str| {
+            Err(InputError::new(format!("format.color[{at}].format"), format!("{format:?}"), bound))
+        };
+        for (at, color) in self.color.iter().enumerate() {
+            match color {
+                Some(color) if !color.format.has_color_aspect() => {
+                    return refused(at, color.format, "must be a colour");
+                }
+                _ => {}
+            }
+        }
+        let is_plain = self.contents == Contents::Color;
+        for (at, (fits, bound)) in self.contents.wanted().iter().enumerate() {
+            match self.color.get(at).and_then(Option::as_ref) {
+                Some(color) if !fits(color.format) => return refused(at, color.format, bound),
+                Some(color) if !is_plain && color.blend.is_some() => {
+                    let path = format!("format.color[{at}].blend");
+                    return Err(InputError::new(path, "blending", "must be none for these contents"));
+                }
+                None if !is_plain => {
+                    return Err(InputError::new(format!("format.color[{at}]"), "nothing", *bound));
+                }
+                _ => {}
+            }
+        }
+        if !is_plain && self.depth.is_none() {
+            return Err(InputError::new("format.depth", "nothing", "must be there for these contents"));
+        }
+        if self.contents == Contents::Measure && self.samples != 1 {
+            return Err(InputError::new("format.samples", self.samples, "must be 1 for positions"));
+        }
+        Ok(())
+    }
+
+    /// Checks that a device with these limits allows as many bytes of colour a sample.
+    ///
+    /// # Errors
+    /// [`InputError`] if there are more.
+    pub(super) fn check_bytes(&self, limits: &wgpu::Limits) -> Result<(), InputError> {
+        let aligned = |sum: u32, format: Format| {
+            let (bytes, alignment) = (format.target_pixel_byte_cost(), format.target_component_alignment());
+            sum.next_multiple_of(alignment.unwrap_or(1)) + bytes.unwrap_or(0)
+        };
+        let bytes = self.color.iter().flatten().map(|color| color.format).fold(0, aligned);
+        let most = limits.max_color_attachment_bytes_per_sample;
+        if bytes > most {
+            let bound = format!("must be at most {most} bytes a sample, the device's limit");
+            return Err(InputError::new("format.color", bytes, bound));
+        }
+        Ok(())
+    }
+
+    /// The layers that can be drawn.
+    pub(super) fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
+        let own = match self.contents {
+            Contents::Color => self.color.first().is_some_and(Option::is_some).then_some(Layer::Color),
+            Contents::Surface => Some(Layer::Surface),
+            Contents::Measure => Some(Layer::Measure),
+        };
+        own.into_iter().chain(self.depth.map(|_| Layer::Depth))
     }
 
     /// Whether depth falls with distance.
@@ -107,10 +223,10 @@ impl TargetFormat {
         self.depth.is_some_and(|depth| depth.reversed)
     }
 
-    /// The colour attachments as a pipeline sees them that writes the first, or none.
-    pub(super) fn targets(&self, writes: bool) -> Vec<Option<wgpu::ColorTargetState>> {
+    /// The colour attachments as a pipeline of a layer sees them.
+    pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
-            color.clone().map(|color| match writes && at == 0 {
+            color.clone().map(|color| match at < layer.colors() {
                 true => color,
                 false => wgpu::ColorTargetState {
                     format: color.format,
@@ -144,8 +260,6 @@ const MAX_COLORS: usize = 8;
 
 #[cfg(test)]
 mod tests {
-    use wgpu::TextureFormat as Format;
-
     use super::*;
 
     #[test]
@@ -153,6 +267,13 @@ mod tests {
         let good = || TargetFormat::new(Format::Rgba8UnormSrgb);
         let with = |color: Vec<Option<wgpu::ColorTargetState>>| TargetFormat { color, ..good() };
         let depth = |format| Some(DepthFormat { format, reversed: true });
+        let surface = |first: Format| {
+            let mut color = TargetFormat::surface().color;
+            color[0] = Some(first.into());
+            color
+        };
+        let mut blended = surface(Format::Rgba16Float);
+        blended[1].as_mut().expect("a colour").blend = Some(wgpu::BlendState::REPLACE);
         for (format, path) in [
             (good().with_samples(2), "format.samples"),
             (good().with_depth(depth(Format::Stencil8)), "format.depth.format"),
@@ -161,6 +282,12 @@ mod tests {
             (good().with_color(Some(Format::Depth24Plus.into())), "format.color[1].format"),
             (with(vec![None; 9]), "format.color.len"),
             (with(vec![None]).with_depth(None), "format"),
+            (TargetFormat { color: vec![], ..TargetFormat::surface() }, "format.color[0]"),
+            (TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() }, "format.color[0].format"),
+            (TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() }, "format.color[0].format"),
+            (TargetFormat { color: blended, ..TargetFormat::surface() }, "format.color[1].blend"),
+            (TargetFormat::surface().with_depth(None), "format.depth"),
+            (TargetFormat::measure().with_samples(4), "format.samples"),
         ] {
             assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
         }
@@ -169,9 +296,24 @@ mod tests {
             good().with_color(None).with_color(Some(Format::R32Uint.into())).with_depth(None),
             TargetFormat::depth_only(Format::Depth24PlusStencil8),
             with(vec![None, Some(Format::Rgba16Float.into())]),
+            TargetFormat::surface().with_samples(4).reversed(),
+            TargetFormat { color: surface(Format::Rgba32Float), ..TargetFormat::surface() },
+            TargetFormat::measure(),
         ] {
             assert_eq!(format.validate(), Ok(()), "{format:?}");
         }
+    }
+
+    #[test]
+    fn bytes_of_a_sample_are_counted_as_webgpu_counts_them() {
+        let limits = wgpu::Limits::default();
+        let measure = TargetFormat::measure();
+        assert_eq!(measure.check_bytes(&limits), Ok(()));
+        // 16 + 8 + 8; a colour of 8 bits a channel counts 8 bytes.
+        let full = measure.with_color(Some(Format::Rgba8Unorm.into()));
+        assert_eq!(full.check_bytes(&limits), Ok(()));
+        let error = full.with_color(Some(Format::R8Unorm.into())).check_bytes(&limits).expect_err("33 bytes");
+        assert_eq!((&*error.path, &*error.value), ("format.color", "33"));
     }
 
     #[test]
@@ -185,15 +327,15 @@ mod tests {
             color: vec![Some(blended.clone()), None, Some(blended.clone())],
             ..TargetFormat::new(Format::R8Unorm)
         };
-        let masks = |writes| {
-            let targets = format.targets(writes);
+        let masks = |layer| {
+            let targets = format.targets(layer);
             targets
                 .into_iter()
                 .map(|target| target.map(|target| (target.write_mask, target.blend)))
                 .collect::<Vec<_>>()
         };
         let left = Some((wgpu::ColorWrites::empty(), None));
-        assert_eq!(masks(true), [Some((blended.write_mask, blended.blend)), None, left]);
-        assert_eq!(masks(false), [left, None, left]);
+        assert_eq!(masks(Layer::Color), [Some((blended.write_mask, blended.blend)), None, left]);
+        assert_eq!(masks(Layer::Depth), [left, None, left]);
     }
 }

@@ -1,6 +1,8 @@
 //! Draws a scene through a view into the caller's render pass or render bundle.
 
+mod layer;
 mod pipelines;
+mod programs;
 mod scene_pass;
 #[cfg(all(test, feature = "samples"))]
 mod tests;
@@ -8,6 +10,7 @@ mod tests;
 use std::collections::HashMap;
 
 use super::format::TargetFormat;
+use super::shading::Shading;
 use crate::gpu::Gpu;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
@@ -15,18 +18,8 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
 use pipelines::{Kind, PipelineKey};
+pub use layer::Layer;
 pub use scene_pass::ScenePass;
-
-/// What of a scene is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Layer {
-    /// The colour of opaque and cut-out surfaces, with their depth.
-    Color,
-    /// Depth alone: for a prepass, in front of [`Layer::Color`] on the same target, and for shadow maps. Reliefs write
-    /// their own depth.
-    Depth,
-}
 
 /// Draws scenes on targets of one format.
 #[derive(Debug)]
@@ -34,6 +27,8 @@ pub struct Renderer {
     gpu: Gpu,
     format: TargetFormat,
     layouts: SceneLayouts,
+    /// The caller's shading, if it is not the crate's.
+    shading: Option<Shading>,
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
 }
 
@@ -41,22 +36,45 @@ impl Renderer {
     /// A renderer for targets of this format. It compiles nothing yet.
     ///
     /// # Errors
-    /// [`InputError`] for a format that the library cannot draw into; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a format that the library cannot draw into, and for colours of more bytes than the device
+    /// allows; [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, format: &TargetFormat) -> Result<Self, Error> {
         format.validate()?;
+        format.check_bytes(&gpu.device().limits())?;
         let layouts = SceneLayouts::new(gpu)?;
-        Ok(Self { gpu: gpu.clone(), format: format.clone(), layouts, pipelines: HashMap::new() })
+        let (gpu, format) = (gpu.clone(), format.clone());
+        Ok(Self { gpu, format, layouts, shading: None, pipelines: HashMap::new() })
+    }
+
+    /// The same renderer with the caller's shading in every pipeline of colour, and nothing compiled.
+    ///
+    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the crate's
+    /// own. It returns linear colour, and an alpha that the format's blending may use. The text may have further functions,
+    /// structs, constants and private variables, and resources in bind group 3, whose layout is `layout`, visible to the
+    /// fragment stage; before [`Renderer::draw`] the caller sets that group. Calls come from uniform control flow. The
+    /// text must not discard, and none of its names may begin with `relievo_`. Of WebGPU's default limits for the fragment
+    /// stage, the crate's pipelines use up to 2 storage buffers, 4 uniform buffers, 4 textures and 1 sampler.
+    ///
+    /// These are the two structs and the crate's own function:
+    ///
+    /// ```wgsl
+    #[doc = include_str!("../../wgsl/render/scene_shade.wgsl")]
+    /// ```
+    ///
+    /// # Errors
+    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1.
+    pub fn with_shading(
+        self,
+        source: &str,
+        layout: Option<&wgpu::BindGroupLayout>,
+    ) -> Result<Self, InputError> {
+        let shading = Some(Shading::new(source, layout)?);
+        Ok(Self { shading, pipelines: HashMap::new(), ..self })
     }
 
     /// The format of its targets.
     pub fn format(&self) -> &TargetFormat {
         &self.format
-    }
-
-    /// The layers that its targets can hold.
-    fn layers(&self) -> impl Iterator<Item = Layer> {
-        let color = self.format.is_colored().then_some(Layer::Color);
-        color.into_iter().chain(self.format.depth.map(|_| Layer::Depth))
     }
 
     /// Compiles the pipelines that these objects need and that are not there yet.
@@ -65,7 +83,7 @@ impl Renderer {
         objects: impl Iterator<Item = &'a Drawable>,
     ) -> Result<(), Error> {
         let kinds: Vec<Kind> = objects.flat_map(kinds_of).collect();
-        let layers: Vec<Layer> = self.layers().collect();
+        let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
             for kind in &kinds {
                 for is_flipped in [false, true] {
@@ -86,8 +104,8 @@ impl Renderer {
     }
 
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`]. It sets pipelines, the bind groups 0 to 2,
-    /// the first vertex buffer and the index buffer, and nothing else: viewport, scissor and stencil reference are the
-    /// caller's.
+    /// the first vertex buffer and the index buffer, and nothing else: bind group 3, viewport, scissor and stencil
+    /// reference are the caller's.
     ///
     /// # Errors
     /// [`InputError`] for a view of another scene, one that was not recorded since objects were added or grew, one with
@@ -106,7 +124,7 @@ impl Renderer {
 
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {
         if !self.pipelines.contains_key(&key) {
-            let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts)?;
+            let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts, self.shading.as_ref())?;
             self.pipelines.insert(key, pipeline);
         }
         Ok(())
@@ -154,7 +172,7 @@ impl Renderer {
     }
 
     fn check(&self, view: &DrawnView<'_>, layer: Layer) -> Result<(), InputError> {
-        if !self.layers().any(|known| known == layer) {
+        if !self.format.layers().any(|known| known == layer) {
             let bound = "must be a layer for which the renderer's format has an attachment";
             return Err(InputError::new("layer", format!("{layer:?}"), bound));
         }

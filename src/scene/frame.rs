@@ -97,8 +97,8 @@ impl Scene {
         let mut terrains = 0;
         let mut objects = Vec::new();
         for object in self.objects.iter() {
-            let ground = object.spacing().and_then(|_| view.ground(terrains));
-            terrains += usize::from(object.spacing().is_some());
+            let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
+            terrains += usize::from(object.seen_terrain().is_some());
             if object.is_shown {
                 let of_object = object.drawables.iter().zip(&object.lods);
                 objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
@@ -134,7 +134,7 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
-        let terrains = self.objects.iter().filter_map(Object::spacing).count();
+        let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
             let passes = (&self.passes.select, &self.passes.list);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
@@ -149,9 +149,9 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
         }
-        let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
+        let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
         for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, at == 0)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
         for object in self.objects.iter_mut() {

@@ -16,6 +16,7 @@ use crate::scene::mesh;
 use crate::scene::quality::Shares;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, Terrain, TerrainSource};
+use crate::scene::view::SeenTerrain;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -35,6 +36,8 @@ pub(crate) struct Object {
     pub(super) coarsening: f32,
     /// Its number among the objects of the layout.
     pub(super) number: usize,
+    /// The number that its handle tells.
+    pub(super) handle: u32,
     pub(super) is_shown: bool,
     /// What is drawn, part by part.
     pub(crate) drawables: Vec<Drawable>,
@@ -71,6 +74,7 @@ impl Object {
             mesh_fraction,
             coarsening: 1.0,
             number: 0,
+            handle: 0,
             is_shown: true,
             drawables,
             draws,
@@ -128,10 +132,10 @@ impl Object {
         Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
     }
 
-    /// World units between the samples of a terrain.
-    pub(super) fn spacing(&self) -> Option<f64> {
+    /// What views need to know of a terrain.
+    pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
-            Kind::Terrain(terrain) => Some(terrain.spacing),
+            Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
             Kind::Mesh | Kind::Character(_) => None,
         }
     }
@@ -210,7 +214,8 @@ impl Object {
         }
         for drawable in &self.drawables {
             if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                let params = MeshParams { first_instance: self.range.first, clusters: *clusters };
+                let (first_instance, object) = (self.range.first, self.handle);
+                let params = MeshParams { first_instance, clusters: *clusters, object };
                 staged.uniform(&geometry.params, &params)?;
             }
         }

@@ -74,7 +74,11 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { index, generation }
+        let id = ObjectId { index, generation };
+        if let Some(object) = self.objects.get_mut([index, generation]) {
+            object.handle = id.number();
+        }
+        id
     }
 
     /// Removes an object with all of its instances, and releases its memory.

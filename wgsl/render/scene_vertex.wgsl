@@ -10,6 +10,8 @@ struct MeshParams {
     first_instance: u32,
     // Number of clusters of the mesh if vertices lie in pages; 0 if all instances share those of the mesh.
     clusters: u32,
+    // The number of the object, from 1 on.
+    object: u32,
 }
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the

@@ -1,5 +1,5 @@
 // The view of a scene through which everything is drawn: its camera, and the light.
-import package::wgsl::light::lambert;
+import package::wgsl::render::scene_shade::{Surface, View, shade};
 
 // What the shaders of a scene know of a view.
 struct SceneView {
@@ -13,12 +13,51 @@ struct SceneView {
     light_color: vec3<f32>,
     // −1 if the view mirrors, else 1.
     side: f32,
+    // The cell to whose corner positions are relative.
+    cell: vec3<i32>,
 }
 
 @group(0) @binding(0) var<uniform> view: SceneView;
 
-// The light that a matt surface of a linear colour sends to the eye; `direct`, 0..1, is the cosine at which the light falls
-// on it, less where it lies in shadow.
-fn scene_lit(color: vec3<f32>, direct: f32) -> vec3<f32> {
-    return lambert(color * view.light_color, view.light.w, direct);
+// The colour of a surface: the one place through which all light goes.
+fn scene_shaded(surface: Surface) -> vec4<f32> {
+    return shade(surface, View(
+        view.clip_from_world, view.eye, view.cell, view.light.w, view.light.xyz, view.light_color));
+}
+
+// What the crate's own shading needs of a surface that hides what is behind it, and nothing else.
+fn scene_surface(color: vec3<f32>, normal: vec3<f32>) -> Surface {
+    var surface: Surface;
+    surface.color = color;
+    surface.normal = normal;
+    surface.alpha = 1.0;
+    surface.sunlit = 1.0;
+    return surface;
+}
+
+// What is written of a surface where it is not shaded.
+struct SurfaceTargets {
+    // The unit normal; w: 1.
+    @location(0) normal: vec4<f32>,
+    // The linear colour; w: 1.
+    @location(1) albedo: vec4<f32>,
+    // The numbers of the object and the instance.
+    @location(2) id: vec2<u32>,
+}
+
+fn scene_surface_targets(surface: Surface) -> SurfaceTargets {
+    return SurfaceTargets(
+        vec4<f32>(surface.normal, 1.0), vec4<f32>(surface.color, 1.0), vec2<u32>(surface.object, surface.instance));
+}
+
+// What is written of a surface where it is measured.
+struct MeasureTargets {
+    // The position relative to the corner of the view's cell; w: 1.
+    @location(0) position: vec4<f32>,
+    // The numbers of the object and the instance.
+    @location(1) id: vec2<u32>,
+}
+
+fn scene_measure_targets(surface: Surface) -> MeasureTargets {
+    return MeasureTargets(vec4<f32>(surface.position, 1.0), vec2<u32>(surface.object, surface.instance));
 }

@@ -21,6 +21,7 @@ use crate::scene::quality::Quality;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
+pub(crate) use uniforms::SeenTerrain;
 use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
@@ -145,20 +146,20 @@ impl View {
         self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
-    /// Stages the view's uniforms. `spacings` gives the distance between the samples of each terrain.
+    /// Stages the view's uniforms. `terrains` are those of the scene, in their order.
     pub(super) fn stage(
         &self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
-        spacings: &[f64],
+        terrains: &[SeenTerrain],
         is_first: bool,
     ) -> Result<(), Error> {
         let (camera, view) = self.select_view(blocks, is_first)?;
         staged.uniform(&self.select, &view)?;
         staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
         let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
-        for ((uniform, _), spacing) in terrain.zip(spacings) {
-            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
+        for ((uniform, _), seen) in terrain.zip(terrains) {
+            staged.uniform(uniform, &terrain_view(&camera, seen))?;
         }
         Ok(())
     }

@@ -11,6 +11,15 @@ use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::picture::is_mirrored;
 
+/// What a view needs to know of a terrain.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SeenTerrain {
+    /// World units between samples.
+    pub spacing: f64,
+    /// The number of the object.
+    pub object: u32,
+}
+
 impl SceneView {
     pub(super) fn new(camera: &Camera, own: &LodCamera, light: &Light) -> Self {
         let eye = match own.perspective > 0.0 {
@@ -23,28 +32,30 @@ impl SceneView {
             light: light.direction.normalize().extend(light.ambient),
             light_color: light.color,
             side: if is_mirrored(&camera.clip_from_world()) { -1.0 } else { 1.0 },
+            cell: IVec3::from(camera.cell),
         }
     }
 
     pub(super) fn nothing() -> Self {
         let (clip_from_world, eye, light) = (Mat4::IDENTITY, Vec4::W, Vec4::Y);
-        Self { clip_from_world, eye, light, light_color: Vec3::ONE, side: 1.0 }
+        Self { clip_from_world, eye, light, light_color: Vec3::ONE, side: 1.0, cell: IVec3::ZERO }
     }
 }
 
-/// Where the samples of a terrain, `spacing` world units apart, lie in a view: counted from the one nearest to the eye.
-pub(super) fn terrain_view(camera: &Camera, spacing: f64) -> TerrainView {
+/// Where the samples of a terrain lie in a view: counted from the one nearest to the eye.
+pub(super) fn terrain_view(camera: &Camera, terrain: &SeenTerrain) -> TerrainView {
+    let SeenTerrain { spacing, object } = *terrain;
     let corner = DVec3::from(camera.cell.map(f64::from)) * f64::from(Placement::CELL);
     let eye = corner + camera.eye().as_dvec3();
     // Conversion saturates; samples so far away are not drawn precisely.
     let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
     let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
-    TerrainView { base, rest: (place - corner).as_vec3() }
+    TerrainView { base, rest: (place - corner).as_vec3(), object }
 }
 
 impl TerrainView {
     pub(super) fn nowhere() -> Self {
-        Self { base: IVec2::ZERO, rest: Vec3::ZERO }
+        Self { base: IVec2::ZERO, rest: Vec3::ZERO, object: 0 }
     }
 }
 

@@ -74,7 +74,7 @@ pub fn square(
         color: [1.0; 3],
     };
     let up = "uploaded";
-    let params = MeshParams { first_instance: 64, clusters: 0 };
+    let params = MeshParams { first_instance: 64, clusters: 0, object: 1 };
     let uv: Vec<_> = square.vertices.iter().map(|vertex| vertex.uv).collect();
     let vertices: Vec<_> = square.vertices.iter().map(vertex).collect();
     let geometry = MeshGeometry {

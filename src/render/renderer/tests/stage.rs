@@ -42,6 +42,7 @@ pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
         light: light.direction.normalize().extend(light.ambient),
         light_color: light.color,
         side: if is_mirrored(&clip_from_world) { -1.0 } else { 1.0 },
+        cell: glam::IVec3::ZERO,
     }
 }
 

@@ -1,0 +1,34 @@
+//! What of a scene is drawn, and into which attachments.
+
+/// What of a scene is drawn. [`Contents`](crate::render::Contents) says which layers a target holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Layer {
+    /// The colour of opaque and cut-out surfaces, with their depth.
+    Color,
+    /// Depth alone: for a prepass, in front of other layers on the same target, and for shadow maps. Reliefs write
+    /// their own depth.
+    Depth,
+    /// What surfaces are before they are lit, with their depth, into three colours: the unit normal (w: 1), with normal
+    /// maps and reliefs, in world axes, on the side that is seen; the linear colour (w: 1) of material, texture and tint;
+    /// and the numbers of [`ObjectId::number`](crate::scene::ObjectId::number) and
+    /// [`InstanceId::number`](crate::scene::InstanceId::number), of which `Rg16Uint` keeps the lower 16 bits. Where
+    /// nothing is drawn, what the caller cleared stays; no object has the number 0.
+    Surface,
+    /// Where surfaces are, with their depth, into two colours: the position in world units, relative to the corner of the
+    /// view's cell ([`Camera::cell`](crate::scene::Camera::cell); w: 1), on reliefs that of the point which the ray meets;
+    /// and the same two numbers.
+    Measure,
+}
+
+impl Layer {
+    /// The number of colours that it writes, from the first on.
+    pub(crate) fn colors(self) -> usize {
+        match self {
+            Self::Depth => 0,
+            Self::Color => 1,
+            Self::Measure => 2,
+            Self::Surface => 3,
+        }
+    }
+}
