@@ -9,6 +9,10 @@ mod life;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
+mod raw;
+mod rays;
+mod shading;
+mod surfaces;
 mod targets;
 mod views;
 mod world;
