@@ -131,6 +131,8 @@ impl MeshMaterials {
 pub(crate) struct SurfaceKind {
     /// Whether alpha decides which pixels are drawn (masked or dithered). A relief ignores alpha.
     pub cut_out: bool,
+    /// Whether it is blended with what is behind it, in a layer of its own.
+    pub blended: bool,
     /// Whether both sides of triangles are seen.
     pub double_sided: bool,
 }
@@ -200,6 +202,32 @@ pub(crate) struct DrawnObject<'a> {
     pub mirrors: bool,
     /// Bind group 1 of terrain: [`SceneLayouts::ground`]. Meshes have none.
     pub ground: Option<&'a Group>,
+}
+
+/// Instances that are drawn one by one.
+#[derive(Debug, Clone)]
+pub(crate) struct DrawnSingles<'a> {
+    /// The draws of all of them.
+    pub draws: &'a Buffer<SceneDraw>,
+    /// 0, 1, 2, …: the list of a single instance.
+    pub identity: &'a Buffer<u32>,
+    /// The parts, in the order in which they are drawn.
+    pub parts: Vec<DrawnSingle<'a>>,
+}
+
+/// A part of an instance that is drawn by itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DrawnSingle<'a> {
+    /// The mesh.
+    pub mesh: &'a MeshDrawable,
+    /// The part of it.
+    pub part: &'a MeshPart,
+    /// The index of its draw.
+    pub draw: u32,
+    /// The index of the instance in its object.
+    pub instance: u32,
+    /// Whether its placement mirrors.
+    pub is_mirrored: bool,
 }
 
 /// A view as a renderer needs it.

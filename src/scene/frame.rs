@@ -2,10 +2,11 @@
 
 use crate::animation::Frame;
 use crate::gpu::{Staged, Upload as _, compute_pass};
-use crate::lod::SelectView;
+use crate::lod::{SceneInstance, SelectView};
 use crate::scene::camera::Depth;
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::object::{self, Kind, Object};
+use crate::scene::order::Ordered;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
 use crate::skinning::picture::is_mirrored;
@@ -112,6 +113,25 @@ impl Scene {
         Ok((drawn, objects))
     }
 
+    /// What is drawn instance by instance in a view, from back to front.
+    pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
+        let lists = view.lists.as_ref()?;
+        let (_, draws) = lists.singles.as_ref()?;
+        let objects: Vec<&Object> = self.objects.iter().collect();
+        let mut parts = Vec::new();
+        for Ordered { object, instance, .. } in &lists.order {
+            let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
+            let placed = object.instances.all().get(*instance as usize);
+            let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
+            for single in &object.singles {
+                let Drawable::Mesh(mesh) = &object.drawables[single.drawable] else { continue };
+                let (part, draw) = (&mesh.parts[single.part], single.first + instance);
+                parts.push(DrawnSingle { mesh, part, draw, instance: *instance, is_mirrored });
+            }
+        }
+        Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
+    }
+
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
@@ -136,13 +156,13 @@ impl Scene {
         }
         let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list);
+            let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
         }
         Ok(())
     }
 
-    fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
+    fn stage(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
         let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
@@ -150,6 +170,9 @@ impl Scene {
             object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
         }
         let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
+        for (view, selected) in views.iter_mut().zip(&seen) {
+            view.order(self.objects.iter(), selected);
+        }
         for (at, view) in views.iter().enumerate() {
             view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, at == 0)?;
         }

@@ -4,6 +4,7 @@ use glam::Vec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
+use crate::lod::single::Single;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
@@ -35,6 +36,10 @@ pub(crate) struct Layout {
     pub list_words: u32,
     /// The draws of a view that sees nothing.
     pub draws: Vec<SceneDraw>,
+    /// The parts of instances that are drawn one by one.
+    pub singles: Buffer<Single>,
+    /// 0, 1, 2, … for as many instances as the largest object with such parts has.
+    pub identity: Buffer<u32>,
 }
 
 impl Layout {
@@ -44,7 +49,7 @@ impl Layout {
     /// [`crate::gpu::GpuError`].
     pub(super) fn new(
         gpu: &Gpu,
-        (objects, draws): (&[LodObject], Vec<SceneDraw>),
+        (objects, draws, singles): (&[LodObject], Vec<SceneDraw>, &[Single]),
         end: ObjectRange,
         version: u64,
     ) -> Result<Self, Error> {
@@ -52,6 +57,8 @@ impl Layout {
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
         let block_objects: Vec<u32> = (0..).zip(objects).flat_map(of_object).collect();
         let count = end.first as usize;
+        let largest = objects.iter().map(|object| object.instances).max().filter(|_| !singles.is_empty());
+        let identity: Vec<u32> = (0..largest.unwrap_or(0)).collect();
         Ok(Self {
             version,
             instances: Buffer::new(gpu, "instances", count)?,
@@ -62,6 +69,8 @@ impl Layout {
             blocks: block_objects.len() as u32,
             list_words: end.first_list,
             draws,
+            singles: Buffer::from_slice(gpu, "single instances", singles)?,
+            identity: Buffer::from_slice(gpu, "lists of one", &identity)?,
         })
     }
 }

@@ -18,6 +18,7 @@ pub(crate) mod layouts;
 pub(crate) mod material;
 pub(crate) mod mesh;
 pub(crate) mod object;
+pub(crate) mod order;
 mod objects;
 mod paging;
 mod placement;
@@ -43,6 +44,7 @@ use crate::gpu::{Gpu, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 use crate::{Error, InputError};
 use handles::{Slots, stale};
 use layout::Layout;
@@ -78,6 +80,7 @@ pub struct Scene {
 struct Passes {
     select: SelectPass,
     list: ListPass,
+    single: SinglePass,
     assign: AssignPass,
 }
 
@@ -90,6 +93,7 @@ impl Scene {
         let passes = Passes {
             select: SelectPass::new(gpu)?,
             list: ListPass::new(gpu)?,
+            single: SinglePass::new(gpu)?,
             assign: AssignPass::new(gpu)?,
         };
         Ok(Self {

@@ -1,7 +1,7 @@
 //! How many pages of skinned vertices a character needs in a frame: the host foresees what the device will decide, so that
 //! memory follows what is seen and no frame waits for an answer.
 
-use crate::lod::select::reference::{depth_inside, is_shown, placed_sphere, view_allows};
+use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere, view_allows};
 use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::skinning::pages::PAGE_BYTES;
 
@@ -85,8 +85,7 @@ pub(super) fn needs(
 fn allowed(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -> Option<f32> {
     let of_view = |view: &SelectView| {
         let (center, radius) = placed_sphere(instance, view.cell);
-        let is_seen =
-            is_shown(view, object, instance) && depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius;
+        let is_seen = is_shown(view, object, instance) && nearly_seen(view, center, radius);
         is_seen.then(|| view_allows(view, center, radius, instance.largest_scale()))
     };
     views.iter().filter_map(of_view).reduce(f32::min)

@@ -89,7 +89,7 @@ pub(super) fn drawn(
         material_of,
         indices: Buffer::from_slice(gpu, "mesh indices", &relief.mesh.indices)?,
     };
-    let surface = SurfaceKind { cut_out: false, double_sided: relief.double_sided };
+    let surface = SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided };
     let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);
     let parts = vec![MeshPart { surface, materials }];
     let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);

@@ -14,5 +14,6 @@ mod rays;
 mod shading;
 mod surfaces;
 mod targets;
+mod transparent;
 mod views;
 mod world;

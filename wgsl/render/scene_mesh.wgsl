@@ -7,6 +7,8 @@ import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
+// Whether the colour is blended with what is behind it, by its alpha.
+override BLENDED: bool = false;
 // For whole surfaces: whether alpha leaves out pixels, and whether a material has a normal map.
 override CUT_OUT: bool = false;
 override NORMAL_MAPPED: bool = false;
@@ -142,11 +144,21 @@ fn bumpy_normal(in: BumpyVertex) -> vec3<f32> {
 }
 
 fn flat_lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
-    return scene_shaded(scene_surface(color.rgb, facing(normalize(in.normal.xyz), in.normal.w, is_front)));
+    return lit(color, facing(normalize(in.normal.xyz), in.normal.w, is_front));
 }
 
 fn bumpy_lit(color: vec4<f32>, in: BumpyVertex, is_front: bool) -> vec4<f32> {
-    return scene_shaded(scene_surface(color.rgb, facing(bumpy_normal(in), in.normal.w, is_front)));
+    return lit(color, facing(bumpy_normal(in), in.normal.w, is_front));
+}
+
+fn lit(color: vec4<f32>, normal: vec3<f32>) -> vec4<f32> {
+    var surface = scene_surface(color.rgb, normal);
+    surface.alpha = blended_alpha(color.a);
+    return scene_shaded(surface);
+}
+
+fn blended_alpha(alpha: f32) -> f32 {
+    return select(1.0, alpha, BLENDED);
 }
 
 fn material_at(in: Vertex) -> u32 {
@@ -227,7 +239,7 @@ fn depth_cut_out(in: Vertex) {
 fn shaded_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     var surface = whole_surface(in, is_front);
     let is_out = is_whole_cut(surface.alpha, in);
-    surface.alpha = 1.0;
+    surface.alpha = blended_alpha(surface.alpha);
     let color = scene_shaded(surface);
     if is_out {
         discard;

@@ -6,6 +6,12 @@
 pub enum Layer {
     /// The colour of opaque and cut-out surfaces, with their depth.
     Color,
+    /// The colour of surfaces whose materials are blended ([`Alpha::Blended`](crate::asset::material::Alpha::Blended)),
+    /// which no other layer shows: tested against depth, which they do not write, and blended as the target says, or where
+    /// it says nothing by their alpha (`wgpu::BlendState::ALPHA_BLENDING`). Draw it last. Instances are drawn from back to
+    /// front, by the middles of their bounding spheres; those as far away in the order of objects and instances, and
+    /// triangles of an instance in the order of the mesh. Each instance in view takes a draw for each of its parts.
+    Transparent,
     /// Depth alone: for a prepass, in front of other layers on the same target, and for shadow maps. Reliefs write
     /// their own depth.
     Depth,
@@ -22,11 +28,16 @@ pub enum Layer {
 }
 
 impl Layer {
+    /// Whether surfaces are shaded.
+    pub(crate) fn is_shaded(self) -> bool {
+        matches!(self, Self::Color | Self::Transparent)
+    }
+
     /// The number of colours that it writes, from the first on.
     pub(crate) fn colors(self) -> usize {
         match self {
             Self::Depth => 0,
-            Self::Color => 1,
+            Self::Color | Self::Transparent => 1,
             Self::Measure => 2,
             Self::Surface => 3,
         }

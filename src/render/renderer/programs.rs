@@ -27,13 +27,13 @@ impl Program {
                 let (vertex, fragment) = match layer {
                     Layer::Depth if surface.cut_out => ("vertex", Some("depth_cut_out")),
                     Layer::Depth => ("vertex", depth_opaque),
-                    Layer::Color if is_shaded => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color => own_color(surface, normal_mapped),
+                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
                 };
-                let SurfaceKind { double_sided, cut_out } = surface;
-                let constants = scene_mesh::Constants { double_sided, cut_out, normal_mapped };
+                let SurfaceKind { double_sided, cut_out, blended } = surface;
+                let constants = scene_mesh::Constants { double_sided, cut_out, blended, normal_mapped };
                 Self { shader: &RENDER_SCENE_MESH, vertex, fragment, constants: constants.list() }
             }
             Kind::Relief { options, .. } => Self {
@@ -43,7 +43,7 @@ impl Program {
                     Layer::Depth => "depth_relief",
                     // Without a depth attachment no shader may write depth.
                     Layer::Color if options.depth && format.depth.is_some() => "fragment_deep",
-                    Layer::Color => "fragment",
+                    Layer::Color | Layer::Transparent => "fragment",
                     Layer::Surface => "surface",
                     Layer::Measure => "measure",
                 }),
@@ -52,8 +52,8 @@ impl Program {
             Kind::Terrain => {
                 let (vertex, fragment) = match layer {
                     Layer::Depth => ("vertex", depth_opaque),
-                    Layer::Color if is_shaded => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color => ("vertex", Some("fragment")),
+                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
                 };

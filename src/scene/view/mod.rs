@@ -11,12 +11,15 @@ use crate::asset::Light;
 use crate::gpu::{Gpu, Group, Staged, Uniform, Upload as _};
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 #[cfg(feature = "verify")]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::camera::Camera;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::object::Object;
+use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
@@ -132,7 +135,7 @@ impl View {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        passes: (&SelectPass, &ListPass),
+        passes: (&SelectPass, &ListPass, &SinglePass),
         groups: (&SceneLayouts, usize),
     ) -> Result<(), Error> {
         if self.lists.as_ref().is_none_or(|lists| lists.version != layout.version) {
@@ -162,6 +165,13 @@ impl View {
             staged.uniform(uniform, &terrain_view(&camera, seen))?;
         }
         Ok(())
+    }
+
+    /// Orders what is drawn instance by instance.
+    pub(super) fn order<'a>(&mut self, objects: impl Iterator<Item = &'a Object>, selected: &SelectView) {
+        if let (Some(lists), Some(camera)) = (&mut self.lists, &self.camera) {
+            back_to_front(&mut lists.order, objects, (selected, camera));
+        }
     }
 
     /// The view as kernels see it.
@@ -196,6 +206,9 @@ impl View {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
             lists.list.dispatch(pass);
+            if let Some((job, _)) = &lists.singles {
+                job.dispatch(pass);
+            }
         }
     }
 }

@@ -70,7 +70,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
         PartMaterials::new(gpu, layouts, model, &[None, Some(0)], &Sampling::default()).expect("uploaded");
     let cut_out = material.alpha != Alpha::Opaque;
     let part = MeshPart {
-        surface: SurfaceKind { cut_out, double_sided: model.meshes[0].double_sided },
+        surface: SurfaceKind { cut_out, blended: false, double_sided: model.meshes[0].double_sided },
         materials: MeshMaterials::Plain(table),
     };
     let drawable = MeshDrawable::new(gpu, layouts, geometry, params.clusters, vec![part]).expect("bound");

@@ -87,7 +87,7 @@ pub fn square(
     };
     let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
     let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, double_sided: true },
+        surface: SurfaceKind { cut_out: false, blended: false, double_sided: true },
         materials: MeshMaterials::Relief(relief),
     };
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))

@@ -64,7 +64,7 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     };
     let table = [Some(0), Some(1)];
     let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, double_sided },
+        surface: SurfaceKind { cut_out: false, blended: false, double_sided },
         materials: MeshMaterials::Plain(
             PartMaterials::new(gpu, layouts, &model(), &table, &Sampling::default()).expect(up),
         ),
