@@ -17,6 +17,9 @@ pub enum Contents {
     /// Normals, of `Rgba16Float` or `Rgba32Float`; colours, of four floats; and numbers, of `Rg16Uint` or `Rg32Uint`:
     /// [`Layer::Surface`] and [`Layer::Depth`].
     Surface,
+    /// Velocities, of two or four floats with a sign: `Rg16Float`, `Rg32Float`, `Rgba16Float` or `Rgba32Float`:
+    /// [`Layer::Velocity`] and [`Layer::Depth`].
+    Velocity,
     /// Positions, of `Rgba32Float`, and numbers, of `Rg32Uint`, one sample each: [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
 }
@@ -37,6 +40,13 @@ impl Contents {
                     "must be Rg16Uint or Rg32Uint",
                 ),
             ],
+            Self::Velocity => &[(
+                |format| {
+                    use Format::{Rg16Float, Rg32Float, Rgba16Float, Rgba32Float};
+                    matches!(format, Rg16Float | Rg32Float | Rgba16Float | Rgba32Float)
+                },
+                "must be Rg16Float, Rg32Float, Rgba16Float or Rgba32Float",
+            )],
             Self::Measure => &[
                 (|format| format == Format::Rgba32Float, "must be Rgba32Float"),
                 (|format| format == Format::Rg32Uint, "must be Rg32Uint"),

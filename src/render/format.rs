@@ -51,6 +51,11 @@ impl TargetFormat {
         Self::holding(Contents::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
     }
 
+    /// For [`Layer::Velocity`]: `Rg16Float`, `Depth32Float` that grows with distance, and one sample.
+    pub fn velocity() -> Self {
+        Self::holding(Contents::Velocity, &[Format::Rg16Float])
+    }
+
     /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, 24 of the 32 bytes that WebGPU allows a sample,
     /// `Depth32Float` that grows with distance, and one sample.
     pub fn measure() -> Self {
@@ -174,6 +179,7 @@ impl TargetFormat {
                 [first.map(|_| Layer::Color), blends.map(|_| Layer::Transparent)]
             }
             Contents::Surface => [Some(Layer::Surface), None],
+            Contents::Velocity => [Some(Layer::Velocity), None],
             Contents::Measure => [Some(Layer::Measure), None],
         };
         own.into_iter().chain(other).chain(self.depth.map(|_| Layer::Depth))
@@ -253,6 +259,7 @@ mod tests {
             (TargetFormat { color: blended, ..TargetFormat::surface() }, "format.color[1].blend"),
             (TargetFormat::surface().with_depth(None), "format.depth"),
             (TargetFormat::measure().with_samples(4), "format.samples"),
+            (TargetFormat { contents: Contents::Velocity, ..good() }, "format.color[0].format"),
         ] {
             assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
         }
@@ -264,6 +271,7 @@ mod tests {
             TargetFormat::surface().with_samples(4).reversed(),
             TargetFormat { color: surface(Format::Rgba32Float), ..TargetFormat::surface() },
             TargetFormat::measure(),
+            TargetFormat::velocity().with_samples(4),
         ] {
             assert_eq!(format.validate(), Ok(()), "{format:?}");
         }

@@ -210,6 +210,10 @@ impl Renderer {
                 format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
             return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
         }
+        if layer == Layer::Velocity && !view.keeps_last {
+            let bound = "must keep the last frame: Scene::keep_last_frame";
+            return Err(InputError::new("scene", "does not keep the last frame", bound));
+        }
         for (at, object) in objects.enumerate() {
             let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
             if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {

@@ -37,6 +37,8 @@ pub(crate) struct MeshGeometry {
     pub params: Uniform<MeshParams>,
     /// Vertices in the model's space: of the mesh, or in pages of each instance.
     pub vertices: Buffer<Vertex>,
+    /// Where last positions begin in `vertices`, in pairs of floats; 0 if there are none.
+    pub last: u32,
     /// The page of each cluster of each instance; any buffer if vertices do not lie in pages.
     pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
@@ -93,7 +95,7 @@ impl MeshDrawable {
         pages: &PageBuffers,
     ) -> Result<Self, GpuError> {
         let (vertices, page_table) = (pages.skinned.clone(), pages.table.clone());
-        let geometry = MeshGeometry { vertices, page_table, ..self.geometry.clone() };
+        let geometry = MeshGeometry { vertices, page_table, last: pages.last, ..self.geometry.clone() };
         Self::new(gpu, layouts, geometry, self.clusters, self.parts.clone())
     }
 }
@@ -243,6 +245,8 @@ pub(crate) struct DrawnView<'a> {
     pub mirrors: bool,
     /// Whether depth falls with distance.
     pub reversed: bool,
+    /// Whether the scene keeps its last frame.
+    pub keeps_last: bool,
 }
 
 #[cfg(test)]

@@ -36,6 +36,21 @@ impl Scene {
         Ok(())
     }
 
+    /// Keeps where everything was in the last frame from the next frame on, or does no longer; at first it is not kept.
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) needs it. Skinned vertices then take 1.4 times the memory,
+    /// what moved is skinned once more after it stops, and what the host changes is uploaded twice. Characters start
+    /// afresh.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last_frame(&mut self, keeps: bool) -> Result<(), Error> {
+        if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
+            return Ok(());
+        }
+        self.objects.iter_mut().for_each(|object| object.keep_last(keeps));
+        self.refresh()
+    }
+
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
     /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones. Two recordings for one
     /// submission are two frames.
@@ -64,6 +79,7 @@ impl Scene {
                 character.dispatch(&mut pass);
             }
         }
+        views.iter_mut().for_each(|view| view.recorded(self.frame));
         self.frame = self.frame.wrapping_add(1);
         Ok(())
     }
@@ -94,6 +110,7 @@ impl Scene {
             arguments: &lists.arguments,
             mirrors: is_mirrored(&camera.clip_from_world()),
             reversed: camera.depth == Depth::Reversed,
+            keeps_last: self.keeps_last,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
@@ -146,7 +163,7 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, (self.layouts, self.keeps_last))?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
@@ -174,11 +191,15 @@ impl Scene {
             view.order(self.objects.iter(), selected);
         }
         for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, at == 0)?;
+            let of_frame = (self.frame, at == 0);
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
         for object in self.objects.iter_mut() {
             let first = object.range.first as usize;
+            for (at, run) in object.instances.take_last() {
+                self.staged.elements(&layout.last_instances, first + at, &run)?;
+            }
             for (at, run) in object.instances.take_changed() {
                 self.staged.elements(&layout.instances, first + at, run)?;
             }

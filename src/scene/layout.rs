@@ -25,6 +25,8 @@ pub(crate) struct Layout {
     /// Counts the layouts of a scene: what was prepared for another is out of date.
     pub version: u64,
     pub instances: Buffer<SceneInstance>,
+    /// The same as they were in the last frame, if it is kept; else the same buffer.
+    pub last_instances: Buffer<SceneInstance>,
     /// The allowed displacement of each instance, in its model's units; −1 for those that no view sees.
     pub allowed: Buffer<f32>,
     pub objects: Buffer<LodObject>,
@@ -51,7 +53,7 @@ impl Layout {
         gpu: &Gpu,
         (objects, draws, singles): (&[LodObject], Vec<SceneDraw>, &[Single]),
         end: ObjectRange,
-        version: u64,
+        (version, keeps_last): (u64, bool),
     ) -> Result<Self, Error> {
         let of_object =
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
@@ -59,9 +61,15 @@ impl Layout {
         let count = end.first as usize;
         let largest = objects.iter().map(|object| object.instances).max().filter(|_| !singles.is_empty());
         let identity: Vec<u32> = (0..largest.unwrap_or(0)).collect();
+        let instances = Buffer::new(gpu, "instances", count)?;
+        let last_instances = match keeps_last {
+            true => Buffer::new(gpu, "instances in the last frame", count)?,
+            false => instances.clone(),
+        };
         Ok(Self {
             version,
-            instances: Buffer::new(gpu, "instances", count)?,
+            instances,
+            last_instances,
             allowed: Buffer::new(gpu, "allowed displacements", count)?,
             objects: Buffer::from_slice(gpu, "objects", objects)?,
             object_count: objects.len() as u32,

@@ -67,6 +67,8 @@ pub struct Scene {
     now: f64,
     step: f32,
     frame: u32,
+    /// Whether the last frame's placements and vertices are kept.
+    keeps_last: bool,
     layout: Option<Layout>,
     layouts: u64,
     staging: StagingRing,
@@ -105,6 +107,7 @@ impl Scene {
             now: 0.0,
             step: 0.0,
             frame: 0,
+            keeps_last: false,
             layout: None,
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),

@@ -136,10 +136,10 @@ impl Object {
         layouts: &SceneLayouts,
         model: &Model,
         capacity: usize,
-        shares: Shares,
+        (shares, keeps_last): (Shares, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
+        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity(), keeps_last)?;
         let drawn = (character.drawables(gpu, layouts)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
@@ -175,6 +175,14 @@ impl Object {
         self.refresh(gpu, layouts)
     }
 
+    /// Keeps the last frame, once it is refreshed, or does no longer.
+    pub(super) fn keep_last(&mut self, keeps: bool) {
+        self.instances.keep_last(keeps);
+        if let Kind::Character(character) = &mut self.kind {
+            character.keep_last(keeps);
+        }
+    }
+
     /// Lets everything start afresh.
     pub(super) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         self.instances.change_all();
@@ -199,6 +207,7 @@ impl Object {
         let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
         if is_replaced {
             rebind(&mut self.drawables, gpu, layouts, character)?;
+            stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         }
         if coarsening != self.coarsening {
             self.coarsening = coarsening;
@@ -226,13 +235,7 @@ impl Object {
             self.lods.push(lod);
             lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
         }
-        for drawable in &self.drawables {
-            if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                let (first_instance, object) = (self.range.first, self.handle);
-                let params = MeshParams { first_instance, clusters: *clusters, object };
-                staged.uniform(&geometry.params, &params)?;
-            }
-        }
+        stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         match &mut self.kind {
             Kind::Character(character) => {
                 character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
@@ -263,6 +266,22 @@ impl Object {
     }
 }
 
+/// Stages where the instances and vertices of drawables lie.
+fn stage_params(
+    staged: &mut Staged,
+    drawables: &[Drawable],
+    first_instance: u32,
+    object: u32,
+) -> Result<(), Error> {
+    for drawable in drawables {
+        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+            let params = MeshParams { first_instance, clusters: *clusters, object, last: geometry.last };
+            staged.uniform(&geometry.params, &params)?;
+        }
+    }
+    Ok(())
+}
+
 /// Binds a character's pages, after they were replaced.
 fn rebind(
     drawables: &mut [Drawable],
@@ -286,11 +305,16 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
     }
 }
 
-/// Lays out objects, one after the other, and tells each its range.
+/// Lays out objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
+/// last frame is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
-pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
+pub(super) fn laid_out(
+    gpu: &Gpu,
+    objects: &mut Slots<Object>,
+    version: (u64, bool),
+) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {

@@ -60,9 +60,9 @@ fn over(color: [f32; 4], behind: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|at| alpha * color[at] + (1.0 - alpha) * behind[at])
 }
 
-/// Half floats are rounded twice.
+/// Half floats are rounded twice, and tints have 8 bits a channel.
 fn near(a: [f32; 3], b: [f32; 3]) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.002)
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.004)
 }
 
 /// Panes of two objects and of one, added and spawned in either order, seen from either side.

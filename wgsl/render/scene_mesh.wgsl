@@ -1,8 +1,9 @@
 // Draws instances of a mesh of a scene, textured and lit. Surfaces are opaque, cut out, or drawn through a screen-door
 // pattern, as each vertex's material says.
+import package::wgsl::render::scene_motion::last_position;
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_vertex::{PlacedVertex, instances, mesh, placed_vertex};
-import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_shaded, scene_surface, scene_surface_targets, view};
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
@@ -95,6 +96,23 @@ fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) 
     let placed = placed_vertex(instance, vertex);
     let out = bumpy(placed, vertex);
     return WholeVertex(out.clip, out.normal, out.surface, out.color, out.tangent, placed.position, instance);
+}
+
+// A vertex with what there is to know of its motion.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) surface: vec4<f32>,
+    @location(1) @interpolate(flat) color: vec4<f32>,
+    // Its places on the screen in this frame and in the last.
+    @location(2) now: vec3<f32>,
+    @location(3) last: vec3<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let out = bumpy(placed_vertex(instance, vertex), vertex);
+    let last = view.last_clip_from_world * vec4<f32>(last_position(instance, vertex), 1.0);
+    return MovingVertex(out.clip, out.surface, out.color, scene_place(out.clip), scene_place(last));
 }
 
 fn bumpy(placed: PlacedVertex, vertex: u32) -> BumpyVertex {
@@ -263,4 +281,15 @@ fn measure_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> Meas
         discard;
     }
     return scene_measure_targets(surface);
+}
+
+@fragment
+fn velocity_moving(in: MovingVertex) -> @location(0) vec4<f32> {
+    if CUT_OUT {
+        let surface = Vertex(in.clip, vec4<f32>(0.0), in.surface, in.color);
+        if is_cut(colored(surface).a, surface) {
+            discard;
+        }
+    }
+    return scene_velocity(in.now, in.last);
 }

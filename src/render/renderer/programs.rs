@@ -31,6 +31,7 @@ impl Program {
                     Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
+                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
                 };
                 let SurfaceKind { double_sided, cut_out, blended } = surface;
                 let constants = scene_mesh::Constants { double_sided, cut_out, blended, normal_mapped };
@@ -38,7 +39,7 @@ impl Program {
             }
             Kind::Relief { options, .. } => Self {
                 shader: &RENDER_SCENE_RELIEF,
-                vertex: "vertex",
+                vertex: if layer == Layer::Velocity { "vertex_moving" } else { "vertex" },
                 fragment: Some(match layer {
                     Layer::Depth => "depth_relief",
                     // Without a depth attachment no shader may write depth.
@@ -46,6 +47,7 @@ impl Program {
                     Layer::Color | Layer::Transparent => "fragment",
                     Layer::Surface => "surface",
                     Layer::Measure => "measure",
+                    Layer::Velocity => "velocity_moving",
                 }),
                 constants: relief_constants(&options, format.is_reversed()).list(),
             },
@@ -56,6 +58,7 @@ impl Program {
                     Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
+                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
                 };
                 Self { shader: &RENDER_SCENE_TERRAIN, vertex, fragment, constants: Vec::new() }
             }

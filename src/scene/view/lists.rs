@@ -81,7 +81,7 @@ impl ViewLists {
                 Some((single.prepare(gpu, buffers, count as u32)?, draws))
             }
         };
-        let group = layouts.view(gpu, drawn, &rows, &layout.instances)?;
+        let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances])?;
         let ground = || {
             let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
             let group = layouts.ground(gpu, &uniform)?;

@@ -33,6 +33,8 @@ pub struct View {
     scene: Arc<()>,
     quality: Quality,
     camera: Option<Camera>,
+    /// The camera of its last frame, and the number of that frame.
+    last: Option<(u32, Camera)>,
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
@@ -50,6 +52,7 @@ impl View {
             scene: scene.clone(),
             quality,
             camera: None,
+            last: None,
             lod_cameras: Vec::new(),
             mask: u16::MAX,
             casters: false,
@@ -149,17 +152,23 @@ impl View {
         self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
-    /// Stages the view's uniforms. `terrains` are those of the scene, in their order.
+    /// Remembers the camera of a frame that was recorded.
+    pub(super) fn recorded(&mut self, frame: u32) {
+        self.last = self.camera.map(|camera| (frame, camera));
+    }
+
+    /// Stages the view's uniforms. `terrains` are those of the scene, in their order; a frame has a number, and a first view.
     pub(super) fn stage(
         &self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
         terrains: &[SeenTerrain],
-        is_first: bool,
+        (frame, is_first): (u32, bool),
     ) -> Result<(), Error> {
+        let last = self.last.filter(|(last, _)| *last == frame.wrapping_sub(1)).map(|(_, camera)| camera);
         let (camera, view) = self.select_view(blocks, is_first)?;
         staged.uniform(&self.select, &view)?;
-        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
+        staged.uniform(&self.drawn, &SceneView::new([&camera, &last.unwrap_or(camera)], &view.cameras[0], light))?;
         let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
         for ((uniform, _), seen) in terrain.zip(terrains) {
             staged.uniform(uniform, &terrain_view(&camera, seen))?;
