@@ -15,5 +15,6 @@ mod shading;
 mod surfaces;
 mod targets;
 mod transparent;
+mod velocity;
 mod views;
 mod world;
