@@ -254,8 +254,14 @@ mod tests {
             (with(vec![None; 9]), "format.color.len"),
             (with(vec![None]).with_depth(None), "format"),
             (TargetFormat { color: vec![], ..TargetFormat::surface() }, "format.color[0]"),
-            (TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() }, "format.color[0].format"),
-            (TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() }, "format.color[0].format"),
+            (
+                TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() },
+                "format.color[0].format",
+            ),
+            (
+                TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() },
+                "format.color[0].format",
+            ),
             (TargetFormat { color: blended, ..TargetFormat::surface() }, "format.color[1].blend"),
             (TargetFormat::surface().with_depth(None), "format.depth"),
             (TargetFormat::measure().with_samples(4), "format.samples"),

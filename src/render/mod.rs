@@ -18,8 +18,8 @@ pub mod terrain;
 
 pub use albedo::Albedo;
 pub use camera::Camera;
-pub use crowd::{Character, CrowdScene};
 pub use contents::Contents;
+pub use crowd::{Character, CrowdScene};
 pub use format::{DepthFormat, TargetFormat};
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};

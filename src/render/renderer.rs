@@ -17,8 +17,8 @@ use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, D
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
-use pipelines::{Kind, PipelineKey};
 pub use layer::Layer;
+use pipelines::{Kind, PipelineKey};
 pub use scene_pass::ScenePass;
 
 /// Draws scenes on targets of one format.
@@ -181,7 +181,9 @@ impl Renderer {
         pass.set_bind_group(0, view.group);
         for DrawnSingle { mesh, part, draw, instance, is_mirrored } in &singles.parts {
             let is_flipped = *is_mirrored != view.mirrors;
-            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped) else { continue };
+            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped) else {
+                continue;
+            };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &mesh.group);
             pass.set_bind_group(2, part.materials.group());

@@ -110,7 +110,11 @@ pub(super) fn drawable(
     let count = if pages.is_some() { buffers.clusters() as u32 } else { 0 };
     let material_of = Buffer::from_slice(gpu, "materials of vertices", &placed)?;
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0 })?,
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0 },
+        )?,
         vertices: pages.map_or(&buffers.vertices, |pages| &pages.skinned).clone(),
         last: pages.map_or(0, |pages| pages.last),
         page_table: pages.map_or(&material_of, |pages| &pages.table).clone(),

@@ -57,7 +57,13 @@ impl Scene {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
         }
-        let object = Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, (self.shares, self.keeps_last))?;
+        let object = Object::character(
+            &self.gpu,
+            &self.layouts_of_groups,
+            model,
+            capacity,
+            (self.shares, self.keeps_last),
+        )?;
         Ok(self.add(object))
     }
 

@@ -82,7 +82,11 @@ pub(super) fn drawn(
     let uv: Vec<[f32; 2]> = relief.mesh.vertices.iter().map(|vertex| vertex.uv).collect();
     let material_of = Buffer::new(gpu, "materials of vertices", vertices.len())?;
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0 })?,
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0 },
+        )?,
         vertices: Buffer::from_slice(gpu, "mesh vertices", &vertices)?,
         last: 0,
         page_table: material_of.clone(),

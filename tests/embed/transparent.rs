@@ -9,8 +9,8 @@ use relievo::scene::{Camera, ObjectId, Placement, Quality, Scene, View};
 use relievo::wgpu;
 
 use crate::frame::device;
-use crate::rays::{model, plain};
 use crate::raw::Raw;
+use crate::rays::{model, plain};
 
 const SIZE: [u32; 2] = [64, 48];
 

@@ -11,8 +11,8 @@ use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Quality, Relief, Scene, View};
 
 use crate::frame::device;
-use crate::rays::{Triangle, cube, matrix, model, picture, plain};
 use crate::raw::Raw;
+use crate::rays::{Triangle, cube, matrix, model, picture, plain};
 use crate::world::World;
 
 const SIZE: [u32; 2] = [96, 64];
@@ -118,7 +118,8 @@ fn placements_and_cameras_move() {
     let gpu = device();
     for (border, is_still) in [(0, false), (0, true), (3, false)] {
         let (mut scene, mut view) = scene(&gpu);
-        let object = scene.add_mesh(&model(&cube(), plain([1.0; 4], Alpha::Opaque), false), 3).expect("added");
+        let object =
+            scene.add_mesh(&model(&cube(), plain([1.0; 4], Alpha::Opaque), false), 3).expect("added");
         let before = [
             Placement::at([-1.7, 0.2, 0.0]).turned(0.4),
             Placement { scale: Vec3::new(-1.0, 1.5, 0.7), ..Placement::at([1.4, 0.0, -1.0]).turned(-0.8) },
@@ -210,7 +211,9 @@ fn characters_move() {
     let (mut time, mut at) = (0.0_f64, 0.0_f32);
     // Seconds, and how far the placement moves: pose and placement, pose alone, placement alone, nothing; at the end the
     // clip stands still while the time goes on, and the last step leaves its end.
-    for (step, way) in [(0.3, 0.2), (0.25, 0.0), (0.0, -0.1), (0.0, 0.0), (0.5, 0.0), (0.2, 0.0), (0.2, 0.0), (0.2, 0.1)] {
+    for (step, way) in
+        [(0.3, 0.2), (0.25, 0.0), (0.0, -0.1), (0.0, 0.0), (0.5, 0.0), (0.2, 0.0), (0.2, 0.0), (0.2, 0.1)]
+    {
         let (last_time, last_at) = (time, at);
         scene.advance(step).expect("finite");
         time += f64::from(step);

@@ -168,7 +168,10 @@ impl View {
         let last = self.last.filter(|(last, _)| *last == frame.wrapping_sub(1)).map(|(_, camera)| camera);
         let (camera, view) = self.select_view(blocks, is_first)?;
         staged.uniform(&self.select, &view)?;
-        staged.uniform(&self.drawn, &SceneView::new([&camera, &last.unwrap_or(camera)], &view.cameras[0], light))?;
+        staged.uniform(
+            &self.drawn,
+            &SceneView::new([&camera, &last.unwrap_or(camera)], &view.cameras[0], light),
+        )?;
         let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
         for ((uniform, _), seen) in terrain.zip(terrains) {
             staged.uniform(uniform, &terrain_view(&camera, seen))?;

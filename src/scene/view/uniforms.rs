@@ -41,7 +41,15 @@ impl SceneView {
     pub(super) fn nothing() -> Self {
         let (clip_from_world, eye, light) = (Mat4::IDENTITY, Vec4::W, Vec4::Y);
         let last_clip_from_world = clip_from_world;
-        Self { clip_from_world, last_clip_from_world, eye, light, light_color: Vec3::ONE, side: 1.0, cell: IVec3::ZERO }
+        Self {
+            clip_from_world,
+            last_clip_from_world,
+            eye,
+            light,
+            light_color: Vec3::ONE,
+            side: 1.0,
+            cell: IVec3::ZERO,
+        }
     }
 }
 

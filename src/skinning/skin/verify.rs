@@ -201,7 +201,8 @@ impl Scene {
     fn is_skinned(&self, instance: usize, slot: usize) -> bool {
         let vertices = self.clusters.order.len();
         let vertex = self.clusters.order.get(slot);
-        vertex.is_some_and(|vertex| self.expected[instance * vertices + *vertex as usize].vertex != poisoned())
+        vertex
+            .is_some_and(|vertex| self.expected[instance * vertices + *vertex as usize].vertex != poisoned())
     }
 
     fn compare(&self, actual: &[Vertex], expected: &[Expected]) -> Comparison {

@@ -55,7 +55,12 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     };
     let up = "uploaded";
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0 }).expect(up),
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0 },
+        )
+        .expect(up),
         last: 0,
         page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &corners.map(vertex)).expect(up),
