@@ -98,7 +98,8 @@ fn declared<'a>(text: &'a str, words: &[Word]) -> Vec<&'a str> {
         }
         // An address space stands between `var` and its name.
         let bracket = text[word.range.end..].trim_start().starts_with('<');
-        let from = if bracket { text[word.range.end..].find('>').map_or(0, |end| word.range.end + end) } else { 0 };
+        let from =
+            if bracket { text[word.range.end..].find('>').map_or(0, |end| word.range.end + end) } else { 0 };
         let name = words[at + 1..].iter().find(|next| next.range.start >= from);
         names.extend(name.map(|name| &text[name.range.clone()]));
     }

@@ -1,5 +1,5 @@
 //! Level of detail in scenes: which instances a view sees and how fine ([`select`]), in which order it draws them
-//! ([`list`]), and what gates and skinning make of the displacement that the views of a frame allow ([`assign`]).
+//! ([`list`]), how it draws instances one by one ([`single`]), and what gates and skinning make of the displacement that the views of a frame allow ([`assign`]).
 //!
 //! Instances of all objects lie in one buffer of [`SceneInstance`], those of an object in whole blocks of [`BLOCK`]. A view
 //! ([`SelectView`]) sees them through its planes ([`planes`]), and has up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) that
@@ -11,6 +11,7 @@ mod instance;
 pub mod list;
 mod object;
 pub mod select;
+pub mod single;
 
 pub use crate::shared::lod::instance::{
     CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance,

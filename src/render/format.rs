@@ -2,6 +2,7 @@
 
 use wgpu::TextureFormat as Format;
 
+use super::contents::{Contents, can_blend};
 use super::renderer::Layer;
 use crate::InputError;
 
@@ -20,50 +21,6 @@ pub struct TargetFormat {
     pub depth: Option<DepthFormat>,
     /// Samples per pixel: 1 or 4.
     pub samples: u32,
-}
-
-/// What the first colour attachments of a target hold, and so, which layers can be drawn into it. All but the first
-/// kind need a depth attachment, and no blending.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[non_exhaustive]
-pub enum Contents {
-    /// One colour in linear light, of floats: [`Layer::Color`] if it is there, [`Layer::Depth`] if there is depth.
-    #[default]
-    Color,
-    /// Normals, of `Rgba16Float` or `Rgba32Float`; colours, of four floats; and numbers, of `Rg16Uint` or `Rg32Uint`:
-    /// [`Layer::Surface`] and [`Layer::Depth`].
-    Surface,
-    /// Positions, of `Rgba32Float`, and numbers, of `Rg32Uint`, one sample each: [`Layer::Measure`] and [`Layer::Depth`].
-    Measure,
-}
-
-impl Contents {
-    /// What each of the first colours must be, and in words.
-    fn wanted(self) -> &'static [(fn(Format) -> bool, &'static str)] {
-        match self {
-            Self::Color => &[(is_float, "must be a colour of floats")],
-            Self::Surface => &[
-                (
-                    |format| matches!(format, Format::Rgba16Float | Format::Rgba32Float),
-                    "must be Rgba16Float or Rgba32Float",
-                ),
-                (|format| is_float(format) && format.components() == 4, "must be a colour of four floats"),
-                (
-                    |format| matches!(format, Format::Rg16Uint | Format::Rg32Uint),
-                    "must be Rg16Uint or Rg32Uint",
-                ),
-            ],
-            Self::Measure => &[
-                (|format| format == Format::Rgba32Float, "must be Rgba32Float"),
-                (|format| format == Format::Rg32Uint, "must be Rg32Uint"),
-            ],
-        }
-    }
-}
-
-fn is_float(format: Format) -> bool {
-    matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }))
-        && format.has_color_aspect()
 }
 
 /// A depth attachment, and the direction of its values.
@@ -92,6 +49,11 @@ impl TargetFormat {
     /// `Depth32Float` that grows with distance, and one sample.
     pub fn surface() -> Self {
         Self::holding(Contents::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
+    }
+
+    /// For [`Layer::Velocity`]: `Rg16Float`, `Depth32Float` that grows with distance, and one sample.
+    pub fn velocity() -> Self {
+        Self::holding(Contents::Velocity, &[Format::Rg16Float])
     }
 
     /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, 24 of the 32 bytes that WebGPU allows a sample,
@@ -210,12 +172,17 @@ impl TargetFormat {
 
     /// The layers that can be drawn.
     pub(super) fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
-        let own = match self.contents {
-            Contents::Color => self.color.first().is_some_and(Option::is_some).then_some(Layer::Color),
-            Contents::Surface => Some(Layer::Surface),
-            Contents::Measure => Some(Layer::Measure),
+        let first = self.color.first().and_then(Option::as_ref);
+        let [own, other] = match self.contents {
+            Contents::Color => {
+                let blends = first.filter(|color| can_blend(color.format));
+                [first.map(|_| Layer::Color), blends.map(|_| Layer::Transparent)]
+            }
+            Contents::Surface => [Some(Layer::Surface), None],
+            Contents::Velocity => [Some(Layer::Velocity), None],
+            Contents::Measure => [Some(Layer::Measure), None],
         };
-        own.into_iter().chain(self.depth.map(|_| Layer::Depth))
+        own.into_iter().chain(other).chain(self.depth.map(|_| Layer::Depth))
     }
 
     /// Whether depth falls with distance.
@@ -227,6 +194,10 @@ impl TargetFormat {
     pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
             color.clone().map(|color| match at < layer.colors() {
+                true if layer == Layer::Transparent => wgpu::ColorTargetState {
+                    blend: color.blend.or(Some(wgpu::BlendState::ALPHA_BLENDING)),
+                    ..color
+                },
                 true => color,
                 false => wgpu::ColorTargetState {
                     format: color.format,
@@ -238,8 +209,8 @@ impl TargetFormat {
         self.color.iter().enumerate().map(masked).collect()
     }
 
-    /// The depth test: nearer, or as near.
-    pub(super) fn depth_state(&self) -> Option<wgpu::DepthStencilState> {
+    /// The depth test of a layer: nearer, or as near.
+    pub(super) fn depth_state(&self, layer: Layer) -> Option<wgpu::DepthStencilState> {
         let DepthFormat { format, reversed } = self.depth?;
         let compare = match reversed {
             true => wgpu::CompareFunction::GreaterEqual,
@@ -247,7 +218,7 @@ impl TargetFormat {
         };
         Some(wgpu::DepthStencilState {
             format,
-            depth_write_enabled: Some(true),
+            depth_write_enabled: Some(layer != Layer::Transparent),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
@@ -283,11 +254,18 @@ mod tests {
             (with(vec![None; 9]), "format.color.len"),
             (with(vec![None]).with_depth(None), "format"),
             (TargetFormat { color: vec![], ..TargetFormat::surface() }, "format.color[0]"),
-            (TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() }, "format.color[0].format"),
-            (TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() }, "format.color[0].format"),
+            (
+                TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() },
+                "format.color[0].format",
+            ),
+            (
+                TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() },
+                "format.color[0].format",
+            ),
             (TargetFormat { color: blended, ..TargetFormat::surface() }, "format.color[1].blend"),
             (TargetFormat::surface().with_depth(None), "format.depth"),
             (TargetFormat::measure().with_samples(4), "format.samples"),
+            (TargetFormat { contents: Contents::Velocity, ..good() }, "format.color[0].format"),
         ] {
             assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
         }
@@ -299,6 +277,7 @@ mod tests {
             TargetFormat::surface().with_samples(4).reversed(),
             TargetFormat { color: surface(Format::Rgba32Float), ..TargetFormat::surface() },
             TargetFormat::measure(),
+            TargetFormat::velocity().with_samples(4),
         ] {
             assert_eq!(format.validate(), Ok(()), "{format:?}");
         }

@@ -2,6 +2,7 @@
 
 mod albedo;
 mod camera;
+mod contents;
 mod crowd;
 mod format;
 pub mod picture;
@@ -17,8 +18,9 @@ pub mod terrain;
 
 pub use albedo::Albedo;
 pub use camera::Camera;
+pub use contents::Contents;
 pub use crowd::{Character, CrowdScene};
-pub use format::{Contents, DepthFormat, TargetFormat};
+pub use format::{DepthFormat, TargetFormat};
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 pub use renderer::{Layer, Renderer, ScenePass};

@@ -13,12 +13,12 @@ use super::format::TargetFormat;
 use super::shading::Shading;
 use crate::gpu::Gpu;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
-use pipelines::{Kind, PipelineKey};
 pub use layer::Layer;
+use pipelines::{Kind, PipelineKey};
 pub use scene_pass::ScenePass;
 
 /// Draws scenes on targets of one format.
@@ -85,7 +85,7 @@ impl Renderer {
         let kinds: Vec<Kind> = objects.flat_map(kinds_of).collect();
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
-            for kind in &kinds {
+            for kind in kinds.iter().filter(|kind| kind.is_in(layer)) {
                 for is_flipped in [false, true] {
                     self.compile(PipelineKey::new(layer, *kind, is_flipped))?;
                 }
@@ -119,6 +119,13 @@ impl Renderer {
         layer: Layer,
     ) -> Result<(), InputError> {
         let (drawn, objects) = scene.drawn(view)?;
+        if layer == Layer::Transparent {
+            self.check(&drawn, objects.iter().copied(), layer)?;
+            if let Some(singles) = scene.drawn_singles(view) {
+                self.draw_singles(pass, &drawn, &singles);
+            }
+            return Ok(());
+        }
         self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
     }
 
@@ -142,14 +149,7 @@ impl Renderer {
         objects: impl Iterator<Item = DrawnObject<'a>> + Clone,
         layer: Layer,
     ) -> Result<(), InputError> {
-        self.check(view, layer)?;
-        for (at, object) in objects.clone().enumerate() {
-            let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
-            if !kinds_of(object.drawable).all(is_ready) {
-                let bound = "must be prepared for this renderer after the object was added";
-                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
-            }
-        }
+        self.check(view, objects.clone(), layer)?;
         pass.set_bind_group(0, view.group);
         for object in objects.filter(|object| object.lod.instances > 0) {
             match object.drawable {
@@ -171,7 +171,37 @@ impl Renderer {
         Ok(())
     }
 
-    fn check(&self, view: &DrawnView<'_>, layer: Layer) -> Result<(), InputError> {
+    /// Draws parts of instances one by one.
+    fn draw_singles<'a>(
+        &'a self,
+        pass: &mut impl ScenePass<'a>,
+        view: &DrawnView<'a>,
+        singles: &DrawnSingles<'a>,
+    ) {
+        pass.set_bind_group(0, view.group);
+        for DrawnSingle { mesh, part, draw, instance, is_mirrored } in &singles.parts {
+            let is_flipped = *is_mirrored != view.mirrors;
+            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped) else {
+                continue;
+            };
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &mesh.group);
+            pass.set_bind_group(2, part.materials.group());
+            pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
+            let bytes = [*instance, instance + 1].map(|index| u64::from(index) * size_of::<u32>() as u64);
+            pass.set_vertex_buffer(0, singles.identity.raw().slice(bytes[0]..bytes[1]));
+            let offset = u64::from(*draw) * size_of::<SceneDraw>() as u64;
+            pass.draw_indexed_indirect(singles.draws.raw(), offset);
+        }
+    }
+
+    /// Whether a layer of these objects can be drawn in a view.
+    fn check<'a>(
+        &self,
+        view: &DrawnView<'_>,
+        objects: impl Iterator<Item = DrawnObject<'a>>,
+        layer: Layer,
+    ) -> Result<(), InputError> {
         if !self.format.layers().any(|known| known == layer) {
             let bound = "must be a layer for which the renderer's format has an attachment";
             return Err(InputError::new("layer", format!("{layer:?}"), bound));
@@ -181,6 +211,17 @@ impl Renderer {
             let bound =
                 format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
             return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
+        }
+        if layer == Layer::Velocity && !view.keeps_last {
+            let bound = "must keep the last frame: Scene::keep_last_frame";
+            return Err(InputError::new("scene", "does not keep the last frame", bound));
+        }
+        for (at, object) in objects.enumerate() {
+            let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
+            if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {
+                let bound = "must be prepared for this renderer after the object was added";
+                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
+            }
         }
         Ok(())
     }
@@ -199,7 +240,7 @@ impl Renderer {
     ) {
         pass.set_bind_group(1, &mesh.group);
         pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
-        for (index, part) in (0..).zip(&mesh.parts) {
+        for (index, part) in (0..).zip(&mesh.parts).filter(|(_, part)| Kind::of(part).is_in(layer)) {
             pass.set_bind_group(2, part.materials.group());
             for is_mirrored in [false, true] {
                 let is_flipped = is_mirrored != view.mirrors;

@@ -37,14 +37,13 @@ impl Shading {
     pub fn new(source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, InputError> {
         let text = format!("{source}\n{}\n{}\n", structure("Surface"), structure("View"));
         let own = Own { source, text: &text };
-        let module = parse_str(&text).map_err(|error| {
-            own.refused(error.labels().map(|(span, _)| span), error.message().to_owned())
-        })?;
+        let module = parse_str(&text)
+            .map_err(|error| own.refused(error.labels().map(|(span, _)| span), error.message().to_owned()))?;
         own.check(&module, layout.is_some())?;
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-        validator.validate(&module).map_err(|error| {
-            own.refused(error.spans().map(|(span, _)| *span), chain(error.as_inner()))
-        })?;
+        validator
+            .validate(&module)
+            .map_err(|error| own.refused(error.spans().map(|(span, _)| *span), chain(error.as_inner())))?;
         Ok(Self { source: source.to_owned(), layout: layout.cloned() })
     }
 

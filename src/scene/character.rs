@@ -47,6 +47,8 @@ pub(super) struct Character {
     changed: Changed,
     /// The time of the scene from which the device counts.
     epoch: f64,
+    /// Whether last positions are kept.
+    keeps_last: bool,
     runtime: Runtime,
 }
 
@@ -75,7 +77,7 @@ struct Runtime {
 
 impl Character {
     /// Prepares a model that has clips, with room for `capacity` instances.
-    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize, keeps_last: bool) -> Result<Self, Error> {
         let model = &merged.model;
         let clips: Vec<_> = model.clips.iter().collect();
         let set = ClipSet::new(&clips)?;
@@ -88,15 +90,21 @@ impl Character {
         let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
         let gate = Gate::Bounded(table);
         let plays = vec![Playing::REST; capacity];
-        let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
+        let runtime = Runtime::new(gpu, model, (&set, &gate), (capacity, keeps_last))?;
         let mut changed = Changed::default();
         changed.all(capacity);
-        Ok(Self { merged, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, runtime })
+        Ok(Self { merged, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, keeps_last, runtime })
+    }
+
+    /// Keeps last positions from the next [`Character::grow`] on, or does no longer.
+    pub fn keep_last(&mut self, keeps_last: bool) {
+        self.keeps_last = keeps_last;
     }
 
     /// Makes room for more instances. All of them start afresh.
     pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
+        let room = (capacity, self.keeps_last);
+        self.runtime = Runtime::new(gpu, &self.merged.model, (&self.set, &self.gate), room)?;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         Ok(())
@@ -293,7 +301,12 @@ impl Playing {
 }
 
 impl Runtime {
-    fn new(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate, capacity: usize) -> Result<Self, Error> {
+    fn new(
+        gpu: &Gpu,
+        model: &Model,
+        (set, gate): (&ClipSet, &Gate),
+        (capacity, keeps_last): (usize, bool),
+    ) -> Result<Self, Error> {
         let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
         let crowd = Crowd::new(gpu, set, &vec![rest; capacity])?;
         let clips = ClipBuffers::new(gpu, set)?;
@@ -301,9 +314,12 @@ impl Runtime {
         let every: Vec<usize> = (0..model.clips.len()).collect();
         let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (index, mesh) in model.meshes.iter().enumerate() {
-            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            let mut skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            if keeps_last {
+                skin.keep_last(gpu)?;
+            }
             let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
-            paging.push(Paging::new(clusters, capacity, gpu.max_binding()));
+            paging.push(Paging::new(clusters, capacity, gpu.max_binding(), keeps_last));
             if !mesh.targets.is_empty() {
                 let keys = WeightSet::new(mesh, set, &every)?;
                 weights.push(MorphWeightsPass::new(gpu)?.prepare(

@@ -2,10 +2,11 @@
 
 use crate::animation::Frame;
 use crate::gpu::{Staged, Upload as _, compute_pass};
-use crate::lod::SelectView;
+use crate::lod::{SceneInstance, SelectView};
 use crate::scene::camera::Depth;
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::object::{self, Kind, Object};
+use crate::scene::order::Ordered;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
 use crate::skinning::picture::is_mirrored;
@@ -33,6 +34,21 @@ impl Scene {
         }
         self.layout = None;
         Ok(())
+    }
+
+    /// Keeps where everything was in the last frame from the next frame on, or does no longer; at first it is not kept.
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) needs it. Skinned vertices then take 1.4 times the memory,
+    /// what moved is skinned once more after it stops, and what the host changes is uploaded twice. Characters start
+    /// afresh.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last_frame(&mut self, keeps: bool) -> Result<(), Error> {
+        if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
+            return Ok(());
+        }
+        self.objects.iter_mut().for_each(|object| object.keep_last(keeps));
+        self.refresh()
     }
 
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
@@ -63,6 +79,7 @@ impl Scene {
                 character.dispatch(&mut pass);
             }
         }
+        views.iter_mut().for_each(|view| view.recorded(self.frame));
         self.frame = self.frame.wrapping_add(1);
         Ok(())
     }
@@ -93,6 +110,7 @@ impl Scene {
             arguments: &lists.arguments,
             mirrors: is_mirrored(&camera.clip_from_world()),
             reversed: camera.depth == Depth::Reversed,
+            keeps_last: self.keeps_last,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
@@ -112,6 +130,25 @@ impl Scene {
         Ok((drawn, objects))
     }
 
+    /// What is drawn instance by instance in a view, from back to front.
+    pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
+        let lists = view.lists.as_ref()?;
+        let (_, draws) = lists.singles.as_ref()?;
+        let objects: Vec<&Object> = self.objects.iter().collect();
+        let mut parts = Vec::new();
+        for Ordered { object, instance, .. } in &lists.order {
+            let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
+            let placed = object.instances.all().get(*instance as usize);
+            let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
+            for single in &object.singles {
+                let Drawable::Mesh(mesh) = &object.drawables[single.drawable] else { continue };
+                let (part, draw) = (&mesh.parts[single.part], single.first + instance);
+                parts.push(DrawnSingle { mesh, part, draw, instance: *instance, is_mirrored });
+            }
+        }
+        Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
+    }
+
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
@@ -126,7 +163,7 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, (self.layouts, self.keeps_last))?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
@@ -136,13 +173,13 @@ impl Scene {
         }
         let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list);
+            let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
         }
         Ok(())
     }
 
-    fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
+    fn stage(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
         let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
@@ -150,12 +187,19 @@ impl Scene {
             object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
         }
         let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
+        for (view, selected) in views.iter_mut().zip(&seen) {
+            view.order(self.objects.iter(), selected);
+        }
         for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, at == 0)?;
+            let of_frame = (self.frame, at == 0);
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
         for object in self.objects.iter_mut() {
             let first = object.range.first as usize;
+            for (at, run) in object.instances.take_last() {
+                self.staged.elements(&layout.last_instances, first + at, &run)?;
+            }
             for (at, run) in object.instances.take_changed() {
                 self.staged.elements(&layout.instances, first + at, run)?;
             }

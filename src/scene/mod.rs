@@ -19,6 +19,7 @@ pub(crate) mod material;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
+pub(crate) mod order;
 mod paging;
 mod placement;
 mod quality;
@@ -43,6 +44,7 @@ use crate::gpu::{Gpu, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 use crate::{Error, InputError};
 use handles::{Slots, stale};
 use layout::Layout;
@@ -65,6 +67,8 @@ pub struct Scene {
     now: f64,
     step: f32,
     frame: u32,
+    /// Whether the last frame's placements and vertices are kept.
+    keeps_last: bool,
     layout: Option<Layout>,
     layouts: u64,
     staging: StagingRing,
@@ -78,6 +82,7 @@ pub struct Scene {
 struct Passes {
     select: SelectPass,
     list: ListPass,
+    single: SinglePass,
     assign: AssignPass,
 }
 
@@ -90,6 +95,7 @@ impl Scene {
         let passes = Passes {
             select: SelectPass::new(gpu)?,
             list: ListPass::new(gpu)?,
+            single: SinglePass::new(gpu)?,
             assign: AssignPass::new(gpu)?,
         };
         Ok(Self {
@@ -101,6 +107,7 @@ impl Scene {
             now: 0.0,
             step: 0.0,
             frame: 0,
+            keeps_last: false,
             layout: None,
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),

@@ -6,6 +6,7 @@ use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
+use crate::lod::single::Single;
 use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable};
 use crate::scene::handles::Slots;
@@ -47,7 +48,19 @@ pub(crate) struct Object {
     /// For each drawable, the object as kernels see it, with the draws of the drawable's parts, in the layout for which it
     /// was prepared.
     pub(crate) lods: Vec<LodObject>,
+    /// Its parts that are drawn instance by instance.
+    pub(super) singles: Vec<SinglePart>,
     pub(super) fitted: u64,
+}
+
+/// A part of an object that is drawn instance by instance.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SinglePart {
+    /// The drawable, and the part of it.
+    pub drawable: usize,
+    pub part: usize,
+    /// The index of the draw of the first instance.
+    pub first: u32,
 }
 
 /// What an object is.
@@ -80,6 +93,7 @@ impl Object {
             draws,
             range: ObjectRange::default(),
             lods: Vec::new(),
+            singles: Vec::new(),
             fitted: 0,
         }
     }
@@ -122,10 +136,10 @@ impl Object {
         layouts: &SceneLayouts,
         model: &Model,
         capacity: usize,
-        shares: Shares,
+        (shares, keeps_last): (Shares, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
+        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity(), keeps_last)?;
         let drawn = (character.drawables(gpu, layouts)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
@@ -161,6 +175,14 @@ impl Object {
         self.refresh(gpu, layouts)
     }
 
+    /// Keeps the last frame, once it is refreshed, or does no longer.
+    pub(super) fn keep_last(&mut self, keeps: bool) {
+        self.instances.keep_last(keeps);
+        if let Kind::Character(character) = &mut self.kind {
+            character.keep_last(keeps);
+        }
+    }
+
     /// Lets everything start afresh.
     pub(super) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         self.instances.change_all();
@@ -185,6 +207,7 @@ impl Object {
         let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
         if is_replaced {
             rebind(&mut self.drawables, gpu, layouts, character)?;
+            stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         }
         if coarsening != self.coarsening {
             self.coarsening = coarsening;
@@ -212,13 +235,7 @@ impl Object {
             self.lods.push(lod);
             lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
         }
-        for drawable in &self.drawables {
-            if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                let (first_instance, object) = (self.range.first, self.handle);
-                let params = MeshParams { first_instance, clusters: *clusters, object };
-                staged.uniform(&geometry.params, &params)?;
-            }
-        }
+        stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         match &mut self.kind {
             Kind::Character(character) => {
                 character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
@@ -227,10 +244,42 @@ impl Object {
         }
     }
 
+    /// Lays out the parts that are drawn instance by instance, behind those of other objects.
+    fn lay_out_singles(&mut self, all: &mut Vec<Single>) {
+        self.singles.clear();
+        let (instances, mut first_draw) = (self.instances.capacity() as u32, self.range.first_draw);
+        for (drawable, of) in self.drawables.iter().enumerate() {
+            let parts = if let Drawable::Mesh(mesh) = of { mesh.parts.as_slice() } else { &[] };
+            for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
+                self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
+                let first_draw = first_draw + OBJECT_LISTS * part as u32;
+                let single = |at| Single { instance: self.range.first + at, first_draw };
+                all.extend((0..instances).map(single));
+            }
+            first_draw += OBJECT_LISTS * of.parts() as u32;
+        }
+    }
+
     /// Number of instances that there is room for.
     pub(crate) fn capacity(&self) -> usize {
         self.instances.capacity()
     }
+}
+
+/// Stages where the instances and vertices of drawables lie.
+fn stage_params(
+    staged: &mut Staged,
+    drawables: &[Drawable],
+    first_instance: u32,
+    object: u32,
+) -> Result<(), Error> {
+    for drawable in drawables {
+        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+            let params = MeshParams { first_instance, clusters: *clusters, object, last: geometry.last };
+            staged.uniform(&geometry.params, &params)?;
+        }
+    }
+    Ok(())
 }
 
 /// Binds a character's pages, after they were replaced.
@@ -256,13 +305,18 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
     }
 }
 
-/// Lays out objects, one after the other, and tells each its range.
+/// Lays out objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
+/// last frame is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
-pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
+pub(super) fn laid_out(
+    gpu: &Gpu,
+    objects: &mut Slots<Object>,
+    version: (u64, bool),
+) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
-    let (mut all, mut draws) = (Vec::new(), Vec::new());
+    let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {
         object.range = range;
         object.number = all.len();
@@ -270,9 +324,10 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
         let instances = object.instances.capacity() as u32;
         all.push(object.lod_object());
         draws.extend_from_slice(&object.draws);
+        object.lay_out_singles(&mut singles);
         range.first += instances;
         range.first_list += 2 * object.errors.len() as u32 * instances;
         range.first_draw += object.draws.len() as u32;
     }
-    Layout::new(gpu, (&all, draws), range, version)
+    Layout::new(gpu, (&all, draws, &singles), range, version)
 }

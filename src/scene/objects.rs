@@ -57,7 +57,13 @@ impl Scene {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
         }
-        let object = Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares)?;
+        let object = Object::character(
+            &self.gpu,
+            &self.layouts_of_groups,
+            model,
+            capacity,
+            (self.shares, self.keeps_last),
+        )?;
         Ok(self.add(object))
     }
 
@@ -74,9 +80,12 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        let id = ObjectId { index, generation };
+        let (id, keeps_last) = (ObjectId { index, generation }, self.keeps_last);
         if let Some(object) = self.objects.get_mut([index, generation]) {
             object.handle = id.number();
+            if keeps_last {
+                object.instances.keep_last(true);
+            }
         }
         id
     }

@@ -14,5 +14,7 @@ mod rays;
 mod shading;
 mod surfaces;
 mod targets;
+mod transparent;
+mod velocity;
 mod views;
 mod world;

@@ -89,11 +89,8 @@ impl Raw {
         let pitch = (texel * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize).expect("room");
         let run = gpu.run("readback", |encoder| {
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(pitch),
-                rows_per_image: None,
-            };
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
             let to = wgpu::TexelCopyBufferInfo { buffer: buffer.raw(), layout };
             encoder.copy_texture_to_buffer(color.as_image_copy(), to, color.size());
         });

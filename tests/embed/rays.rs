@@ -71,9 +71,9 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
         .map(|[x, y]| {
             let middle = first(triangles, ray(camera, [x, y]));
             let beside = [[-0.01, 0.0], [0.01, 0.0], [0.0, -0.01], [0.0, 0.01]];
-            let is_sure = beside.iter().all(|[dx, dy]| {
-                tag(&first(triangles, ray(camera, [x + dx, y + dy]))) == tag(&middle)
-            });
+            let is_sure = beside
+                .iter()
+                .all(|[dx, dy]| tag(&first(triangles, ray(camera, [x + dx, y + dy]))) == tag(&middle));
             if is_sure { Ok(middle) } else { Err(()) }
         })
         .collect()

@@ -11,8 +11,8 @@ use relievo::wgpu;
 
 use crate::frame::{COLOR, Frame, device};
 use crate::harness::{Difference, Tolerance};
-use crate::rays::{cube, model, plain};
 use crate::raw::Raw;
+use crate::rays::{cube, model, plain};
 use crate::world::{SIZE, World, camera};
 
 /// The crate's own shading, beside names of all kinds that the crate's shaders have too.
@@ -116,7 +116,8 @@ fn shading_knows_surfaces_and_views() {
     let mut of = |expression: &str| values(&gpu, &mut world, &mut view, expression);
     let places = of("vec4<f32>(surface.position, surface.alpha)");
     let facing = of("vec4<f32>(surface.normal, dot(surface.normal, surface.geometric_normal))");
-    let numbers = of("vec4<f32>(f32(surface.object), f32(surface.instance), f32(surface.word), surface.sunlit)");
+    let numbers =
+        of("vec4<f32>(f32(surface.object), f32(surface.instance), f32(surface.word), surface.sunlit)");
     let pixels = of("vec4<f32>(surface.pixel, surface.uv)");
     let tints = of("surface.tint");
     let colors = of("vec4<f32>(surface.color, 1.0)");
@@ -232,7 +233,8 @@ fn alpha_is_blended_as_the_format_says() {
     format.color[0].as_mut().expect("a colour").blend = Some(wgpu::BlendState::ALPHA_BLENDING);
     let mut raw = Raw::new(&gpu, format, [96, 64]);
     raw.clear = wgpu::Color { r: 1.0, g: 0.0, b: 0.0, a: 1.0 };
-    let source = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(0.0, 1.0, 0.0, 0.25); }";
+    let source =
+        "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(0.0, 1.0, 0.0, 0.25); }";
     let renderer = Renderer::new(&gpu, &raw.format).expect("a format");
     let mut renderer = renderer.with_shading(source, None).expect("valid");
     renderer.prepare(&world.scene).expect("compiled");
@@ -251,20 +253,33 @@ fn alpha_is_blended_as_the_format_says() {
 fn mistakes_are_told_with_their_lines() {
     let gpu = device();
     let renderer = || Renderer::new(&gpu, &TargetFormat::new(COLOR)).expect("a format");
-    let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[],
-    });
+    let layout =
+        gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[] });
     let good = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
     let cases = [
-        ("fn shade(surface: Surface, view: View) -> vec4<f32> {\n    return vec3<f32>(1.0)\n}".to_owned(), 3, 1, ";"),
+        (
+            "fn shade(surface: Surface, view: View) -> vec4<f32> {\n    return vec3<f32>(1.0)\n}".to_owned(),
+            3,
+            1,
+            ";",
+        ),
         (format!("// One\n  fn f() -> f32 {{ return unknown; }}\n{good}"), 2, 26, "unknown"),
         (format!("{good}\n\nfn f(a: f32) -> f32 {{ return 1u; }}"), 3, 1, "return"),
         (format!("{good}\nfn f(view: View) -> f32 {{ return view.nothing; }}"), 2, 40, "nothing"),
         ("fn shade(surface: Surface) -> vec4<f32> { return vec4<f32>(1.0); }".to_owned(), 1, 1, "view: View"),
         (good.replace("shade", "paint"), 1, 1 + good.len(), "fn shade"),
-        (good.replace("-> vec4<f32> { return vec4<f32>", "-> vec3<f32> { return vec3<f32>"), 1, 1, "vec4<f32>"),
-        (format!("fn f() {{\n    discard;\n}}\n{}", good.replace("{ return", "{ f(); return")), 2, 5, "discard"),
+        (
+            good.replace("-> vec4<f32> { return vec4<f32>", "-> vec3<f32> { return vec3<f32>"),
+            1,
+            1,
+            "vec4<f32>",
+        ),
+        (
+            format!("fn f() {{\n    discard;\n}}\n{}", good.replace("{ return", "{ f(); return")),
+            2,
+            5,
+            "discard",
+        ),
         (good.replace("{ return", "{ if view.ambient > 2.0 { discard; } return"), 1, 81, "discard"),
         (format!("override X: f32 = 1.0;\n{good}"), 1, 10, "override"),
         (format!("{good}\n@fragment fn main() {{}}"), 2, 14, "entry points"),

@@ -8,8 +8,8 @@ use relievo::surface::HeightMap;
 use relievo::wgpu;
 
 use crate::frame::device;
-use crate::rays::{Hit, Triangle, cube, matrix, model, picture, placed, plain};
 use crate::raw::Raw;
+use crate::rays::{Hit, Triangle, cube, matrix, model, picture, placed, plain};
 use crate::world::World;
 
 const SIZE: [u32; 2] = [96, 64];

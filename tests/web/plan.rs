@@ -99,7 +99,9 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
     for vertex in of_stage("vertex") {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
         // Entries of such names take the vertices of one.
-        let kind = |entry: &Value| ["_bumpy", "_whole"].into_iter().find(|end| name_of(entry).ends_with(end));
+        let kind = |entry: &Value| {
+            ["_bumpy", "_whole", "_moving"].into_iter().find(|end| name_of(entry).ends_with(end))
+        };
         let fitting = of_stage("fragment").into_iter().filter(|fragment| kind(vertex) == kind(fragment));
         all.extend(fitting.map(|fragment| {
             let render = json!({
@@ -122,6 +124,7 @@ fn targets(entry: &str) -> Value {
     match entry.split('_').next() {
         Some("depth") => json!([{ "format": "rgba8unorm-srgb", "writeMask": 0 }]),
         Some("surface") => json!(["rgba16float", "rgba8unorm", "rg16uint"].map(target)),
+        Some("velocity") => json!([target("rg16float")]),
         Some("measure") => json!(["rgba32float", "rg32uint"].map(target)),
         _ => json!([target("rgba8unorm-srgb")]),
     }

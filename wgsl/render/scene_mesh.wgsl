@@ -1,12 +1,15 @@
 // Draws instances of a mesh of a scene, textured and lit. Surfaces are opaque, cut out, or drawn through a screen-door
 // pattern, as each vertex's material says.
+import package::wgsl::render::scene_motion::last_position;
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_vertex::{PlacedVertex, instances, mesh, placed_vertex};
-import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_shaded, scene_surface, scene_surface_targets, view};
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
+// Whether the colour is blended with what is behind it, by its alpha.
+override BLENDED: bool = false;
 // For whole surfaces: whether alpha leaves out pixels, and whether a material has a normal map.
 override CUT_OUT: bool = false;
 override NORMAL_MAPPED: bool = false;
@@ -95,6 +98,23 @@ fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) 
     return WholeVertex(out.clip, out.normal, out.surface, out.color, out.tangent, placed.position, instance);
 }
 
+// A vertex with what there is to know of its motion.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) surface: vec4<f32>,
+    @location(1) @interpolate(flat) color: vec4<f32>,
+    // Its places on the screen in this frame and in the last.
+    @location(2) now: vec3<f32>,
+    @location(3) last: vec3<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let out = bumpy(placed_vertex(instance, vertex), vertex);
+    let last = view.last_clip_from_world * vec4<f32>(last_position(instance, vertex), 1.0);
+    return MovingVertex(out.clip, out.surface, out.color, scene_place(out.clip), scene_place(last));
+}
+
 fn bumpy(placed: PlacedVertex, vertex: u32) -> BumpyVertex {
     let index = material_of[vertex];
     let layer = materials[index].layer;
@@ -142,11 +162,21 @@ fn bumpy_normal(in: BumpyVertex) -> vec3<f32> {
 }
 
 fn flat_lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
-    return scene_shaded(scene_surface(color.rgb, facing(normalize(in.normal.xyz), in.normal.w, is_front)));
+    return lit(color, facing(normalize(in.normal.xyz), in.normal.w, is_front));
 }
 
 fn bumpy_lit(color: vec4<f32>, in: BumpyVertex, is_front: bool) -> vec4<f32> {
-    return scene_shaded(scene_surface(color.rgb, facing(bumpy_normal(in), in.normal.w, is_front)));
+    return lit(color, facing(bumpy_normal(in), in.normal.w, is_front));
+}
+
+fn lit(color: vec4<f32>, normal: vec3<f32>) -> vec4<f32> {
+    var surface = scene_surface(color.rgb, normal);
+    surface.alpha = blended_alpha(color.a);
+    return scene_shaded(surface);
+}
+
+fn blended_alpha(alpha: f32) -> f32 {
+    return select(1.0, alpha, BLENDED);
 }
 
 fn material_at(in: Vertex) -> u32 {
@@ -227,7 +257,7 @@ fn depth_cut_out(in: Vertex) {
 fn shaded_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     var surface = whole_surface(in, is_front);
     let is_out = is_whole_cut(surface.alpha, in);
-    surface.alpha = 1.0;
+    surface.alpha = blended_alpha(surface.alpha);
     let color = scene_shaded(surface);
     if is_out {
         discard;
@@ -251,4 +281,15 @@ fn measure_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> Meas
         discard;
     }
     return scene_measure_targets(surface);
+}
+
+@fragment
+fn velocity_moving(in: MovingVertex) -> @location(0) vec4<f32> {
+    if CUT_OUT {
+        let surface = Vertex(in.clip, vec4<f32>(0.0), in.surface, in.color);
+        if is_cut(colored(surface).a, surface) {
+            discard;
+        }
+    }
+    return scene_velocity(in.now, in.last);
 }

@@ -1,8 +1,10 @@
 // Draws instances of a static mesh of a scene with relief (B section 3.1, tables 4.1 to 4.4) by any method, with
 // self-shadow, silhouettes and the depth of the relief.
+import package::wgsl::render::scene_motion::rows_to_last;
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_vertex::{instances, mesh, placed_vertex};
-import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_shaded, scene_surface_targets, view};
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface_targets, scene_velocity, view};
+import package::wgsl::skinning::rows::{Rows, placed_position};
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
@@ -78,6 +80,38 @@ fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Ver
         placed.uv,
         vec2<u32>(placed.tint, instance),
         relief.world * placed.stretch);
+}
+
+// A vertex with what there is to know of its motion.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec2<f32>,
+    @location(4) @interpolate(flat) instance: vec2<u32>,
+    @location(5) world: f32,
+    // The transform from where the instance is to where it was in the last frame.
+    @location(6) @interpolate(flat) last_x: vec4<f32>,
+    @location(7) @interpolate(flat) last_y: vec4<f32>,
+    @location(8) @interpolate(flat) last_z: vec4<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let placed = placed_vertex(instance, vertex);
+    let last = rows_to_last(mesh.first_instance + instance);
+    return MovingVertex(
+        view.clip_from_world * vec4<f32>(placed.position, 1.0),
+        placed.position,
+        placed.normal,
+        placed.tangent,
+        placed.uv,
+        vec2<u32>(placed.tint, instance),
+        relief.world * placed.stretch,
+        last.x,
+        last.y,
+        last.z);
 }
 
 // The frame of a fragment's tangent space: unit vectors along u, along v, and outwards.
@@ -228,4 +262,24 @@ fn measure(in: Vertex) -> DeepMeasure {
         discard;
     }
     return DeepMeasure(targets.position, targets.id, select(in.clip.z, found.depth, OWN_DEPTH));
+}
+
+struct DeepVelocity {
+    @location(0) velocity: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+// The motion of the point that the eye's ray meets.
+@fragment
+fn velocity_moving(in: MovingVertex) -> DeepVelocity {
+    let vertex = Vertex(in.clip, in.position, in.normal, in.tangent, in.uv, in.instance, in.world);
+    let found = traced(vertex, dpdx(in.uv), dpdy(in.uv));
+    let last = placed_position(Rows(in.last_x, in.last_y, in.last_z), found.position);
+    let velocity = scene_velocity(
+        scene_place(view.clip_from_world * vec4<f32>(found.position, 1.0)),
+        scene_place(view.last_clip_from_world * vec4<f32>(last, 1.0)));
+    if found.is_outside {
+        discard;
+    }
+    return DeepVelocity(velocity, select(in.clip.z, found.depth, OWN_DEPTH));
 }

@@ -1,7 +1,7 @@
 // Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
 // each visible one, zone textures blended by height, a directional light.
 import package::wgsl::render::scene_shade::Surface;
-import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_shaded, scene_surface, scene_surface_targets, view};
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 
@@ -84,6 +84,21 @@ fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) 
     return placed(vertex, instance);
 }
 
+// A vertex with what there is to know of its motion: the camera's.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    // Its places on the screen in this frame and in the last.
+    @location(0) now: vec3<f32>,
+    @location(1) last: vec3<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let out = placed(vertex, instance);
+    let last = view.last_clip_from_world * vec4<f32>(out.position, 1.0);
+    return MovingVertex(out.clip, scene_place(out.clip), scene_place(last));
+}
+
 fn placed(vertex: u32, instance: u32) -> WholeVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
@@ -149,6 +164,11 @@ fn surface_whole(in: WholeVertex) -> SurfaceTargets {
 @fragment
 fn measure_whole(in: WholeVertex) -> MeasureTargets {
     return scene_measure_targets(whole_surface(in));
+}
+
+@fragment
+fn velocity_moving(in: MovingVertex) -> @location(0) vec4<f32> {
+    return scene_velocity(in.now, in.last);
 }
 
 // Only depth is written, where a pass has colour attachments as well.

@@ -5,6 +5,8 @@ import package::wgsl::render::scene_shade::{Surface, View, shade};
 struct SceneView {
     // From positions relative to the corner of the view's cell to clip space, depth 0..1.
     clip_from_world: mat4x4<f32>,
+    // From positions of the last frame, relative to the corner of this frame's cell, to the clip space of that frame.
+    last_clip_from_world: mat4x4<f32>,
     // The position of the eye relative to that corner (w = 1), or in a parallel view the direction towards it (w = 0).
     eye: vec4<f32>,
     // Unit vector towards the light; w: the light that surfaces facing away still receive, 0..1.
@@ -48,6 +50,21 @@ struct SurfaceTargets {
 fn scene_surface_targets(surface: Surface) -> SurfaceTargets {
     return SurfaceTargets(
         vec4<f32>(surface.normal, 1.0), vec4<f32>(surface.color, 1.0), vec2<u32>(surface.object, surface.instance));
+}
+
+// x, y and w of a place in clip space.
+fn scene_place(clip: vec4<f32>) -> vec3<f32> {
+    return clip.xyw;
+}
+
+// The motion on the screen from a place of the last frame to one of this frame, as a fraction of the picture's width, to the
+// right, and of its height, downwards; w: 1. It is 0 for what lay behind the last frame's eye.
+fn scene_velocity(now: vec3<f32>, last: vec3<f32>) -> vec4<f32> {
+    if last.z <= 0.0 {
+        return vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    }
+    let moved = now.xy / now.z - last.xy / last.z;
+    return vec4<f32>(0.5 * moved.x, -0.5 * moved.y, 0.0, 1.0);
 }
 
 // What is written of a surface where it is measured.

@@ -34,9 +34,15 @@ impl Kind {
         }
     }
 
+    /// Whether a layer shows it.
+    pub fn is_in(self, layer: Layer) -> bool {
+        let is_blended = matches!(self, Self::Mesh { surface, .. } if surface.blended);
+        is_blended == (layer == Layer::Transparent)
+    }
+
     /// The same without what has no influence on a layer.
     fn in_layer(self, layer: Layer) -> Self {
-        let is_lit = layer == Layer::Color;
+        let is_lit = layer.is_shaded();
         let has_normals = is_lit || layer == Layer::Surface;
         match self {
             Self::Mesh { surface, normal_mapped } => {
@@ -88,7 +94,7 @@ impl PipelineKey {
         layouts: &SceneLayouts,
         shading: Option<&Shading>,
     ) -> Result<wgpu::RenderPipeline, GpuError> {
-        let shading = shading.filter(|_| self.layer == Layer::Color);
+        let shading = shading.filter(|_| self.layer.is_shaded());
         let program = Program::new(self.layer, self.kind, format, shading.is_some());
         let groups = match self.kind {
             Kind::Mesh { .. } => layouts.of_mesh(),
@@ -127,7 +133,7 @@ impl PipelineKey {
                 buffers: &[Some(INSTANCES)],
             },
             primitive: wgpu::PrimitiveState { cull_mode: self.cull(), ..Default::default() },
-            depth_stencil: format.depth_state(),
+            depth_stencil: format.depth_state(self.layer),
             multisample: wgpu::MultisampleState { count: format.samples, ..Default::default() },
             fragment: fragment.as_deref().map(|entry| wgpu::FragmentState {
                 module: &module,

@@ -27,35 +27,38 @@ impl Program {
                 let (vertex, fragment) = match layer {
                     Layer::Depth if surface.cut_out => ("vertex", Some("depth_cut_out")),
                     Layer::Depth => ("vertex", depth_opaque),
-                    Layer::Color if is_shaded => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color => own_color(surface, normal_mapped),
+                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
+                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
                 };
-                let SurfaceKind { double_sided, cut_out } = surface;
-                let constants = scene_mesh::Constants { double_sided, cut_out, normal_mapped };
+                let SurfaceKind { double_sided, cut_out, blended } = surface;
+                let constants = scene_mesh::Constants { double_sided, cut_out, blended, normal_mapped };
                 Self { shader: &RENDER_SCENE_MESH, vertex, fragment, constants: constants.list() }
             }
             Kind::Relief { options, .. } => Self {
                 shader: &RENDER_SCENE_RELIEF,
-                vertex: "vertex",
+                vertex: if layer == Layer::Velocity { "vertex_moving" } else { "vertex" },
                 fragment: Some(match layer {
                     Layer::Depth => "depth_relief",
                     // Without a depth attachment no shader may write depth.
                     Layer::Color if options.depth && format.depth.is_some() => "fragment_deep",
-                    Layer::Color => "fragment",
+                    Layer::Color | Layer::Transparent => "fragment",
                     Layer::Surface => "surface",
                     Layer::Measure => "measure",
+                    Layer::Velocity => "velocity_moving",
                 }),
                 constants: relief_constants(&options, format.is_reversed()).list(),
             },
             Kind::Terrain => {
                 let (vertex, fragment) = match layer {
                     Layer::Depth => ("vertex", depth_opaque),
-                    Layer::Color if is_shaded => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color => ("vertex", Some("fragment")),
+                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
+                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
                 };
                 Self { shader: &RENDER_SCENE_TERRAIN, vertex, fragment, constants: Vec::new() }
             }

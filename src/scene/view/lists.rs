@@ -5,8 +5,10 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
 use crate::lod::SelectView;
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
+use crate::lod::single::{SingleBuffers, SinglePass};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
@@ -26,6 +28,10 @@ pub(crate) struct ViewLists {
     pub group: Group,
     /// For each terrain, in the order of the objects, where its samples lie, and bind group 1.
     pub terrain: Vec<(Uniform<TerrainView>, Group)>,
+    /// The draws of instances that are drawn one by one, if there are any.
+    pub singles: Option<(Job, Buffer<SceneDraw>)>,
+    /// The instances that are drawn one by one, from back to front.
+    pub order: Vec<Ordered>,
     pub(super) select: Job,
     pub(super) list: Job,
 }
@@ -35,7 +41,7 @@ impl ViewLists {
         gpu: &Gpu,
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
-        (select, list): (&SelectPass, &ListPass),
+        (select, list, single): (&SelectPass, &ListPass, &SinglePass),
         (layouts, terrains): (&SceneLayouts, usize),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
@@ -66,7 +72,16 @@ impl ViewLists {
             arguments: &arguments,
         };
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
-        let group = layouts.view(gpu, drawn, &rows, &layout.instances)?;
+        let singles = match layout.singles.len() {
+            0 => None,
+            count => {
+                let draws = Buffer::new(gpu, "draws of single instances", count)?;
+                let (singles, arguments) = (&layout.singles, &arguments);
+                let buffers = SingleBuffers { singles, decisions: &decisions, arguments, draws: &draws };
+                Some((single.prepare(gpu, buffers, count as u32)?, draws))
+            }
+        };
+        let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances])?;
         let ground = || {
             let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
             let group = layouts.ground(gpu, &uniform)?;
@@ -81,6 +96,8 @@ impl ViewLists {
             rows,
             group,
             terrain,
+            singles,
+            order: Vec::new(),
             select,
             list,
         })

@@ -11,12 +11,15 @@ use crate::asset::Light;
 use crate::gpu::{Gpu, Group, Staged, Uniform, Upload as _};
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 #[cfg(feature = "verify")]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::camera::Camera;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::object::Object;
+use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
@@ -30,6 +33,8 @@ pub struct View {
     scene: Arc<()>,
     quality: Quality,
     camera: Option<Camera>,
+    /// The camera of its last frame, and the number of that frame.
+    last: Option<(u32, Camera)>,
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
@@ -47,6 +52,7 @@ impl View {
             scene: scene.clone(),
             quality,
             camera: None,
+            last: None,
             lod_cameras: Vec::new(),
             mask: u16::MAX,
             casters: false,
@@ -132,7 +138,7 @@ impl View {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        passes: (&SelectPass, &ListPass),
+        passes: (&SelectPass, &ListPass, &SinglePass),
         groups: (&SceneLayouts, usize),
     ) -> Result<(), Error> {
         if self.lists.as_ref().is_none_or(|lists| lists.version != layout.version) {
@@ -146,22 +152,38 @@ impl View {
         self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
-    /// Stages the view's uniforms. `terrains` are those of the scene, in their order.
+    /// Remembers the camera of a frame that was recorded.
+    pub(super) fn recorded(&mut self, frame: u32) {
+        self.last = self.camera.map(|camera| (frame, camera));
+    }
+
+    /// Stages the view's uniforms. `terrains` are those of the scene, in their order; a frame has a number, and a first view.
     pub(super) fn stage(
         &self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
         terrains: &[SeenTerrain],
-        is_first: bool,
+        (frame, is_first): (u32, bool),
     ) -> Result<(), Error> {
+        let last = self.last.filter(|(last, _)| *last == frame.wrapping_sub(1)).map(|(_, camera)| camera);
         let (camera, view) = self.select_view(blocks, is_first)?;
         staged.uniform(&self.select, &view)?;
-        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
+        staged.uniform(
+            &self.drawn,
+            &SceneView::new([&camera, &last.unwrap_or(camera)], &view.cameras[0], light),
+        )?;
         let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
         for ((uniform, _), seen) in terrain.zip(terrains) {
             staged.uniform(uniform, &terrain_view(&camera, seen))?;
         }
         Ok(())
+    }
+
+    /// Orders what is drawn instance by instance.
+    pub(super) fn order<'a>(&mut self, objects: impl Iterator<Item = &'a Object>, selected: &SelectView) {
+        if let (Some(lists), Some(camera)) = (&mut self.lists, &self.camera) {
+            back_to_front(&mut lists.order, objects, (selected, camera));
+        }
     }
 
     /// The view as kernels see it.
@@ -196,6 +218,9 @@ impl View {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
             lists.list.dispatch(pass);
+            if let Some((job, _)) = &lists.singles {
+                job.dispatch(pass);
+            }
         }
     }
 }

@@ -57,7 +57,8 @@ impl SelectPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |finish, clear| bindings::kernel(gpu, &bindings::Constants { finish, clear });
+        let kernel =
+            |finish, clear| bindings::kernel(gpu, &bindings::Constants { finish, clear, keep: false });
         Ok(Self {
             select: kernel(false, false)?,
             finish: kernel(true, false)?,
@@ -124,7 +125,7 @@ impl SelectPass {
         crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
         active.dispatched.check_holds("active.dispatched", DISPATCHED_WORDS)?;
-        active.pairs.check_holds("active.pairs", pairs)?;
+        active.pairs.check_holds("active.pairs", active.words(pairs))?;
         let params = SelectParams {
             instances: crowd.instances as u32,
             clusters: mesh.clusters() as u32,
@@ -154,7 +155,11 @@ impl SelectPass {
                 kernel: kernel.clone(),
             })
         };
-        let steps = [step(&self.select, pairs), step(finish, crowd.instances)];
+        let select = match active.keeps_last {
+            true => bindings::kernel(gpu, &bindings::Constants { keep: true, ..Default::default() })?,
+            false => self.select.clone(),
+        };
+        let steps = [step(&select, pairs), step(finish, crowd.instances)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "skinning/select", steps)?)
     }

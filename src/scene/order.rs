@@ -1,0 +1,41 @@
+//! The order in which transparent surfaces are drawn: instance by instance, from back to front.
+
+use crate::lod::SelectView;
+use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
+use crate::scene::camera::Camera;
+use crate::scene::object::Object;
+
+/// An instance in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ordered {
+    /// How far the middle of its bounding sphere is from the eye, or in a parallel view how far ahead.
+    pub distance: f64,
+    /// The number of its object in the layout, and its index in the object.
+    pub object: usize,
+    pub instance: u32,
+}
+
+/// Orders the instances of objects with transparent parts that a view may see, from back to front; of those as far away,
+/// in the order of objects and instances. The device decides which of them are seen.
+pub(super) fn back_to_front<'a>(
+    order: &mut Vec<Ordered>,
+    objects: impl Iterator<Item = &'a Object>,
+    (view, camera): (&SelectView, &Camera),
+) {
+    order.clear();
+    let (eye, ahead) = (camera.eye().as_dvec3(), camera.ahead().as_dvec3());
+    let is_parallel = camera.clip_from_view.row(3).truncate() == glam::Vec3::ZERO;
+    for (object, of) in objects.enumerate().filter(|(_, object)| !object.singles.is_empty()) {
+        let lod = of.lod_object();
+        for (instance, placed) in (0..).zip(of.instances.all()) {
+            let (center, radius) = placed_sphere(placed, view.cell);
+            if !is_shown(view, &lod, placed) || !nearly_seen(view, center, radius) {
+                continue;
+            }
+            let towards = center.as_dvec3() - eye;
+            let distance = if is_parallel { towards.dot(ahead) } else { towards.length() };
+            order.push(Ordered { distance, object, instance });
+        }
+    }
+    order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+}
