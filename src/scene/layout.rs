@@ -1,10 +1,13 @@
 //! How the instances and draws of all objects lie in the buffers of a scene and of its views.
 
+use std::sync::Arc;
+
 use glam::Vec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
 use crate::lod::single::Single;
+use crate::scene::statistics::view::Counted;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
@@ -42,6 +45,8 @@ pub(crate) struct Layout {
     pub singles: Buffer<Single>,
     /// 0, 1, 2, … for as many instances as the largest object with such parts has.
     pub identity: Buffer<u32>,
+    /// What statistics need to know of the objects.
+    pub counted: Arc<Counted>,
 }
 
 impl Layout {
@@ -53,7 +58,7 @@ impl Layout {
         gpu: &Gpu,
         (objects, draws, singles): (&[LodObject], Vec<SceneDraw>, &[Single]),
         end: ObjectRange,
-        (version, keeps_last): (u64, bool),
+        (version, keeps_last, counted): (u64, bool, Arc<Counted>),
     ) -> Result<Self, Error> {
         let of_object =
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
@@ -79,6 +84,7 @@ impl Layout {
             draws,
             singles: Buffer::from_slice(gpu, "single instances", singles)?,
             identity: Buffer::from_slice(gpu, "lists of one", &identity)?,
+            counted,
         })
     }
 }

@@ -1,12 +1,13 @@
 //! Objects: what all instances of one model or one terrain share.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
-use crate::asset::Model;
+use crate::asset::{Mesh, Model};
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
-use crate::lod::single::Single;
 use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable};
 use crate::scene::handles::Slots;
@@ -14,13 +15,17 @@ use crate::scene::instances::Instances;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
+use crate::scene::order::SinglePart;
 use crate::scene::quality::Shares;
+use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
+use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
 use crate::scene::view::SeenTerrain;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
 
 /// An object of a scene.
@@ -53,21 +58,33 @@ pub(crate) struct Object {
     pub(super) fitted: u64,
 }
 
-/// A part of an object that is drawn instance by instance.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SinglePart {
-    /// The drawable, and the part of it.
-    pub drawable: usize,
-    pub part: usize,
-    /// The index of the draw of the first instance.
-    pub first: u32,
+/// What the host keeps of a mesh that does not move by itself.
+#[derive(Debug)]
+pub(super) struct MeshOnHost {
+    /// Its triangles in full detail.
+    pub surfaces: Vec<Surface>,
+}
+
+impl MeshOnHost {
+    /// Of merged meshes at rest.
+    fn of_merged(merged: &Merged) -> Self {
+        let meshes = merged.model.meshes.iter().enumerate();
+        let surface = |(at, mesh): (usize, &Mesh)| Surface::of_merged(merged, at, mesh.positions.clone());
+        Self { surfaces: meshes.map(surface).collect() }
+    }
+
+    /// Of a mesh with relief.
+    fn of_relief(Relief { mesh, double_sided, .. }: &Relief) -> Self {
+        let positions = mesh.vertices.iter().map(|vertex| vertex.position).collect();
+        Self { surfaces: vec![Surface::new(positions, mesh.indices.clone(), *double_sided)] }
+    }
 }
 
 /// What an object is.
 #[derive(Debug)]
 pub(super) enum Kind {
     Terrain(Terrain),
-    Mesh,
+    Mesh(MeshOnHost),
     Character(Box<Character>),
 }
 
@@ -115,7 +132,8 @@ impl Object {
         let instances = room(capacity)?;
         let (merged, sphere) = mesh::at_rest_merged(model)?;
         let drawn = mesh::drawn(gpu, layouts, &merged)?;
-        Ok(Self::new(Kind::Mesh, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+        let kind = Kind::Mesh(MeshOnHost::of_merged(&merged));
+        Ok(Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
     }
 
     /// A mesh with relief.
@@ -127,7 +145,8 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
-        Ok(Self::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), drawn))
+        let kind = Kind::Mesh(MeshOnHost::of_relief(relief));
+        Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// A model that has clips.
@@ -150,7 +169,7 @@ impl Object {
     pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
             Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
-            Kind::Mesh | Kind::Character(_) => None,
+            Kind::Mesh(_) | Kind::Character(_) => None,
         }
     }
 
@@ -240,23 +259,7 @@ impl Object {
             Kind::Character(character) => {
                 character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
             }
-            Kind::Mesh | Kind::Terrain(_) => Ok(()),
-        }
-    }
-
-    /// Lays out the parts that are drawn instance by instance, behind those of other objects.
-    fn lay_out_singles(&mut self, all: &mut Vec<Single>) {
-        self.singles.clear();
-        let (instances, mut first_draw) = (self.instances.capacity() as u32, self.range.first_draw);
-        for (drawable, of) in self.drawables.iter().enumerate() {
-            let parts = if let Drawable::Mesh(mesh) = of { mesh.parts.as_slice() } else { &[] };
-            for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
-                self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
-                let first_draw = first_draw + OBJECT_LISTS * part as u32;
-                let single = |at| Single { instance: self.range.first + at, first_draw };
-                all.extend((0..instances).map(single));
-            }
-            first_draw += OBJECT_LISTS * of.parts() as u32;
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
         }
     }
 
@@ -313,7 +316,7 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
 pub(super) fn laid_out(
     gpu: &Gpu,
     objects: &mut Slots<Object>,
-    version: (u64, bool),
+    (version, keeps_last): (u64, bool),
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
@@ -329,5 +332,6 @@ pub(super) fn laid_out(
         range.first_list += 2 * object.errors.len() as u32 * instances;
         range.first_draw += object.draws.len() as u32;
     }
-    Layout::new(gpu, (&all, draws, &singles), range, version)
+    let counted = Arc::new(Counted::new(objects));
+    Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
 }

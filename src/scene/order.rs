@@ -1,9 +1,39 @@
 //! The order in which transparent surfaces are drawn: instance by instance, from back to front.
 
-use crate::lod::SelectView;
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
+use crate::lod::single::Single;
+use crate::lod::{OBJECT_LISTS, SelectView};
 use crate::scene::camera::Camera;
+use crate::scene::drawable::Drawable;
 use crate::scene::object::Object;
+
+/// A part of an object that is drawn instance by instance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SinglePart {
+    /// The drawable, and the part of it.
+    pub drawable: usize,
+    pub part: usize,
+    /// The index of the draw of the first instance.
+    pub first: u32,
+}
+
+impl Object {
+    /// Lays out the parts that are drawn instance by instance, behind those of other objects.
+    pub(super) fn lay_out_singles(&mut self, all: &mut Vec<Single>) {
+        self.singles.clear();
+        let (instances, mut first_draw) = (self.instances.capacity() as u32, self.range.first_draw);
+        for (drawable, of) in self.drawables.iter().enumerate() {
+            let parts = if let Drawable::Mesh(mesh) = of { mesh.parts.as_slice() } else { &[] };
+            for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
+                self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
+                let first_draw = first_draw + OBJECT_LISTS * part as u32;
+                let single = |at| Single { instance: self.range.first + at, first_draw };
+                all.extend((0..instances).map(single));
+            }
+            first_draw += OBJECT_LISTS * of.parts() as u32;
+        }
+    }
+}
 
 /// An instance in its place.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -109,7 +109,11 @@ pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) 
     };
     Model {
         skeleton: Skeleton::of_joints(vec![bone]).expect("a bone"),
-        skins: vec![Skin { name: "skin".to_owned(), bones: vec![0], inverse_binds: vec![Mat4::IDENTITY.to_cols_array()] }],
+        skins: vec![Skin {
+            name: "skin".to_owned(),
+            bones: vec![0],
+            inverse_binds: vec![Mat4::IDENTITY.to_cols_array()],
+        }],
         clips: Vec::new(),
         meshes: vec![mesh],
         skinned: 1,

@@ -1,5 +1,6 @@
 //! Views: a camera into a scene, with what it sees and how fine.
 
+mod counted;
 pub(crate) mod lists;
 mod uniforms;
 
@@ -21,6 +22,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::object::Object;
 use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
+use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
@@ -34,13 +36,14 @@ pub struct View {
     quality: Quality,
     camera: Option<Camera>,
     /// The camera of its last frame, and the number of that frame.
-    last: Option<(u32, Camera)>,
+    last: Option<(u64, Camera)>,
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
     pub(crate) lists: Option<ViewLists>,
+    counts: Option<ViewCounts>,
 }
 
 impl View {
@@ -59,6 +62,7 @@ impl View {
             select,
             drawn,
             lists: None,
+            counts: None,
         })
     }
 
@@ -153,7 +157,7 @@ impl View {
     }
 
     /// Remembers the camera of a frame that was recorded.
-    pub(super) fn recorded(&mut self, frame: u32) {
+    pub(super) fn recorded(&mut self, frame: u64) {
         self.last = self.camera.map(|camera| (frame, camera));
     }
 
@@ -163,9 +167,9 @@ impl View {
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
         terrains: &[SeenTerrain],
-        (frame, is_first): (u32, bool),
+        (frame, is_first): (u64, bool),
     ) -> Result<(), Error> {
-        let last = self.last.filter(|(last, _)| *last == frame.wrapping_sub(1)).map(|(_, camera)| camera);
+        let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
         let (camera, view) = self.select_view(blocks, is_first)?;
         staged.uniform(&self.select, &view)?;
         staged.uniform(
