@@ -170,7 +170,10 @@ impl Scene {
         let mut active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
         active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
         let is_fresh = |pair: usize| pair.is_multiple_of(3);
-        let state = |pair| if is_fresh(pair) { ClusterState::Fresh } else { ClusterState::Moved } as u32;
+        let state = |pair: usize| {
+            let state = if is_fresh(pair) { ClusterState::Fresh } else { ClusterState::Moved };
+            state as u32
+        };
         let pairs: Vec<u32> = (0..count as u32).chain((0..count).map(state)).collect();
         active.pairs = Buffer::from_slice(gpu, "pairs", &pairs)?;
         let mut pages = PageBuffers::keeping(gpu, &self.mesh, &self.crowd, count as u32)?;
