@@ -41,9 +41,12 @@ impl Shading {
             .map_err(|error| own.refused(error.labels().map(|(span, _)| span), error.message().to_owned()))?;
         own.check(&module, layout.is_some())?;
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-        validator
-            .validate(&module)
-            .map_err(|error| own.refused(error.spans().map(|(span, _)| *span), chain(error.as_inner())))?;
+        validator.validate(&module).map_err(|error| {
+            // A function, and in it the place: the shortest is the most exact.
+            let mut spans: Vec<Span> = error.spans().map(|(span, _)| *span).collect();
+            spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
+            own.refused(spans.into_iter(), chain(error.as_inner()))
+        })?;
         Ok(Self { source: source.to_owned(), layout: layout.cloned() })
     }
 
@@ -83,7 +86,8 @@ impl Own<'_> {
         let before = &self.text[..range.start];
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |text| text.chars().count()) + 1;
-        let value: String = self.text[range].chars().take(60).collect();
+        let value: String =
+            self.text[range.start..range.end.min(self.source.len())].chars().take(60).collect();
         InputError::new(format!("shading:{line}:{column}"), value, bound)
     }
 
