@@ -4,7 +4,7 @@ use crate::InputError;
 use crate::asset::material::{Alpha, Sampling};
 use crate::asset::{Material, Mesh, Model};
 
-/// The largest number of parts of an object, unless morphed meshes make it larger.
+/// The largest number of parts of an object, unless morphed or blended meshes make it larger.
 pub const MAX_PARTS: usize = 4;
 
 /// What the meshes of a part have in common.
