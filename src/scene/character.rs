@@ -18,6 +18,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
 use crate::scene::paging::{Needs, Paging, needs};
 use crate::scene::placement::Play;
+use crate::scene::playing::Playing;
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};

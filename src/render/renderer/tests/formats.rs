@@ -18,8 +18,9 @@ use crate::surface::{Green, Method, ReliefOptions, Shadow};
 /// Kinds that take every entry point and both values of every flag.
 fn kinds() -> Vec<Kind> {
     let flags = || [false, true].into_iter();
-    let surfaces =
-        flags().flat_map(|cut_out| flags().map(move |double_sided| SurfaceKind { cut_out, double_sided }));
+    let surfaces = flags().flat_map(|cut_out| {
+        flags().map(move |double_sided| SurfaceKind { cut_out, blended: false, double_sided })
+    });
     let meshes =
         surfaces.flat_map(|surface| flags().map(move |normal_mapped| Kind::Mesh { surface, normal_mapped }));
     let reliefs = Method::ALL.into_iter().flat_map(|method| {
