@@ -122,13 +122,13 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
             cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last)))?);
         }
-        keeping(cases, &pass, case, (&mesh, &clusters), &crowd)?;
+        keeping_cases(cases, &pass, case, (&mesh, &clusters), &crowd)?;
     }
     Ok(())
 }
 
 /// The same frames where last positions are kept: what moved is selected once more, and every state is compared.
-fn keeping(
+fn keeping_cases(
     cases: &mut Cases<'_>,
     pass: &SelectPass,
     case: u32,
