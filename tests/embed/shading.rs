@@ -248,15 +248,10 @@ fn alpha_is_blended_as_the_format_says() {
     assert!(mixed > 100 && mixed + clear == found.len(), "{mixed} and {clear} of {}", found.len());
 }
 
-/// Each mistake is told with its own line and column, and a word of its reason.
-#[test]
-fn mistakes_are_told_with_their_lines() {
-    let gpu = device();
-    let renderer = || Renderer::new(&gpu, &TargetFormat::new(COLOR)).expect("a format");
-    let layout =
-        gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[] });
-    let good = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
-    let cases = [
+/// Texts, with the line and the column of their mistake, and a word of its reason.
+fn mistakes() -> Vec<(String, usize, usize, &'static str)> {
+    let good = GOOD;
+    vec![
         (
             "fn shade(surface: Surface, view: View) -> vec4<f32> {\n    return vec3<f32>(1.0)\n}".to_owned(),
             3,
@@ -289,9 +284,20 @@ fn mistakes_are_told_with_their_lines() {
         (format!("{good}\nvar<private> relievo_a: f32 = 1.0;"), 2, 1, "relievo_"),
         (format!("{good}\n/* open"), 2, 1, "comment"),
         (format!("{good}\nfn f() -> f32 {{ return relievo_lambert(1.0); }}"), 2, 24, "relievo_lambert"),
-    ];
+    ]
+}
+
+const GOOD: &str = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
+
+/// Each mistake is told with its own line and column, and a word of its reason.
+#[test]
+fn mistakes_are_told_with_their_lines() {
+    let gpu = device();
+    let renderer = || Renderer::new(&gpu, &TargetFormat::new(COLOR)).expect("a format");
+    let layout =
+        gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[] });
     let mut wrong = Vec::new();
-    for (source, line, column, word) in cases {
+    for (source, line, column, word) in mistakes() {
         let error = renderer().with_shading(&source, Some(&layout)).expect_err("refused");
         let is_near = error.path == format!("shading:{line}:{column}") && error.bound.contains(word);
         if !is_near {
@@ -299,8 +305,8 @@ fn mistakes_are_told_with_their_lines() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    let bound = format!("@group(3) @binding(0) var<uniform> a: vec4<f32>;\n{good}");
+    let bound = format!("@group(3) @binding(0) var<uniform> a: vec4<f32>;\n{GOOD}");
     let error = renderer().with_shading(&bound, None).expect_err("no layout");
     assert!(error.bound.contains("no layout"), "{error}");
-    assert!(renderer().with_shading(good, None).is_ok());
+    assert!(renderer().with_shading(GOOD, None).is_ok());
 }

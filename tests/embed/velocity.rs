@@ -111,6 +111,21 @@ impl Scenery {
     }
 }
 
+/// Placements of three cubes in two frames: one moves and turns, one grows, and one stands still.
+fn steps() -> [[Placement; 3]; 2] {
+    let before = [
+        Placement::at([-1.7, 0.2, 0.0]).turned(0.4),
+        Placement { scale: Vec3::new(-1.0, 1.5, 0.7), ..Placement::at([1.4, 0.0, -1.0]).turned(-0.8) },
+        Placement::at([0.3, 0.6, -4.0]).turned(2.0),
+    ];
+    let after = [
+        Placement::at([-1.5, 0.4, 0.2]).turned(0.55),
+        Placement { scale: Vec3::new(-1.1, 1.4, 0.8), ..before[1] },
+        before[2],
+    ];
+    [before, after]
+}
+
 /// Cubes that move, turn, grow and stand still, in view of a camera that moves too, across the border of a cell; the same
 /// once more when all have stopped.
 #[test]
@@ -120,16 +135,7 @@ fn placements_and_cameras_move() {
         let (mut scene, mut view) = scene(&gpu);
         let object =
             scene.add_mesh(&model(&cube(), plain([1.0; 4], Alpha::Opaque), false), 3).expect("added");
-        let before = [
-            Placement::at([-1.7, 0.2, 0.0]).turned(0.4),
-            Placement { scale: Vec3::new(-1.0, 1.5, 0.7), ..Placement::at([1.4, 0.0, -1.0]).turned(-0.8) },
-            Placement::at([0.3, 0.6, -4.0]).turned(2.0),
-        ];
-        let after = [
-            Placement::at([-1.5, 0.4, 0.2]).turned(0.55),
-            Placement { scale: Vec3::new(-1.1, 1.4, 0.8), ..before[1] },
-            before[2],
-        ];
+        let [before, after] = steps();
         // A camera of another cell is at the same place.
         let elsewhere = |camera: Camera| Camera {
             cell: [border, 0, 0],

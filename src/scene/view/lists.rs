@@ -72,22 +72,9 @@ impl ViewLists {
             arguments: &arguments,
         };
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
-        let singles = match layout.singles.len() {
-            0 => None,
-            count => {
-                let draws = Buffer::new(gpu, "draws of single instances", count)?;
-                let (singles, arguments) = (&layout.singles, &arguments);
-                let buffers = SingleBuffers { singles, decisions: &decisions, arguments, draws: &draws };
-                Some((single.prepare(gpu, buffers, count as u32)?, draws))
-            }
-        };
+        let singles = singles(gpu, layout, single, (&decisions, &arguments))?;
         let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances])?;
-        let ground = || {
-            let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
-            let group = layouts.ground(gpu, &uniform)?;
-            Ok((uniform, group))
-        };
-        let terrain = (0..terrains).map(|_| ground()).collect::<Result<_, GpuError>>()?;
+        let terrain = (0..terrains).map(|_| ground(gpu, layouts)).collect::<Result<_, GpuError>>()?;
         Ok(Self {
             version: layout.version,
             lists,
@@ -102,4 +89,27 @@ impl ViewLists {
             list,
         })
     }
+}
+
+/// The draws of instances that are drawn one by one, if there are any, and the job that writes them.
+fn singles(
+    gpu: &Gpu,
+    layout: &Layout,
+    pass: &SinglePass,
+    (decisions, arguments): (&Buffer<u32>, &Buffer<SceneDraw>),
+) -> Result<Option<(Job, Buffer<SceneDraw>)>, Error> {
+    let (singles, count) = (&layout.singles, layout.singles.len());
+    if count == 0 {
+        return Ok(None);
+    }
+    let draws = Buffer::new(gpu, "draws of single instances", count)?;
+    let buffers = SingleBuffers { singles, decisions, arguments, draws: &draws };
+    Ok(Some((pass.prepare(gpu, buffers, count as u32)?, draws)))
+}
+
+/// Where a terrain lies in a view, and bind group 1.
+fn ground(gpu: &Gpu, layouts: &SceneLayouts) -> Result<(Uniform<TerrainView>, Group), GpuError> {
+    let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
+    let group = layouts.ground(gpu, &uniform)?;
+    Ok((uniform, group))
 }

@@ -111,6 +111,15 @@ impl SelectPass {
         ])
     }
 
+    /// The kernel that selects, where last positions are kept or not.
+    fn selecting(&self, gpu: &Gpu, keep: bool) -> Result<Kernel, GpuError> {
+        if keep {
+            bindings::kernel(gpu, &bindings::Constants { keep, ..Default::default() })
+        } else {
+            Ok(self.select.clone())
+        }
+    }
+
     fn job(
         &self,
         gpu: &Gpu,
@@ -155,11 +164,7 @@ impl SelectPass {
                 kernel: kernel.clone(),
             })
         };
-        let select = match active.keeps_last {
-            true => bindings::kernel(gpu, &bindings::Constants { keep: true, ..Default::default() })?,
-            false => self.select.clone(),
-        };
-        let steps = [step(&select, pairs), step(finish, crowd.instances)];
+        let steps = [step(&self.selecting(gpu, active.keeps_last)?, pairs), step(finish, crowd.instances)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "skinning/select", steps)?)
     }

@@ -39,6 +39,15 @@ struct Frame {
 }
 
 impl Frame {
+    /// The frame before the first: nothing is seen.
+    fn before_all(instances: usize, words: usize, targets: usize) -> Self {
+        Self {
+            updated_bones: vec![0; instances * words],
+            instance_lods: vec![InstanceLod::UNSEEN; instances],
+            weights: vec![0.0; instances * targets],
+        }
+    }
+
     fn now(&self) -> Now<'_> {
         Now { updated_bones: &self.updated_bones, instance_lods: &self.instance_lods, weights: &self.weights }
     }
@@ -97,11 +106,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let clearing = pass.prepare_clearing(gpu, &mesh, &crowd, &buffers, &active)?;
         let mut last = vec![Skinned::nothing(shape.targets); instances];
         let mut draw = Draw::new(case ^ 0xb17);
-        let mut frame = Frame {
-            updated_bones: vec![0; instances * clusters.mask_words],
-            instance_lods: vec![InstanceLod::UNSEEN; instances],
-            weights: vec![0.0; instances * shape.targets],
-        };
+        let mut frame = Frame::before_all(instances, clusters.mask_words, shape.targets);
         for (number, given) in FRAMES.into_iter().enumerate() {
             frame = frame.next(&mut draw, case, given);
             crowd.instance_lods.write(gpu, &frame.instance_lods)?;
@@ -145,11 +150,7 @@ fn keeping_cases(
     let mut last = vec![Skinned::nothing(mesh.targets); instances];
     let mut states = vec![ClusterState::Still; count];
     let mut draw = Draw::new(case ^ 0x6ee9);
-    let mut frame = Frame {
-        updated_bones: vec![0; instances * clusters.mask_words],
-        instance_lods: vec![InstanceLod::UNSEEN; instances],
-        weights: vec![0.0; instances * mesh.targets],
-    };
+    let mut frame = Frame::before_all(instances, clusters.mask_words, mesh.targets);
     for given in FRAMES {
         frame = frame.next(&mut draw, case, given);
         crowd.instance_lods.write(gpu, &frame.instance_lods)?;
