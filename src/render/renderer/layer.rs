@@ -28,8 +28,8 @@ pub enum Layer {
     ///
     /// Vertices keep their identity while a character's levels of detail, and the pages of its vertices, change. What was
     /// not there in the last frame counts as if it had stood still: an instance that was spawned, and the vertices in the
-    /// model's space of a character that no view saw or whose level of detail lacked them; a placement that moved counts all
-    /// the same. A view that was not recorded in the scene's last frame has a camera that stood still. A camera's jitter
+    /// model's space of a character that no view saw or whose level of detail lacked them, or of all of its instances where
+    /// more is seen than ever before and its memory grows; a placement that moved counts all the same. A view that was not recorded in the scene's last frame has a camera that stood still. A camera's jitter
     /// counts as motion: the difference of the last two is to be subtracted. What lay behind the last frame's eye has the
     /// velocity 0.
     Velocity,
