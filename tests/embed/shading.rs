@@ -13,7 +13,7 @@ use crate::frame::{COLOR, Frame, device};
 use crate::harness::{Difference, Tolerance};
 use crate::raw::Raw;
 use crate::rays::{cube, model, plain};
-use crate::world::{SIZE, World, camera};
+use crate::world::{SIZE, World};
 
 /// The crate's own shading, beside names of all kinds that the crate's shaders have too.
 const REPEATED: &str = "
@@ -71,6 +71,11 @@ fn shading_that_repeats_the_crates_own_gives_its_picture() {
     }
 }
 
+/// In front of three cubes.
+fn close() -> Camera {
+    Camera::looking_at(Vec3::new(1.0, 4.0, 2.0), Vec3::new(0.0, 2.0, -6.0), 0.9, [0.5, 100.0], [96, 64])
+}
+
 /// A scene of three tinted cubes, each with a word.
 fn cubes(gpu: &Gpu) -> (World, View) {
     let mut world = World::empty(gpu, 1);
@@ -84,8 +89,7 @@ fn cubes(gpu: &Gpu) -> (World, View) {
         world.scene.set_tint(instance, [1.0, 0.2 * at as f32, 0.6, 1.0]).expect("in range");
     }
     let mut view = world.scene.view(Quality::default()).expect("a view");
-    let usual = camera([96, 64]);
-    view.set(Camera { cell: [0; 3], ..usual }).expect("a camera");
+    view.set(close()).expect("a camera");
     (world, view)
 }
 
@@ -125,7 +129,7 @@ fn shading_knows_surfaces_and_views() {
     let eyes = of("view.eye + vec4<f32>(vec3<f32>(view.cell), 0.0)");
     let clips = of("view.clip_from_world * vec4<f32>(surface.position, 1.0)");
     let light = relievo::asset::Light::default();
-    let (eye, toward) = (camera([96, 64]).eye(), light.direction.normalize() * light.ambient);
+    let (eye, toward) = (close().eye(), light.direction.normalize() * light.ambient);
     let near = |found: [f32; 4], wanted: [f32; 4], bound: f32| {
         found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() <= bound)
     };

@@ -93,13 +93,13 @@ fn surfaces_are_those_of_traced_rays() {
             let near = |found: [f32; 4], wanted: [f32; 4], bound: f32| {
                 found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() <= bound)
             };
-            // A half float is off by 2^-12 of values below 1 at most, and the normal by some units of 2^-24.
-            wrong[0] += usize::from(!near(normals[at], expected.into(), 0.00025));
+            // A half float is off by 2^-11 of values below 1 at most, and the normal by some units of 2^-24.
+            wrong[0] += usize::from(!near(normals[at], expected.into(), 0.0005));
             wrong[1] += usize::from(!near(colors[at], COLOR, 1.0 / 255.0));
             wrong[2] += usize::from(ids[at] != [object.number(), (triangle.tag / 100) as u32]);
         });
         assert_eq!(wrong, [0; 3], "of {seen}");
-        assert!(seen > 1000, "{seen} pixels");
+        assert!(seen > 600, "{seen} pixels");
     }
 }
 
@@ -136,7 +136,7 @@ fn positions_are_those_of_traced_rays() {
             wrong += usize::from(ids[at] != [object.number(), (triangles[hit.triangle].tag / 100) as u32]);
         });
         println!("off by {worst}");
-        assert!(seen > 1000 && worst < 2e-4 && wrong == 0, "{seen} pixels, off by {worst}, {wrong} wrong");
+        assert!(seen > 600 && worst < 2e-4 && wrong == 0, "{seen} pixels, off by {worst}, {wrong} wrong");
     }
 }
 
@@ -145,7 +145,7 @@ fn positions_are_those_of_traced_rays() {
 fn cut_out_pixels_are_left_out() {
     let gpu = device();
     let mut scene = Scene::new(&gpu).expect("compiled");
-    let wall = [[[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]]];
+    let wall = [[[-90.0, -90.0, 0.0], [90.0, -90.0, 0.0], [0.0, 90.0, 0.0]]];
     let plane = |alpha, scene: &mut Scene, z: f32| {
         let material = plain([1.0, 1.0, 1.0, 0.4], alpha);
         let object = scene.add_mesh(&model(&wall, material, true), 1).expect("added");

@@ -184,6 +184,7 @@ fn transparent_characters_are_drawn_as_opaque_ones() {
 fn only_colors_that_can_be_blended_hold_the_layer() {
     let gpu = device();
     let (mut scene, mut view) = scene(&gpu);
+    scene.add_mesh(&pane(RED, Alpha::Blended), 1).expect("added");
     view.set(camera(6.0)).expect("a camera");
     for format in [
         TargetFormat::new(wgpu::TextureFormat::Rgba32Float),

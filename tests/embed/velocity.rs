@@ -162,7 +162,7 @@ fn placements_and_cameras_move() {
         if border == 0 {
             let (seen, largest) = scenery.check(&found, cameras.each_ref());
             println!("{seen} pixels, at most {largest}");
-            assert!(seen > 1000 && (largest > 0.02) != is_still, "{seen} pixels, {largest}");
+            assert!(seen > 600 && (largest > 0.02) != is_still, "{seen} pixels, {largest}");
             let wrong = [&cameras[0], &cameras[0]];
             let is_wrong = || scenery.check(&found, wrong);
             assert!(is_still || std::panic::catch_unwind(std::panic::AssertUnwindSafe(is_wrong)).is_err());
@@ -311,7 +311,7 @@ fn terrain_and_reliefs_move_with_the_camera() {
     measure.frame(&mut world.scene, &mut view, &renderer, &[Layer::Depth, Layer::Measure]);
     let (positions, ids) = (measure.floats(&gpu, 0), measure.words(&gpu, 1));
     let to_last = matrix(&before) * matrix(&after).inverse();
-    let (mut seen, mut worst) = ([0; 2], 0.0_f64);
+    let (mut seen, mut worst, mut largest) = ([0; 2], 0.0_f64, 0.0_f64);
     for (at, id) in ids.iter().enumerate().filter(|(_, id)| id[0] != 0) {
         let [x, y, z, _] = positions[at].map(f64::from);
         let now = DVec3::new(x, y, z);
@@ -322,10 +322,13 @@ fn terrain_and_reliefs_move_with_the_camera() {
         let off = [0, 1].map(|axis| (f64::from(found[at][axis]) - expected[axis]).abs());
         worst = worst.max(off[0].max(off[1]) / bound(expected));
         seen[usize::from(is_wall)] += 1;
-        assert!(expected[0].abs() > 1e-3, "the camera moves");
+        largest = largest.max(expected[0].abs());
     }
     println!("{seen:?} pixels, {worst} of the bound");
-    assert!(seen[0] > 1000 && seen[1] > 300 && worst <= 1.0, "{seen:?} pixels, {worst} of the bound");
+    assert!(
+        seen[0] > 1000 && seen[1] > 300 && worst <= 1.0 && largest > 0.005,
+        "{seen:?} pixels, {worst} of the bound"
+    );
 }
 
 /// A scene that does not keep its last frame has no velocities.
