@@ -99,6 +99,8 @@ impl Character {
         self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
+        // As in a scene that was made anew, whose starts are rounded alike.
+        self.epoch = 0.0;
         Ok(())
     }
 
