@@ -430,6 +430,8 @@ impl Scene {
             }
         }
         self.frame = self.frame.wrapping_add(1);
+        // Unless the time advances again, the next frame is as this one.
+        self.step = 0.0;
         Ok(())
     }
 
