@@ -6,11 +6,14 @@ mod harness;
 
 #[cfg(unix)]
 mod cost;
+mod counts;
 mod frame;
+mod host;
 mod life;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
+mod query;
 mod targets;
 mod views;
 mod world;
