@@ -170,7 +170,7 @@ pub const RECORDINGS: usize = 4;
 ///
 /// let gpu = relievo::gpu::Gpu::from_wgpu(device, queue);
 /// let mut scene = Scene::new(&gpu)?;
-/// let mut model = Model::from_file("fox.glb")?;
+/// let mut model = Model::from_file("fox.glb".as_ref())?;
 /// relievo::skinning::add_levels(&mut model, &[0], 60)?; // levels of detail, for the first clip's poses
 /// let fox = scene.add_character(&model, 100)?;
 /// let mut foxes = Vec::new();
