@@ -139,8 +139,8 @@ impl Running {
             self.targets.save(&copy, path)?;
         }
         if let Some(milliseconds) = self.clock.report() {
-            let characters = self.world.characters();
-            self.window.set_title(&format!("relievo: {characters} characters, {milliseconds:.1} ms a frame"));
+            let status = self.world.status();
+            self.window.set_title(&format!("relievo: {status}, {milliseconds:.1} ms a frame"));
         }
         Ok(true)
     }

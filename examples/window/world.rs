@@ -78,12 +78,17 @@ impl World {
         let mut renderer = Renderer::new(&gpu, &TargetFormat::new(color).with_samples(SAMPLES))?;
         renderer.prepare(&scene)?;
         let view = scene.view(Default::default())?; // at most a pixel off
+        scene.set_statistics(true)?; // for the title
         Ok(Self { scene, renderer, view, land, walkers })
     }
 
-    /// Number of characters.
-    pub fn characters(&self) -> usize {
-        self.walkers.len()
+    /// What there is, and what of it the view saw some frames ago.
+    pub fn status(&mut self) -> String {
+        let characters = self.walkers.len();
+        let Some(seen) = self.view.statistics() else { return format!("{characters} characters") };
+        let instances: u32 = seen.objects.iter().map(|object| object.instances()).sum();
+        let triangles: u64 = seen.objects.iter().map(|object| object.triangles()).sum();
+        format!("{characters} characters, {instances} instances and {triangles} triangles in view")
     }
 
     /// Moves the characters, advances the time, and records what the device does before anything is drawn.
