@@ -66,7 +66,7 @@ mod drawn {
     use crate::lod::OBJECT_LISTS;
     use crate::scene::View;
     use crate::scene::drawable::{Drawable, MeshDrawable};
-    use crate::scene::view::ViewLists;
+    use crate::scene::view::lists::ViewLists;
     use crate::skinning::vertex::Vertex;
 
     /// An instance that a view may show, as the view's last frame drew it.

@@ -1,0 +1,168 @@
+//! A frame of a scene: what is recorded for it, and what is drawn of it.
+
+use crate::animation::Frame;
+use crate::gpu::{Staged, Upload as _, compute_pass};
+use crate::lod::SelectView;
+use crate::scene::camera::Depth;
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::object::{self, Kind, Object};
+use crate::scene::view::View;
+use crate::scene::{RECORDINGS, Scene};
+use crate::skinning::picture::is_mirrored;
+use crate::{Error, InputError};
+
+impl Scene {
+    /// Gives up all recordings whose encoders were dropped, and lets everything start afresh.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn invalidate(&mut self) -> Result<(), Error> {
+        self.staging.invalidate();
+        self.staged = Staged::default();
+        self.refresh()
+    }
+
+    /// Lets the next frame sample and skin everything that is seen in full, and upload every instance again. The result
+    /// is the picture of a scene that was made anew.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn refresh(&mut self) -> Result<(), Error> {
+        for object in self.objects.iter_mut() {
+            object.refresh(&self.gpu, &self.layouts_of_groups)?;
+        }
+        self.layout = None;
+        Ok(())
+    }
+
+    /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
+    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones. Two recordings for one
+    /// submission are two frames.
+    ///
+    /// # Errors
+    /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been
+    /// recorded that the device has not executed; [`crate::gpu::GpuError`].
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &mut [&mut View],
+    ) -> Result<(), Error> {
+        self.check(views)?;
+        self.fit(views)?;
+        self.stage(views)?;
+        let gpu = self.gpu.clone();
+        self.uploaded = self.staged.len();
+        if !self.staging.record(&gpu, encoder, &mut self.staged)? {
+            let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
+            return Err(InputError::new("recordings", self.staging.busy(), bound).into());
+        }
+        let mut pass = compute_pass(encoder, "scene");
+        views.iter().for_each(|view| view.dispatch(&mut pass));
+        for object in self.objects.iter() {
+            if let Kind::Character(character) = &object.kind {
+                character.dispatch(&mut pass);
+            }
+        }
+        self.frame = self.frame.wrapping_add(1);
+        Ok(())
+    }
+
+    /// What is drawn, object by object.
+    pub(crate) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
+        self.objects.iter().flat_map(|object| &object.drawables)
+    }
+
+    /// What a renderer needs of a view and of all objects that are shown.
+    pub(crate) fn drawn<'a>(
+        &'a self,
+        view: &'a View,
+    ) -> Result<(DrawnView<'a>, Vec<DrawnObject<'a>>), InputError> {
+        if !view.is_of(&self.token) {
+            return Err(InputError::new("view", "of another scene", "must be of this scene"));
+        }
+        let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
+            return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
+        };
+        if lists.version != layout.version {
+            let bound = "must be recorded again, since objects were added or grew";
+            return Err(InputError::new("view", "out of date", bound));
+        }
+        let drawn = DrawnView {
+            group: &lists.group,
+            lists: &lists.lists,
+            arguments: &lists.arguments,
+            mirrors: is_mirrored(&camera.clip_from_world()),
+            reversed: camera.depth == Depth::Reversed,
+        };
+        let mut terrains = 0;
+        let mut objects = Vec::new();
+        for object in self.objects.iter() {
+            let ground = object.spacing().and_then(|_| view.ground(terrains));
+            terrains += usize::from(object.spacing().is_some());
+            if object.is_shown {
+                let of_object = object.drawables.iter().zip(&object.lods);
+                objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
+                    drawable,
+                    lod,
+                    mirrors: true,
+                    ground,
+                }));
+            }
+        }
+        Ok((drawn, objects))
+    }
+
+    fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
+        if views.is_empty() {
+            return Err(InputError::new("views", "none", "must be at least one"));
+        }
+        if let Some(at) = views.iter().position(|view| !view.is_of(&self.token)) {
+            return Err(InputError::new(format!("views[{at}]"), "of another scene", "must be of this scene"));
+        }
+        Ok(())
+    }
+
+    /// Allocates what objects and views need since something was added or grew.
+    fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
+        if self.layout.is_none() {
+            self.layouts += 1;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
+            self.objects.iter_mut().for_each(|object| object.instances.change_all());
+            self.layout = Some(layout);
+        }
+        let Some(layout) = &self.layout else { return Ok(()) };
+        for object in self.objects.iter_mut() {
+            object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
+        }
+        let terrains = self.objects.iter().filter_map(Object::spacing).count();
+        for view in views {
+            let passes = (&self.passes.select, &self.passes.list);
+            view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
+        }
+        Ok(())
+    }
+
+    fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
+        let Some(layout) = &self.layout else { return Ok(()) };
+        let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
+        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        for object in self.objects.iter_mut() {
+            object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
+        }
+        let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
+        for (at, view) in views.iter().enumerate() {
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;
+        }
+        let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
+        for object in self.objects.iter_mut() {
+            let first = object.range.first as usize;
+            for (at, run) in object.instances.take_changed() {
+                self.staged.elements(&layout.instances, first + at, run)?;
+            }
+            if let Kind::Character(character) = &mut object.kind {
+                character.stage(&mut self.staged, &frame, self.now)?;
+            }
+        }
+        Ok(())
+    }
+}

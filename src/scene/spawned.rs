@@ -1,0 +1,118 @@
+//! What spawns, moves and changes instances of the objects of a scene.
+
+use crate::scene::Scene;
+use crate::scene::handles::{InstanceId, ObjectId, stale};
+use crate::scene::instances;
+use crate::scene::object::{Kind, Object};
+use crate::scene::placement::{Placement, Play};
+use crate::{Error, InputError};
+
+impl Scene {
+    /// Spawns an instance. A character plays the first clip of its model, from time 0 of the scene on; see
+    /// [`Scene::play`]. If there is no room, the object grows to twice its capacity.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene, for terrain, whose patches are its instances, and as
+    /// [`Placement::checked`]; [`crate::gpu::GpuError`].
+    pub fn spawn(&mut self, object: ObjectId, placement: Placement) -> Result<InstanceId, Error> {
+        let placement = placement.checked()?;
+        let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
+        let entry = self.object_mut(object)?;
+        if let Kind::Terrain(_) = entry.kind {
+            return Err(InputError::new("object", "terrain", "must be a mesh or a character").into());
+        }
+        let mut has_grown = false;
+        if entry.instances.alive() == entry.instances.capacity() {
+            entry.grow(&gpu, &layouts)?;
+            has_grown = true;
+        }
+        let spawned = entry.instances.spawn(&placement, &entry.sphere);
+        let Some([index, generation]) = spawned else {
+            return Err(InputError::new("object.capacity", entry.capacity(), "must have room").into());
+        };
+        if let Kind::Character(character) = &mut entry.kind {
+            let sphere = character.play_first(index);
+            entry.instances.change(index, |instance| instances::bound(instance, &sphere));
+        }
+        if has_grown {
+            self.layout = None;
+        }
+        Ok(InstanceId { object, index, generation })
+    }
+
+    /// Removes an instance.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    pub fn despawn(&mut self, instance: InstanceId) -> Result<(), InputError> {
+        self.instance_mut(instance)?.instances.despawn(instance.index);
+        Ok(())
+    }
+
+    /// Moves an instance.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more, and as [`Placement::checked`].
+    pub fn move_to(&mut self, instance: InstanceId, placement: Placement) -> Result<(), InputError> {
+        let placement = placement.checked()?;
+        let object = self.instance_mut(instance)?;
+        object.instances.change(instance.index, |instance| instances::place(instance, &placement));
+        Ok(())
+    }
+
+    /// Lets a character play a clip.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that its model does
+    /// not have, and as [`Play::validate`].
+    pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
+        let object = self.instance_mut(instance)?;
+        let Kind::Character(character) = &mut object.kind else {
+            return Err(InputError::new("instance", "a mesh", "must be an instance of a character"));
+        };
+        let sphere = character.play(instance.index, play)?;
+        object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
+        Ok(())
+    }
+
+    /// Sets the colour by which an instance's colours are multiplied: linear red, green, blue and alpha, each 0 to 1.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more, and for values out of range.
+    pub fn set_tint(&mut self, instance: InstanceId, tint: [f32; 4]) -> Result<(), InputError> {
+        if let Some(at) = tint.iter().position(|value| !(0.0..=1.0).contains(value)) {
+            return Err(InputError::new(format!("tint[{at}]"), tint[at], "must be in 0..=1"));
+        }
+        let packed = u32::from_le_bytes(tint.map(|value| (value * 255.0 + 0.5) as u8));
+        self.instance_mut(instance)?.instances.change(instance.index, |instance| instance.tint = packed);
+        Ok(())
+    }
+
+    /// Sets a word that the caller's own shading may read for an instance; 0 at first.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    pub fn set_word(&mut self, instance: InstanceId, word: u32) -> Result<(), InputError> {
+        self.instance_mut(instance)?.instances.change(instance.index, |instance| instance.word = word);
+        Ok(())
+    }
+
+    /// Sets the visibility mask of an instance, and whether it casts shadows. At first all bits are set, and it casts.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    pub fn set_visibility(&mut self, instance: InstanceId, mask: u16, casts: bool) -> Result<(), InputError> {
+        let object = self.instance_mut(instance)?;
+        object.instances.change(instance.index, |instance| instance.flags = instances::flags(mask, casts));
+        Ok(())
+    }
+
+    fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
+        let InstanceId { index, generation, .. } = instance;
+        let object = self.object_mut(instance.object)?;
+        match object.instances.contains([index, generation]) {
+            true => Ok(object),
+            false => Err(stale("instance", index, generation)),
+        }
+    }
+}

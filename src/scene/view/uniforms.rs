@@ -1,0 +1,86 @@
+//! A view as kernels and shaders see it.
+
+use glam::{DVec3, IVec2, IVec3, Mat4, Vec3, Vec4};
+
+use crate::InputError;
+use crate::asset::Light;
+use crate::lod::{LodCamera, SelectView, VIEW_CAMERAS};
+use crate::scene::camera::{Camera, Depth};
+use crate::scene::placement::Placement;
+use crate::shared::render::scene_terrain::TerrainView;
+use crate::shared::render::scene_view::SceneView;
+use crate::skinning::picture::is_mirrored;
+
+impl SceneView {
+    pub(super) fn new(camera: &Camera, own: &LodCamera, light: &Light) -> Self {
+        let eye = match own.perspective > 0.0 {
+            true => camera.eye().extend(1.0),
+            false => (-camera.ahead()).extend(0.0),
+        };
+        Self {
+            clip_from_world: camera.clip_from_world(),
+            eye,
+            light: light.direction.normalize().extend(light.ambient),
+            light_color: light.color,
+            side: if is_mirrored(&camera.clip_from_world()) { -1.0 } else { 1.0 },
+        }
+    }
+
+    pub(super) fn nothing() -> Self {
+        let (clip_from_world, eye, light) = (Mat4::IDENTITY, Vec4::W, Vec4::Y);
+        Self { clip_from_world, eye, light, light_color: Vec3::ONE, side: 1.0 }
+    }
+}
+
+/// Where the samples of a terrain, `spacing` world units apart, lie in a view: counted from the one nearest to the eye.
+pub(super) fn terrain_view(camera: &Camera, spacing: f64) -> TerrainView {
+    let corner = DVec3::from(camera.cell.map(f64::from)) * f64::from(Placement::CELL);
+    let eye = corner + camera.eye().as_dvec3();
+    // Conversion saturates; samples so far away are not drawn precisely.
+    let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
+    let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
+    TerrainView { base, rest: (place - corner).as_vec3() }
+}
+
+impl TerrainView {
+    pub(super) fn nowhere() -> Self {
+        Self { base: IVec2::ZERO, rest: Vec3::ZERO }
+    }
+}
+
+impl SelectView {
+    /// A view that sees nothing.
+    pub(super) fn nothing() -> Self {
+        let camera = LodCamera {
+            eye: Vec3::ZERO,
+            focal: 1.0,
+            ahead: Vec3::NEG_Z,
+            pixels: 0.0,
+            near: 0.0,
+            perspective: 1.0,
+            unused_a: 0.0,
+            unused_b: 0.0,
+        };
+        Self {
+            planes: [Vec4::NEG_W; 6],
+            cameras: [camera; VIEW_CAMERAS as usize],
+            cell: IVec3::ZERO,
+            mask: 0,
+            camera_count: 1,
+            is_first: 1,
+            casters: 0,
+            blocks: 0,
+        }
+    }
+}
+
+/// A camera that decides levels of detail, relative to the corner of a cell.
+pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera, InputError> {
+    let is_reversed = camera.depth == Depth::Reversed;
+    let mut own =
+        LodCamera::new(camera.view_from_world, camera.clip_from_view, camera.viewport, is_reversed, pixels)?;
+    let cells = |axis: usize| f64::from(camera.cell[axis]) - f64::from(cell[axis]);
+    let offset = glam::DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
+    own.eye = (own.eye.as_dvec3() + offset).as_vec3();
+    Ok(own)
+}
