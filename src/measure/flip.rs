@@ -120,9 +120,7 @@ fn spread(difference: f64, largest: f64) -> f64 {
     let knee = COLOR_KNEE * largest;
     match difference < knee {
         true => COLOR_AT_KNEE / knee * difference,
-        false => {
-            COLOR_AT_KNEE + (difference - knee) / (largest - knee) * (1.0 - COLOR_AT_KNEE)
-        }
+        false => COLOR_AT_KNEE + (difference - knee) / (largest - knee) * (1.0 - COLOR_AT_KNEE),
     }
 }
 
@@ -157,8 +155,7 @@ fn features(lightness: &[f64], size: [usize; 2]) -> Vec<[[f64; 2]; 2]> {
     let kernels = [kernel(|_| 1.0), kernel(|at| -at), kernel(|at| at * at - 1.0)];
     let [smooth, first, second] = &kernels;
     let along = [(first, smooth), (smooth, first), (second, smooth), (smooth, second)];
-    let all: Vec<Vec<f64>> =
-        along.into_par_iter().map(|(x, y)| convolved(lightness, size, x, y)).collect();
+    let all: Vec<Vec<f64>> = along.into_par_iter().map(|(x, y)| convolved(lightness, size, x, y)).collect();
     (0..lightness.len()).map(|at| [[all[0][at], all[1][at]], [all[2][at], all[3][at]]]).collect()
 }
 
@@ -215,8 +212,10 @@ mod tests {
 
     #[test]
     fn it_is_what_the_authors_compute() {
-        let noise = |x: u32, y: u32, salt: u32| (x * 37 + y * 91 + salt * 53).wrapping_mul(2_654_435_761) >> 24;
-        let first = image(|x, y| [noise(x / 9, y / 7, 1), noise(x / 5, y / 8, 2), noise(x, y, 3)].map(|v| v as u8));
+        let noise =
+            |x: u32, y: u32, salt: u32| (x * 37 + y * 91 + salt * 53).wrapping_mul(2_654_435_761) >> 24;
+        let first =
+            image(|x, y| [noise(x / 9, y / 7, 1), noise(x / 5, y / 8, 2), noise(x, y, 3)].map(|v| v as u8));
         let shifted = image(|x, y| first.get_pixel((x + 1).min(89), y).0[..3].try_into().unwrap_or_default());
         let faint = image(|x, y| {
             let [r, g, b, _] = first.get_pixel(x, y).0;

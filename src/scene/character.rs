@@ -3,6 +3,8 @@
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
 use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
+#[cfg(feature = "verify")]
+use crate::asset::Affine;
 use crate::asset::Model;
 use crate::asset::mesh::bone_radii;
 use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
@@ -165,6 +167,13 @@ impl Character {
         let duration = self.merged.model.clips[play.clip as usize].duration();
         let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
         Ok(ClipTime { clip: play.clip as usize, seconds })
+    }
+
+    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
+    #[cfg(feature = "verify")]
+    pub fn model_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
+        let matrices = self.runtime.frame.model_matrices().read_blocking(gpu)?;
+        Ok((matrices, self.merged.model.skeleton.len()))
     }
 
     /// The skinned vertices of an instance, mesh by mesh.

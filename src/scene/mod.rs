@@ -16,6 +16,8 @@ mod instances;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
+#[cfg(feature = "verify")]
+mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
@@ -32,6 +34,8 @@ use std::sync::Arc;
 
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
+#[cfg(feature = "verify")]
+pub use measured::DrawnLevel;
 pub use placement::{ClipTime, Placement, Play};
 pub use quality::{Quality, Shares};
 pub use relief::Relief;

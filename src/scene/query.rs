@@ -43,7 +43,7 @@ impl Scene {
         }
     }
 
-    fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
+    pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
         let ObjectId { index, generation } = object;
         self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
     }
@@ -117,7 +117,7 @@ mod drawn {
             Ok(shown.map(instance).collect())
         }
 
-        fn lists_of<'a>(&self, view: &'a View) -> Result<&'a ViewLists, InputError> {
+        pub(in crate::scene) fn lists_of<'a>(&self, view: &'a View) -> Result<&'a ViewLists, InputError> {
             let lists = view.lists.as_ref().filter(|_| view.is_of(&self.token));
             let bound = "must be of this scene, and recorded";
             lists.ok_or_else(|| InputError::new("view", "not recorded", bound))

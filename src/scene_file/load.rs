@@ -64,7 +64,6 @@ impl SceneFile {
     /// that does not suit its use, and for a clip that a model does not have.
     pub fn load(&self, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Result<LoadedScene, InputError> {
         let mut files = Files { read, models: HashMap::new(), levelled: HashMap::new() };
-        let objects = self.objects.iter().map(|entry| files.object(entry)).collect::<Result<_, _>>()?;
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.config.zones).enumerate();
         let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
             ZoneTexture::BuiltIn(kind) => Ok(Texture::built_in(kind)),
@@ -74,6 +73,7 @@ impl SceneFile {
             }
         };
         let textures = zones.map(texture).collect::<Result<_, InputError>>()?;
+        let objects = self.objects.iter().map(|entry| files.object(entry)).collect::<Result<_, _>>()?;
         Ok(LoadedScene { file: self.clone(), objects, textures })
     }
 }

@@ -42,6 +42,13 @@ pub struct WorldObject {
     pub model: Option<Arc<Model>>,
 }
 
+impl WorldObject {
+    /// The model, if it is a character.
+    pub fn character(&self) -> Option<&Model> {
+        self.model.as_deref().filter(|_| self.kind == WorldKind::Character)
+    }
+}
+
 /// The kinds of objects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]

@@ -16,6 +16,7 @@ mod rest;
 #[allow(dead_code, reason = "only the tests of the import write GLBs")]
 #[path = "../animation/scene.rs"]
 mod scene;
+mod scene_file;
 mod skin;
 mod terrain;
 
