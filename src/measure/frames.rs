@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::displacement::{Displacement, DisplacementMeter};
 use super::flip::mean_flip;
 use crate::Error;
-use crate::gpu::Gpu;
-use crate::scene::{DrawnLevel, Quality};
+use crate::gpu::{Gpu, GpuError};
+use crate::scene::{LevelStatistics, ObjectId, Quality, StageTimes};
 use crate::scene_file::{FrameTimes, LoadedScene, Player, Rendering, WorldKind, WorldObject};
 
 /// An object of a scene, as reports name it.
@@ -31,6 +31,36 @@ pub struct ObjectFrame {
     pub coarsening: f32,
     /// What was drawn, level by level; of a split picture, what both views drew.
     pub levels: Vec<DrawnLevel>,
+    /// Number of bones that were interpolated; missing unless it is a character.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bones: Option<u32>,
+    /// Number of clusters of vertices that were skinned; missing unless it is a character.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clusters: Option<u32>,
+}
+
+/// What was drawn with one level of detail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct DrawnLevel {
+    /// Number of instances.
+    pub instances: u64,
+    /// Number of their triangles.
+    pub triangles: u64,
+}
+
+/// The milliseconds of the stages of a frame's compute work, by the device's clock.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Stages {
+    /// Culling, levels of detail and lists.
+    pub select: f64,
+    /// The decision which bones are sampled.
+    pub gate: f64,
+    /// Samples of bones, and weights of morph targets.
+    pub sample: f64,
+    /// Model matrices.
+    pub local_to_model: f64,
+    /// Pages, palettes, morph targets and skinning.
+    pub skin: f64,
 }
 
 /// A frame.
@@ -42,6 +72,9 @@ pub struct FrameReport {
     pub pixels: f32,
     /// What it cost, by the host's clock.
     pub milliseconds: FrameTimes,
+    /// The stages of its compute work, once their times have arrived ([`ScenePlay::stages`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stages: Option<Stages>,
     /// What it drew, object by object.
     pub objects: Vec<ObjectFrame>,
     /// The comparison with the same frame at full detail.
@@ -77,7 +110,7 @@ struct FullDetail {
 }
 
 impl ScenePlay {
-    /// Builds the scene, twice if frames are compared.
+    /// Builds the scene, twice if frames are compared. What frames do is counted.
     ///
     /// # Errors
     /// Those of [`LoadedScene::build`] and [`Player::new`].
@@ -87,7 +120,7 @@ impl ScenePlay {
         rendering: Rendering,
         is_compared: bool,
     ) -> Result<Self, Error> {
-        let player = Player::new(loaded.build(gpu)?, rendering)?;
+        let player = counted(Player::new(loaded.build(gpu)?, rendering)?)?;
         let full = is_compared.then(|| FullDetail::new(gpu, loaded, &player)).transpose()?;
         Ok(Self { player, full })
     }
@@ -121,13 +154,21 @@ impl ScenePlay {
     /// Those of [`Player::frame`] and [`DisplacementMeter::measure`].
     pub fn frame(&mut self, seconds: f32) -> Result<FrameReport, Error> {
         let milliseconds = self.player.frame(seconds)?;
-        let objects = drawn(&self.player)?;
+        let objects = drawn(&mut self.player)?;
         let compared = match &mut self.full {
             Some(full) => Some(full.compare(&self.player, seconds, &objects)?),
             None => None,
         };
         let (time, pixels) = (self.player.world().scene.time(), self.player.rendering().quality.pixels);
-        Ok(FrameReport { seconds: time, pixels, milliseconds, objects, compared })
+        Ok(FrameReport { seconds: time, pixels, milliseconds, stages: None, objects, compared })
+    }
+
+    /// The stages of a frame whose times have arrived since, with its number, counted from 0. They take a frame or two, and
+    /// need a device with timestamps.
+    pub fn stages(&mut self) -> Option<(u64, Stages)> {
+        let times = *self.player.world_mut().scene.stage_times()?;
+        let StageTimes { frame, select, gate, sample, local_to_model, skin } = times;
+        Some((frame, Stages { select, gate, sample, local_to_model, skin }))
     }
 
     /// The colours of the last frame at full detail, if frames are compared.
@@ -142,7 +183,7 @@ impl ScenePlay {
 impl FullDetail {
     fn new(gpu: &Gpu, loaded: &LoadedScene, player: &Player) -> Result<Self, Error> {
         let rendering = Rendering { quality: Quality { pixels: 0.0 }, ..*player.rendering() };
-        let full = Player::new(loaded.build(gpu)?, rendering)?;
+        let full = counted(Player::new(loaded.build(gpu)?, rendering)?)?;
         let mut meters = Vec::new();
         for _ in player.views() {
             let mut meter = DisplacementMeter::new();
@@ -167,27 +208,50 @@ impl FullDetail {
         Ok(Compared {
             full_milliseconds,
             triangles: triangles(objects),
-            full_triangles: triangles(&drawn(&self.player)?),
+            full_triangles: triangles(&drawn(&mut self.player)?),
             displacement: displacement.unwrap_or_else(none),
             flip: mean_flip(&player.picture()?, &self.player.picture()?)?,
         })
     }
 }
 
-/// What the last frame drew of each object.
-fn drawn(player: &Player) -> Result<Vec<ObjectFrame>, Error> {
-    let world = player.world();
-    let of = |object: &WorldObject| {
-        let mut levels: Vec<DrawnLevel> = Vec::new();
-        for view in player.views() {
-            let own = world.scene.drawn_levels(view, object.object)?;
-            levels.resize(own.len(), DrawnLevel::default());
-            for (sum, level) in levels.iter_mut().zip(own) {
-                sum.instances += level.instances;
-                sum.triangles += level.triangles;
+/// A player that counts what frames do.
+fn counted(mut player: Player) -> Result<Player, Error> {
+    player.world_mut().scene.set_statistics(true)?;
+    Ok(player)
+}
+
+/// What the last frame drew of each object. The device has executed it.
+fn drawn(player: &mut Player) -> Result<Vec<ObjectFrame>, Error> {
+    let (world, views) = player.parts_mut();
+    let frame = world.scene.frames().wrapping_sub(1);
+    let seen: Vec<_> = views.iter_mut().filter_map(|view| view.statistics().cloned()).collect();
+    let characters = world.scene.statistics().cloned();
+    let characters = characters.filter(|all| all.frame == frame).map(|all| all.characters);
+    if characters.is_none() || seen.len() < views.len() || seen.iter().any(|view| view.frame != frame) {
+        let reason = format!("the counts of frame {frame} have not arrived");
+        return Err(GpuError::Internal { reason }.into());
+    }
+    let levels = |object: ObjectId| {
+        let mut sums: Vec<DrawnLevel> = Vec::new();
+        let all = seen.iter().flat_map(|view| &view.objects).filter(|own| own.object == object);
+        for own in all {
+            sums.resize(own.levels.len(), DrawnLevel::default());
+            for (sum, LevelStatistics { instances, triangles }) in sums.iter_mut().zip(&own.levels) {
+                sum.instances += u64::from(*instances);
+                sum.triangles += triangles;
             }
         }
-        Ok(ObjectFrame { coarsening: world.scene.coarsening(object.object)?, levels })
+        sums
+    };
+    let of = |object: &WorldObject| {
+        let own = characters.iter().flatten().find(|own| own.object == object.object);
+        Ok(ObjectFrame {
+            coarsening: world.scene.coarsening(object.object)?,
+            levels: levels(object.object),
+            bones: own.map(|own| own.bones),
+            clusters: own.map(|own| own.clusters),
+        })
     };
     world.objects.iter().map(of).collect()
 }

@@ -75,7 +75,9 @@ pub use displacement::{Displacement, DisplacementMeter};
 pub use dump::CharacterDump;
 pub use errors::{Errors, Jump};
 pub use flip::mean_flip;
-pub use frames::{Compared, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay};
+pub use frames::{
+    Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay, Stages,
+};
 pub use gates::{GateMode, GateName};
 pub use levels::LevelReport;
 pub use options::{

@@ -105,6 +105,16 @@ impl Player {
         &self.world
     }
 
+    /// The world, to be changed between frames.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// The world, and the views of the frame, to ask for their statistics.
+    pub fn parts_mut(&mut self) -> (&mut World, &mut [View]) {
+        (&mut self.world, &mut self.views)
+    }
+
     /// The views of the frame, from left to right.
     pub fn views(&self) -> &[View] {
         &self.views

@@ -181,7 +181,7 @@ impl Scene {
             false => None,
         };
         let progress = bar(self.frames.into(), "drawing");
-        let mut frames = Vec::new();
+        let mut frames: Vec<Frame> = Vec::new();
         for frame in 0..self.frames {
             let report = play.frame(if frame == 0 { 0.0 } else { 1.0 / self.rate })?;
             let name = format!("frame_{frame:04}.png");
@@ -196,6 +196,11 @@ impl Scene {
                 dump.add(play.player(), numbers)?;
             }
             frames.push(Frame { frame, report, nearest, farthest });
+            if let Some((number, stages)) = play.stages()
+                && let Some(earlier) = frames.get_mut(number as usize)
+            {
+                earlier.report.stages = Some(stages);
+            }
             progress.inc(1);
         }
         progress.finish_and_clear();
