@@ -17,6 +17,7 @@ mod rest;
 #[path = "../animation/scene.rs"]
 mod scene;
 mod scene_file;
+mod scene_mistakes;
 mod skin;
 mod terrain;
 

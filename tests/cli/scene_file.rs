@@ -1,17 +1,18 @@
-//! `relievo scene`: frames, reports and dumps; and every mistake in a scene file is refused with its path.
+//! `relievo scene`: frames, reports and dumps.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use crate::harness::{Run, relievo};
+use crate::scene_mistakes::with;
 use crate::{assert_documented, assert_refused};
 
 /// A folder with files that scenes name, and where a run writes to.
-struct Folder(tempfile::TempDir);
+pub struct Folder(tempfile::TempDir);
 
 impl Folder {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let folder = Self(tempfile::tempdir().expect("a temporary folder"));
         let truth = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/truth/files");
         for name in ["rig.glb", "still.glb"] {
@@ -25,7 +26,7 @@ impl Folder {
         folder
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
@@ -38,7 +39,7 @@ impl Folder {
     }
 
     /// Draws a scene.
-    fn run(&self, scene: &str, arguments: &[&str]) -> Run {
+    pub fn run(&self, scene: &str, arguments: &[&str]) -> Run {
         self.write("scene.json", scene.as_bytes());
         let (scene, out) = (self.text("scene.json"), self.text("out"));
         relievo(&[&["scene", &scene, "--out", &out][..], arguments].concat())
@@ -57,7 +58,7 @@ impl Folder {
 const CYCLE: &str = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"children": [0]}]}"#;
 
 /// A scene in which a mistake can be made.
-fn good() -> Value {
+pub fn good() -> Value {
     json!({
         "terrain": {
             "config": {"patchSize": 17, "scaleFactor": 2, "seed": "cli"},
@@ -84,178 +85,6 @@ fn good() -> Value {
         ]},
         "quality": {"pixels": 1},
     })
-}
-
-/// The good scene with a value in another place; `null` removes what is there.
-fn with(pointer: &str, value: Value) -> String {
-    let mut scene = good();
-    let (parent, name) = pointer.rsplit_once('/').expect("a pointer");
-    match scene.pointer_mut(parent).unwrap_or_else(|| panic!("no {parent}")) {
-        Value::Object(fields) if value.is_null() => {
-            fields.remove(name);
-        }
-        Value::Object(fields) => {
-            fields.insert(name.to_owned(), value);
-        }
-        Value::Array(list) => list[name.parse::<usize>().expect("an index")] = value,
-        _ => panic!("{parent} holds nothing"),
-    }
-    scene.to_string()
-}
-
-/// Mistakes: where, what is there, and the path and the words of the message.
-fn mistakes() -> Vec<(&'static str, Value, &'static str, &'static str)> {
-    let long = vec![0; 4097];
-    vec![
-        // Fields.
-        ("/typo", json!(1), "typo = 1", "terrain, meshes, characters"),
-        ("/meshes/0/instance", json!([]), "meshes[0].instance = []", "is no field here"),
-        ("/meshes/0/clip", json!("walk"), "meshes[0].clip = walk", "is no field here"),
-        ("/meshes/0/instances/0/clip", json!(0), "meshes[0].instances[0].clip = 0", "is no field here"),
-        ("/characters/0/scatter/seeds", json!(""), "characters[0].scatter.seeds", "count, seed, area"),
-        ("/camera/path/1/fovy", json!(1), "camera.path[1].fovy = 1", "time, at, look, fov"),
-        // What is missing.
-        ("/camera", json!(null), "camera = missing", "where the scene is seen from"),
-        ("/meshes/0/file", json!(null), "meshes[0].file = missing", ".glb or .gltf"),
-        ("/meshes/0/instances", json!(null), "meshes[0].instances = missing", "or scatter"),
-        ("/meshes/0/instances/1/at", json!(null), "meshes[0].instances[1].at = missing", "or on"),
-        ("/characters/0/scatter/seed", json!(null), "characters[0].scatter.seed = missing", "any text"),
-        ("/terrain/config", json!(null), "terrain.config = missing", "relievo terrain"),
-        ("/camera/path/0/look", json!(null), "camera.path[0].look = missing", "where it looks"),
-        ("/meshes/1/material/relief", json!(null), "meshes[1].material.relief = missing", "heights"),
-        // Types.
-        ("/terrain", json!([]), "terrain = []", "must be an object"),
-        ("/terrain/config", json!("file.json"), "terrain.config = file.json", "must be an object"),
-        ("/meshes", json!({}), "meshes = {}", "must be a list"),
-        ("/meshes/0", json!("still.glb"), "meshes[0] = still.glb", "must be an object"),
-        ("/meshes/0/file", json!(7), "meshes[0].file = 7", "must be a text"),
-        ("/characters/0/scatter/count", json!("2"), "characters[0].scatter.count = 2", "whole number"),
-        ("/characters/0/scatter/count", json!(2.5), "characters[0].scatter.count = 2.5", "whole number"),
-        ("/light/shadow", json!(1), "light.shadow = 1", "true or false"),
-        ("/light/shadow", json!(true), "light.shadow = true", "no shadows yet"),
-        ("/camera/path/0/at", json!([1, 2]), "camera.path[0].at = [1,2]", "3 numbers"),
-        ("/camera/path/0/at", json!([1, "2", 3]), "camera.path[0].at[1] = 2", "must be a number"),
-        ("/terrain/patches/1", json!([0, 0.5]), "terrain.patches[1][1] = 0.5", "whole number"),
-        // Ranges.
-        ("/terrain/config/patchSize", json!(18), "terrain.config.patchSize = 18", "2^n + 1"),
-        ("/terrain/config/zones", json!([]), "terrain.config.zones", "1 to 32"),
-        ("/terrain/patches", json!([]), "terrain.patches.len = 0", "1..=4096"),
-        ("/terrain/patches", json!(long), "terrain.patches.len = 4097", "1..=4096"),
-        ("/terrain/patches/1", json!([0, 0]), "terrain.patches[1] = [0, 0]", "listed before"),
-        ("/terrain/patches/1", json!([600_000, 0]), "terrain.patches[1] = 600000", "i32"),
-        ("/meshes/0/instances/0/scale", json!(0), "meshes[0].instances[0].scale = 0", "1e-6"),
-        ("/meshes/0/instances/0/scale", json!([1, 2, 1e9]), "meshes[0].instances[0].scale[2]", "1000000"),
-        ("/meshes/0/instances/0/turn", json!([0, 0, 0, 0]), "meshes[0].instances[0].turn", "not be 0"),
-        ("/meshes/0/instances/1/at", json!([1, 2e9, 3]), "meshes[0].instances[1].at[1]", "1000000000"),
-        ("/meshes/1/material/scale", json!(1.5), "meshes[1].material.scale = 1.5", "0..=1"),
-        ("/meshes/1/material/method", json!("best"), "meshes[1].material.method = best", "quadtree"),
-        ("/meshes/1/material/shadow", json!("long"), "meshes[1].material.shadow = long", "soft"),
-        ("/characters/0/rate", json!(1e6), "characters[0].rate = 1000000", "100"),
-        ("/characters/0/wrap", json!("bounce"), "characters[0].wrap = bounce", "clamp"),
-        ("/characters/0/scatter/scale", json!([2, 1]), "characters[0].scatter.scale", "smaller scale first"),
-        ("/characters/0/scatter/area", json!([[5, 5], [1, 9]]), "characters[0].scatter.area", "smaller x"),
-        ("/light/direction", json!([0, 0, 0]), "light.direction = [0,0,0]", "towards the light"),
-        ("/light/ambient", json!(1.5), "light.ambient = 1.5", "0..=1"),
-        ("/quality/pixels", json!(-1), "quality.pixels = -1", "0..="),
-        ("/background", json!([0, 0, 2]), "background[2] = 2", "0..=1"),
-        ("/camera/fov", json!(3.2), "camera.fov = 3.2", "3.1"),
-        ("/camera/near", json!(0), "camera.near = 0", "0.0001"),
-        ("/camera/far", json!(0.05), "camera.far = 0.05", "beyond near"),
-        ("/camera/at", json!([0, 0, 0]), "camera.at", "beside path"),
-        ("/camera/path", json!([]), "camera.path.len = 0", "1..=4096"),
-        ("/camera/path/1/time", json!(0), "camera.path[1].time = 0", "later than 0"),
-        ("/camera/path/0/look", json!([10, 8, 30]), "camera.path[0].look", "apart from at"),
-        // Absurd counts.
-        ("/meshes/1/scatter/count", json!(0), "meshes[1].scatter.count = 0", "1..=1048576"),
-        ("/meshes/1/scatter/count", json!(1e12), "meshes[1].scatter.count", "1..=1048576"),
-        ("/characters/0/scatter/count", json!(70_000), "characters[0].scatter.count = 70000", "65536"),
-        ("/characters", json!(vec![1; 257]), "characters.len = 257", "0..=256"),
-        ("/terrain/config/patchSize", json!(4097), "terrain.patches.len", ""),
-        // What cannot be together.
-        ("/meshes/0/instances/1/on", json!([1, 1]), "meshes[0].instances[1].on = [1,1]", "beside at"),
-        ("/meshes/0/instances/1/lift", json!(1), "meshes[0].instances[1].lift = 1", "beside at"),
-        ("/terrain", json!(null), "meshes[0].instances[0].on = [4, 5]", "no terrain"),
-        // Files.
-        ("/meshes/0/file", json!("gone.glb"), "meshes[0].file = gone.glb", "cannot be read"),
-        ("/meshes/0/file", json!("cut.glb"), "meshes[0].file = cut.glb", "GLB"),
-        ("/meshes/0/file", json!("cycle.gltf"), "meshes[0].file = cycle.gltf", "nodes"),
-        ("/meshes/0/file", json!("scene.json"), "meshes[0].file = scene.json", ".glb or .gltf"),
-        ("/meshes/0/file", json!("cow.obj"), "meshes[0].file = cow.obj", "not read yet"),
-        ("/meshes/0/file", json!("builtin:cow"), "meshes[0].file = builtin:cow", "builtin:rock"),
-        ("/meshes/0/file", json!("points.gltf"), "meshes[0].file = points.gltf", "triangles"),
-        ("/characters/0/file", json!("builtin:rock"), "characters[0].file = builtin:rock", "creature"),
-        ("/characters/0/file", json!("still.glb"), "characters[0].file = still.glb", "must have clips"),
-        ("/characters/0/clip", json!("fly"), "characters[0].clip = fly", "walk"),
-        ("/characters/0/instances/0/clip", json!(3), "characters[0].instances[0].clip = 3", "below 3"),
-        (
-            "/meshes/1/material/relief",
-            json!("gone.png"),
-            "meshes[1].material.relief = gone.png",
-            "cannot be read",
-        ),
-        ("/meshes/1/material/relief", json!("broken.png"), "meshes[1].material.relief = broken.png", "PNG"),
-        (
-            "/meshes/1/material/albedo",
-            json!("wall.bmp"),
-            "meshes[1].material.albedo = wall.bmp",
-            ".png or .jpg",
-        ),
-        (
-            "/terrain/config/zones",
-            json!([{"min": 0, "max": 1, "texture": "gone.png"}]),
-            "terrain.config.zones[0].texture = gone.png",
-            "cannot be read",
-        ),
-        // What only the device's heights tell.
-        ("/meshes/0/instances/0/on", json!([4, 50]), "meshes[0].instances[0].on = [4, 50]", "on a patch"),
-        (
-            "/characters/0/scatter/area",
-            json!([[50, 50], [60, 60]]),
-            "characters[0].scatter.area",
-            "on the terrain",
-        ),
-    ]
-}
-
-#[test]
-fn every_mistake_is_refused_with_its_path_and_nothing_is_written() {
-    let folder = Folder::new();
-    let all = mistakes();
-    assert!(all.len() > 60);
-    for (pointer, value, start, words) in all {
-        // Only the largest patches of all are too many.
-        let scene = if start == "terrain.patches.len" {
-            with(
-                "/terrain",
-                json!({
-                    "config": {"patchSize": 4097, "scaleFactor": 2, "seed": "cli"},
-                    "patches": [[0, 0], [1, 0], [2, 0], [3, 0], [4, 0]],
-                }),
-            )
-        } else {
-            with(pointer, value)
-        };
-        refused(&folder, &scene, &[start, words]);
-    }
-    let twice = good().to_string().replace(r#""ambient":0.3"#, r#""ambient":0.3,"ambient":0.4"#);
-    refused(&folder, &twice, &["light.ambient = line 1", "given twice"]);
-    let deep = format!("{}{}", "[".repeat(400), "]".repeat(400));
-    for (text, words) in
-        [("", "scene = "), ("[]", "must be an object"), ("{} {}", "scene = "), (&deep, "scene")]
-    {
-        refused(&folder, text, &[words]);
-    }
-    refused(&folder, r#"{"camera": {"at": [0, 1, 5], "look": [0, 0, 0]}}"#, &["scene = empty", "must have"]);
-    let ground = r#"{"meshes": [{"file": "still.glb", "scatter": {"count": 1, "seed": "s"}}],
-        "camera": {"at": [0, 1, 5], "look": [0, 0, 0]}}"#;
-    refused(&folder, ground, &["meshes[0].scatter.area = missing", "no terrain"]);
-}
-
-fn refused(folder: &Folder, scene: &str, words: &[&str]) {
-    let run = folder.run(scene, &["--size", "16x16"]);
-    let start = &scene[..scene.len().min(60)];
-    assert_refused(&run, &[start], &[&["scene.json: "][..], words].concat());
-    assert!(!folder.path("out").exists(), "{words:?}: something was written");
 }
 
 #[test]
