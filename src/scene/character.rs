@@ -170,7 +170,7 @@ impl Character {
 
     /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
     #[cfg(feature = "verify")]
-    pub fn model_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
+    pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
         let matrices = self.runtime.frame.model_matrices().read_blocking(gpu)?;
         Ok((matrices, self.merged.model.skeleton.len()))
     }

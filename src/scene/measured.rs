@@ -15,7 +15,7 @@ impl Scene {
     pub fn drawn_bones(&self, object: ObjectId) -> Result<Vec<(InstanceId, Vec<Affine>)>, Error> {
         let entry = self.object_at(object)?;
         let Kind::Character(character) = &entry.kind else { return Ok(Vec::new()) };
-        let (all, bones) = character.model_matrices(&self.gpu)?;
+        let (all, bones) = character.read_matrices(&self.gpu)?;
         let own = |[index, generation]: [u32; 2]| {
             (InstanceId { object, index, generation }, all[index as usize * bones..][..bones].to_vec())
         };
