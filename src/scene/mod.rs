@@ -15,6 +15,8 @@ mod instances;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
+#[cfg(feature = "verify")]
+mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
