@@ -6,6 +6,10 @@
 //! In a frame, the caller moves instances, advances the time, sets the cameras of the views, records the scene's work
 //! into an encoder of its own ([`Scene::record`]), and draws. Nothing is submitted, waited for or allocated in a frame,
 //! except where an object outgrows its capacity.
+//!
+//! In a browser, which forbids to wait and tells errors late, use the forms whose names end in `_async`, and
+//! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
+//! `Scene::add_terrain`, which waits, has the `_async` form alone.
 
 mod camera;
 mod character;
@@ -39,7 +43,7 @@ pub use terrain::TerrainSource;
 pub use view::View;
 
 use crate::asset::Light;
-use crate::gpu::{Gpu, Staged, StagingRing};
+use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
@@ -109,6 +113,25 @@ impl Scene {
             passes,
             layouts_of_groups: SceneLayouts::new(gpu)?,
         })
+    }
+
+    /// As [`Scene::new`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub async fn new_async(gpu: &Gpu) -> Result<Self, Error> {
+        let scene = Self::new(gpu)?;
+        gpu.check_async().await?;
+        Ok(scene)
+    }
+
+    /// Errors that the device reported later than in the call that caused them, as [`Gpu::check`] tells them. Ask once a
+    /// frame in a browser.
+    ///
+    /// # Errors
+    /// As [`Gpu::check`].
+    pub fn health(&self) -> Result<(), GpuError> {
+        self.gpu.check()
     }
 
     /// The device.
