@@ -223,14 +223,19 @@ fn characters(
 #[test]
 fn rust_is_compiled_as_it_stands_there() {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-    let compiled =
-        squeezed(include_str!("readme.rs")) + &squeezed(include_str!("../examples/engine/main.rs"));
+    let compiled = [
+        include_str!("readme.rs"),
+        include_str!("../examples/engine/main.rs"),
+        include_str!("web/scene/src/lib.rs"),
+        include_str!("web/scene/src/picture.rs"),
+    ];
+    let compiled: String = compiled.map(squeezed).concat();
     let lines = code("rust", "//");
     assert!(!lines.is_empty());
     for line in lines {
         assert!(
             compiled.contains(&squeezed(line)),
-            "neither tests/readme.rs nor examples/engine holds `{line}`"
+            "neither tests/readme.rs nor examples/engine nor tests/web/scene holds `{line}`"
         );
     }
 }

@@ -117,6 +117,15 @@ impl Renderer {
         self.prepare_objects(scene.drawables())
     }
 
+    /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    ///
+    /// # Errors
+    /// As [`Renderer::prepare`].
+    pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare(scene)?;
+        Ok(self.gpu.check_async().await?)
+    }
+
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
     /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: viewport, scissor
     /// and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format.

@@ -5,6 +5,10 @@
 //! pass.
 //!
 #![doc = include_str!("overview.md")]
+//!
+//! In a browser, which forbids to wait and tells errors late, use the forms whose names end in `_async`, and
+//! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
+//! `Scene::add_terrain`, which waits, has the `_async` form alone.
 
 mod camera;
 mod character;
@@ -50,7 +54,7 @@ pub use view::View;
 pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
-use crate::gpu::{Gpu, Staged, StagingRing};
+use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
@@ -161,6 +165,25 @@ impl Scene {
             timer: None,
             watch: None,
         })
+    }
+
+    /// As [`Scene::new`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub async fn new_async(gpu: &Gpu) -> Result<Self, Error> {
+        let scene = Self::new(gpu)?;
+        gpu.check_async().await?;
+        Ok(scene)
+    }
+
+    /// Errors that the device reported later than in the call that caused them, as [`Gpu::check`] tells them. Ask once a
+    /// frame in a browser.
+    ///
+    /// # Errors
+    /// As [`Gpu::check`].
+    pub fn health(&self) -> Result<(), GpuError> {
+        self.gpu.check()
     }
 
     /// The device.

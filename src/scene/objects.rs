@@ -17,9 +17,20 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
     /// [`crate::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
-        let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source)?;
-        Ok(self.add(object))
+        self.gpu.clone().block_on(self.add_terrain_async(source))
+    }
+
+    /// As `Scene::add_terrain`, but completes once the device has generated the patches and told its errors; see
+    /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
+    ///
+    /// # Errors
+    /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
+    /// [`crate::gpu::GpuError`].
+    pub async fn add_terrain_async(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
+        let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source).await?;
+        self.add_checked(object).await
     }
 
     /// The ground of a terrain at a position of the world, `x` units east and `z` units south of its origin: height in
@@ -50,6 +61,16 @@ impl Scene {
         Ok(self.add(object))
     }
 
+    /// As [`Scene::add_mesh`], but completes once the device has told its errors ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are
+    /// any, nothing is added.
+    ///
+    /// # Errors
+    /// As [`Scene::add_mesh`].
+    pub async fn add_mesh_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
+        let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
+        self.add_checked(object).await
+    }
+
     /// Adds a character: its bones are sampled from its clips, gated, and its meshes morphed and skinned, each only as
     /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for at least `capacity`
     /// instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more.
@@ -60,11 +81,25 @@ impl Scene {
     /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
     /// [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        if model.clips.is_empty() {
-            return self.add_mesh(model, capacity);
-        }
-        let object = Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares)?;
+        let object = self.character(model, capacity)?;
         Ok(self.add(object))
+    }
+
+    /// As [`Scene::add_character`], but completes once the device has told its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are any, nothing is added.
+    ///
+    /// # Errors
+    /// As [`Scene::add_character`].
+    pub async fn add_character_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
+        let object = self.character(model, capacity)?;
+        self.add_checked(object).await
+    }
+
+    fn character(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
+        match model.clips.is_empty() {
+            true => Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity),
+            false => Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares),
+        }
     }
 
     /// Adds a mesh that carries a relief. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
@@ -75,6 +110,22 @@ impl Scene {
     /// [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        Ok(self.add(object))
+    }
+
+    /// As [`Scene::add_relief`], but completes once the device has told its errors ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are
+    /// any, nothing is added.
+    ///
+    /// # Errors
+    /// As [`Scene::add_relief`].
+    pub async fn add_relief_async(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
+        let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        self.add_checked(object).await
+    }
+
+    /// Adds an object, unless the device tells errors of it.
+    async fn add_checked(&mut self, object: Object) -> Result<ObjectId, Error> {
+        self.gpu.check_async().await?;
         Ok(self.add(object))
     }
 

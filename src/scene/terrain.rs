@@ -106,7 +106,7 @@ impl Terrain {
 }
 
 /// Generates terrain: what a scene keeps of it, its patches as instances, and how it is drawn.
-pub(super) fn generated(
+pub(super) async fn generated(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     source: &TerrainSource,
@@ -116,14 +116,15 @@ pub(super) fn generated(
     if patches.is_empty() {
         return Err(InputError::new("patches", "none", "must be at least one").into());
     }
-    let mut parts = Generator::new(gpu, recipe.clone())?.generate(gpu, patches, MARGIN, &mut |_| ())?;
+    let generator = Generator::new(gpu, recipe.clone())?;
+    let mut parts = generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await?;
     if parts.len() > 1 {
         let bound =
             format!("must be at most {}, which one binding holds: add several terrains", parts[0].count);
         return Err(InputError::new("patches.len", patches.len(), bound).into());
     }
     let fields = parts.remove(0);
-    let heights = fields.read_blocking(gpu)?;
+    let heights = fields.read(gpu).await?;
     let mut ground = Ground::new(config)?;
     let mut instances = Instances::new(patches.len());
     for (patch, heights) in patches.iter().zip(&heights) {
