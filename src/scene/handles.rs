@@ -1,10 +1,25 @@
 //! Handles of objects and instances, which never name anything but what they were made for.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::InputError;
+
+/// Tells one scene of the program from all others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct SceneNumber(u64);
+
+impl SceneNumber {
+    /// A number that no other scene has.
+    pub fn next() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
 
 /// An object of a scene: terrain, a mesh or a character. Instances of it can be spawned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ObjectId {
+    pub(super) scene: SceneNumber,
     pub(super) index: u32,
     pub(super) generation: u32,
 }
@@ -82,10 +97,15 @@ impl<T> Slots<T> {
     }
 }
 
-/// The error of a stale handle.
+/// The error of a handle whose object or instance was removed.
 pub(super) fn stale(path: &str, index: u32, generation: u32) -> InputError {
-    let value = format!("{index} (generation {generation})");
-    InputError::new(path, value, "must be of this scene, and not have been removed")
+    let value = format!("{index} (generation {generation}), which was removed");
+    InputError::new(path, value, "must be there")
+}
+
+/// The error of a handle that another scene gave.
+pub(super) fn foreign(path: &str) -> InputError {
+    InputError::new(path, "of another scene", "must be of this scene")
 }
 
 #[cfg(test)]

@@ -6,6 +6,45 @@
 //! In a frame, the caller moves instances, advances the time, sets the cameras of the views, records the scene's work
 //! into an encoder of its own ([`Scene::record`]), and draws. Nothing is submitted, waited for or allocated in a frame,
 //! except where an object outgrows its capacity.
+//!
+//! ```no_run
+//! use relievo::asset::Model;
+//! use relievo::gpu::Gpu;
+//! use relievo::render::{Layer, Renderer, TargetFormat};
+//! use relievo::scene::{Camera, Placement, Play, Quality, Scene};
+//! use relievo::wgpu;
+//!
+//! # fn program(
+//! #     (device, queue): (wgpu::Device, wgpu::Queue),
+//! #     color: wgpu::TextureFormat,
+//! #     size: [u32; 2],
+//! #     descriptor: &wgpu::RenderPassDescriptor<'_>,
+//! # ) -> Result<(), relievo::Error> {
+//! let gpu = Gpu::from_wgpu(device, queue);
+//! let mut scene = Scene::new(&gpu)?;
+//! let mut fox = Model::from_file("fox.glb".as_ref())?;
+//! relievo::skinning::add_levels(&mut fox, &[0], 60)?; // of its first clip; takes seconds
+//! let foxes = scene.add_character(&fox, 10)?;
+//! let one = scene.spawn(foxes, Placement::at([0.0, 0.0, -2.0]).turned(0.5).scaled(0.01))?;
+//! let format = TargetFormat::new(color).reversed(); // with Depth32Float, which the program clears to 0
+//! let mut renderer = Renderer::new(&gpu, &format)?;
+//! renderer.prepare(&scene)?;
+//! let mut view = scene.view(Quality { pixels: 0.5 })?;
+//!
+//! // A frame.
+//! scene.play(one, &Play { start: scene.time(), ..Play::new("Run") })?;
+//! scene.advance(1.0 / 60.0)?;
+//! let [eye, target] = [glam::Vec3::new(0.0, 1.5, 4.0), glam::Vec3::Y];
+//! view.set(Camera::looking_at(eye, target, 0.8, [0.1, f32::INFINITY], size).reversed())?;
+//! let mut encoder = gpu.encoder("frame");
+//! scene.record(&mut encoder, &mut [&mut view])?;
+//! let mut pass = encoder.begin_render_pass(descriptor);
+//! renderer.draw(&mut pass, &scene, &view, Layer::Color)?;
+//! drop(pass);
+//! gpu.queue().submit([encoder.finish()]);
+//! # Ok(())
+//! # }
+//! ```
 
 mod camera;
 mod character;
@@ -28,8 +67,6 @@ mod spawned;
 mod terrain;
 mod view;
 
-use std::sync::Arc;
-
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
 pub use placement::{ClipTime, Placement, Play};
@@ -44,7 +81,7 @@ use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::{Error, InputError};
-use handles::{Slots, stale};
+use handles::{SceneNumber, Slots};
 use layout::Layout;
 use layouts::SceneLayouts;
 use object::{Kind, Object};
@@ -56,8 +93,8 @@ pub const RECORDINGS: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Tells this scene's views from others'.
-    token: Arc<()>,
+    /// Tells this scene's views and handles from others'.
+    number: SceneNumber,
     objects: Slots<Object>,
     shares: Shares,
     light: Light,
@@ -94,7 +131,7 @@ impl Scene {
         };
         Ok(Self {
             gpu: gpu.clone(),
-            token: Arc::default(),
+            number: SceneNumber::next(),
             objects: Slots::default(),
             shares: Shares::default(),
             light: Light::default(),
@@ -160,10 +197,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
-        let ObjectId { index, generation } = object;
-        let entry =
-            self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))?;
-        Ok(entry.coarsening)
+        Ok(self.object_at(object)?.coarsening)
     }
 
     /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
@@ -176,11 +210,11 @@ impl Scene {
         self.now
     }
 
-    /// A view into the scene.
+    /// A view into the scene. It needs a camera ([`View::set`]) before a frame is recorded.
     ///
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, &self.token, quality)
+        View::new(&self.gpu, self.number, quality)
     }
 }

@@ -3,7 +3,7 @@
 use crate::asset::Model;
 use crate::gpu::Upload as _;
 use crate::scene::Scene;
-use crate::scene::handles::{ObjectId, stale};
+use crate::scene::handles::{ObjectId, foreign, stale};
 use crate::scene::object::{Kind, Object};
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
@@ -14,8 +14,8 @@ impl Scene {
     /// Adds terrain: generates its patches, and shows them.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, and for more
+    /// patches than one binding holds; [`crate::gpu::GpuError`].
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source)?;
         Ok(self.add(object))
@@ -27,32 +27,35 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, or no terrain.
     pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
-        let ObjectId { index, generation } = terrain;
-        let object =
-            self.objects.get([index, generation]).ok_or_else(|| stale("terrain", index, generation))?;
-        match &object.kind {
+        match &self.object_at(terrain)?.kind {
             Kind::Terrain(terrain) => Ok(terrain.point_at(x, z)),
             _ => Err(InputError::new("terrain", "a mesh or a character", "must be terrain")),
         }
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
-    /// ([`add_levels`](crate::skinning::add_levels)) and materials. There is room for `capacity` instances; more than
-    /// that let it grow, which allocates.
+    /// ([`add_levels`](crate::skinning::add_levels); without them, every instance is drawn in full) and materials. There
+    /// is room for `capacity` instances, 1 to 1,048,576; more than that let it grow, which allocates. A world unit is one
+    /// unit of the model times [`Placement::scale`](crate::scene::Placement::scale);
+    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) tells about how large a
+    /// model is.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a model without meshes or with invalid ones, and for `capacity` out of range;
+    /// [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(self.add(object))
     }
 
     /// Adds a character: its bones are sampled from its clips, gated, and its meshes morphed and skinned, each only as
-    /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for `capacity`
-    /// instances; more than that let it grow, which allocates and lets all of them start afresh.
+    /// far as a view needs. Levels of detail and units are as in [`Scene::add_mesh`], which adds a model without clips.
+    /// There is room for `capacity` instances, 1 to 1,048,576; more than that let it grow, which allocates and lets all
+    /// of them start afresh.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a model without meshes or with invalid ones, and for `capacity` out of range;
+    /// [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
@@ -61,11 +64,12 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// Adds a mesh that carries a relief. There is room for `capacity` instances; more than that let it grow, which
-    /// allocates.
+    /// Adds a mesh that carries a relief. There is room for `capacity` instances, 1 to 1,048,576; more than that let it
+    /// grow, which allocates.
     ///
     /// # Errors
-    /// [`InputError`] for maps, options or a mesh that do not fit each other; [`crate::gpu::GpuError`].
+    /// [`InputError`] for maps, options or a mesh that do not fit each other, and for `capacity` out of range;
+    /// [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
         Ok(self.add(object))
@@ -74,7 +78,7 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { index, generation }
+        ObjectId { scene: self.number, index, generation }
     }
 
     /// Removes an object with all of its instances, and releases its memory.
@@ -82,8 +86,8 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn remove(&mut self, object: ObjectId) -> Result<(), InputError> {
-        let ObjectId { index, generation } = object;
-        self.objects.remove([index, generation]).ok_or_else(|| stale("object", index, generation))?;
+        self.object_at(object)?;
+        self.objects.remove([object.index, object.generation]);
         self.layout = None;
         Ok(())
     }
@@ -105,7 +109,18 @@ impl Scene {
     }
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {
-        let ObjectId { index, generation } = object;
+        let ObjectId { scene, index, generation } = object;
+        if scene != self.number {
+            return Err(foreign("object"));
+        }
         self.objects.get_mut([index, generation]).ok_or_else(|| stale("object", index, generation))
+    }
+
+    pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
+        let ObjectId { scene, index, generation } = object;
+        if scene != self.number {
+            return Err(foreign("object"));
+        }
+        self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
     }
 }

@@ -1,5 +1,7 @@
 //! Terrain in a scene: patches of one recipe, generated on the device, each an instance.
 
+use std::collections::HashSet;
+
 use glam::{DVec3, Vec3};
 
 use crate::gpu::{Buffer, Gpu, Uniform};
@@ -41,7 +43,7 @@ impl TerrainSource {
         Recipe::new(config).into()
     }
 
-    /// Shows these patches: columns to the east, rows to the south.
+    /// Shows these patches, each given once: columns to the east, rows to the south.
     #[must_use]
     pub fn with_patches(self, patches: &[[i32; 2]]) -> Self {
         Self { patches: patches.to_vec(), ..self }
@@ -92,6 +94,11 @@ pub(super) fn generated(
     let config = &recipe.config;
     if patches.is_empty() {
         return Err(InputError::new("patches", "none", "must be at least one").into());
+    }
+    let mut known = HashSet::new();
+    if let Some(at) = patches.iter().position(|patch| !known.insert(patch)) {
+        let path = format!("patches[{at}]");
+        return Err(InputError::new(path, format!("{:?}", patches[at]), "must not be given twice").into());
     }
     let mut parts = Generator::new(gpu, recipe.clone())?.generate(gpu, patches, MARGIN, &mut |_| ())?;
     if parts.len() > 1 {

@@ -6,6 +6,7 @@ mod harness;
 
 mod frame;
 mod life;
+mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;

@@ -3,8 +3,6 @@
 pub(crate) mod lists;
 mod uniforms;
 
-use std::sync::Arc;
-
 use glam::IVec3;
 
 use crate::asset::Light;
@@ -15,6 +13,7 @@ use crate::lod::select::SelectPass;
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::camera::Camera;
+use crate::scene::handles::SceneNumber;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
@@ -24,9 +23,14 @@ use lists::ViewLists;
 use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
+///
+/// For half of a split screen, [`Camera::viewport`] is the size of that half, and the caller sets the viewport of the
+/// pass to it before it draws. A shadow map takes a parallel camera, [`View::set_casters_only`],
+/// [`View::set_lod_cameras`] with the cameras of the main views, and a renderer of
+/// [`TargetFormat::depth_only`](crate::render::TargetFormat::depth_only).
 #[derive(Debug)]
 pub struct View {
-    scene: Arc<()>,
+    scene: SceneNumber,
     quality: Quality,
     camera: Option<Camera>,
     lod_cameras: Vec<Camera>,
@@ -38,12 +42,12 @@ pub struct View {
 }
 
 impl View {
-    pub(super) fn new(gpu: &Gpu, scene: &Arc<()>, quality: Quality) -> Result<Self, Error> {
+    pub(super) fn new(gpu: &Gpu, scene: SceneNumber, quality: Quality) -> Result<Self, Error> {
         quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
-            scene: scene.clone(),
+            scene,
             quality,
             camera: None,
             lod_cameras: Vec::new(),
@@ -122,8 +126,8 @@ impl View {
         flags & INSTANCE_ALIVE != 0 && is_in_mask && (!self.casters || flags & INSTANCE_CASTS != 0)
     }
 
-    pub(crate) fn is_of(&self, scene: &Arc<()>) -> bool {
-        Arc::ptr_eq(&self.scene, scene)
+    pub(in crate::scene) fn is_of(&self, scene: SceneNumber) -> bool {
+        self.scene == scene
     }
 
     /// Allocates what the view needs for a layout and so many terrains, unless it has it.
