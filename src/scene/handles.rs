@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::InputError;
+use crate::scene::object::Object;
 
 /// Tells one scene of the program from all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -10,7 +11,7 @@ pub(super) struct SceneNumber(u64);
 
 impl SceneNumber {
     /// A number that no other scene has.
-    pub fn next() -> Self {
+    fn next() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
@@ -39,19 +40,25 @@ impl InstanceId {
     }
 }
 
-/// Values in slots that are used again, each time with another generation.
+/// Values of one scene in slots that are used again, each time with another generation.
 #[derive(Debug)]
 pub(super) struct Slots<T> {
+    scene: SceneNumber,
     slots: Vec<(u32, Option<T>)>,
 }
 
 impl<T> Default for Slots<T> {
     fn default() -> Self {
-        Self { slots: Vec::new() }
+        Self { scene: SceneNumber::next(), slots: Vec::new() }
     }
 }
 
 impl<T> Slots<T> {
+    /// The scene whose values these are.
+    pub fn scene(&self) -> SceneNumber {
+        self.scene
+    }
+
     /// Adds a value to the first free slot; returns the slot and its generation.
     pub fn insert(&mut self, value: T) -> [u32; 2] {
         let free = self.slots.iter().position(|(_, value)| value.is_none());
@@ -86,6 +93,12 @@ impl<T> Slots<T> {
         removed
     }
 
+    /// All values with their slots and generations, slot by slot.
+    fn numbered(&self) -> impl Iterator<Item = ([u32; 2], &T)> {
+        let slots = (0..).zip(&self.slots);
+        slots.filter_map(|(index, (generation, value))| Some(([index, *generation], value.as_ref()?)))
+    }
+
     /// All values, slot by slot.
     pub fn iter(&self) -> impl Iterator<Item = &T> {
         self.slots.iter().filter_map(|(_, value)| value.as_ref())
@@ -94,6 +107,22 @@ impl<T> Slots<T> {
     /// All values, slot by slot, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|(_, value)| value.as_mut())
+    }
+}
+
+impl Slots<Object> {
+    /// The object of an instance, if the instance exists.
+    pub fn existing(&self, instance: InstanceId) -> Option<&Object> {
+        let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
+        let object = self.get([index, generation]).filter(|_| scene == self.scene)?;
+        object.instances.contains([instance.index, instance.generation]).then_some(object)
+    }
+
+    /// All objects with their handles, slot by slot.
+    pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
+        let scene = self.scene;
+        self.numbered()
+            .map(move |([index, generation], object)| (ObjectId { scene, index, generation }, object))
     }
 }
 

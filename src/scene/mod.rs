@@ -59,21 +59,31 @@ pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
 mod paging;
+mod pick;
 mod placement;
 mod quality;
 pub(crate) mod query;
+mod ray;
 mod relief;
 mod spawned;
+mod statistics;
 mod terrain;
 mod view;
+mod watch;
 
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
+pub use pick::Bounds;
 pub use placement::{ClipTime, Placement, Play};
 pub use quality::{Quality, Shares};
+pub use ray::{Hit, Ray};
 pub use relief::Relief;
+pub use statistics::{
+    CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
+};
 pub use terrain::TerrainSource;
 pub use view::View;
+pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
 use crate::gpu::{Gpu, Staged, StagingRing};
@@ -81,10 +91,12 @@ use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::{Error, InputError};
-use handles::{SceneNumber, Slots};
+use handles::Slots;
 use layout::Layout;
 use layouts::SceneLayouts;
 use object::{Kind, Object};
+use statistics::{SceneCounts, StageTimer};
+use watch::Watch;
 
 /// The number of recordings that may wait for their submission or execution.
 pub const RECORDINGS: usize = 4;
@@ -93,15 +105,14 @@ pub const RECORDINGS: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Tells this scene's views and handles from others'.
-    number: SceneNumber,
     objects: Slots<Object>,
     shares: Shares,
     light: Light,
     /// Seconds since the scene began, and seconds since the last frame.
     now: f64,
     step: f32,
-    frame: u32,
+    /// Number of frames that were recorded.
+    frames: u64,
     layout: Option<Layout>,
     layouts: u64,
     staging: StagingRing,
@@ -109,6 +120,11 @@ pub struct Scene {
     uploaded: usize,
     passes: Passes,
     layouts_of_groups: SceneLayouts,
+    /// Whether frames are counted.
+    counted: bool,
+    counts: Option<SceneCounts>,
+    timer: Option<StageTimer>,
+    watch: Option<Watch>,
 }
 
 #[derive(Debug)]
@@ -131,13 +147,12 @@ impl Scene {
         };
         Ok(Self {
             gpu: gpu.clone(),
-            number: SceneNumber::next(),
             objects: Slots::default(),
             shares: Shares::default(),
             light: Light::default(),
             now: 0.0,
             step: 0.0,
-            frame: 0,
+            frames: 0,
             layout: None,
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),
@@ -145,6 +160,10 @@ impl Scene {
             uploaded: 0,
             passes,
             layouts_of_groups: SceneLayouts::new(gpu)?,
+            counted: false,
+            counts: None,
+            timer: None,
+            watch: None,
         })
     }
 
@@ -215,6 +234,6 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, self.number, quality)
+        View::new(&self.gpu, self.objects.scene(), quality)
     }
 }

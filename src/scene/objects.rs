@@ -78,7 +78,7 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { scene: self.number, index, generation }
+        ObjectId { scene: self.objects.scene(), index, generation }
     }
 
     /// Removes an object with all of its instances, and releases its memory.
@@ -110,7 +110,7 @@ impl Scene {
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {
         let ObjectId { scene, index, generation } = object;
-        if scene != self.number {
+        if scene != self.objects.scene() {
             return Err(foreign("object"));
         }
         self.objects.get_mut([index, generation]).ok_or_else(|| stale("object", index, generation))
@@ -118,7 +118,7 @@ impl Scene {
 
     pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
         let ObjectId { scene, index, generation } = object;
-        if scene != self.number {
+        if scene != self.objects.scene() {
             return Err(foreign("object"));
         }
         self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))

@@ -1,7 +1,7 @@
 //! What a scene knows of its instances, and, for measurements, what a view draws of them.
 
 use super::handles::stale;
-use super::object::Kind;
+use super::object::{Kind, Object};
 use super::{ClipTime, InstanceId, ObjectId, Placement, Scene};
 use crate::InputError;
 use crate::shared::lod::instance::SceneInstance;
@@ -40,8 +40,14 @@ impl Scene {
         let InstanceId { object, index, .. } = self.existing(instance)?;
         match &self.object_at(object)?.kind {
             Kind::Character(character) => character.clip_time(index, self.now).map(Some),
-            Kind::Mesh | Kind::Terrain(_) => Ok(None),
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(None),
         }
+    }
+
+    /// The object of an instance that exists.
+    pub(super) fn object_of(&self, instance: InstanceId) -> Result<&Object, InputError> {
+        let InstanceId { object, .. } = self.existing(instance)?;
+        self.object_at(object)
     }
 
     /// The instance, if it exists.
@@ -114,7 +120,7 @@ mod drawn {
         }
 
         fn lists_of<'a>(&self, view: &'a View) -> Result<&'a ViewLists, InputError> {
-            let lists = view.lists.as_ref().filter(|_| view.is_of(self.number));
+            let lists = view.lists.as_ref().filter(|_| view.is_of(self.objects.scene()));
             let bound = "must be of this scene, and recorded";
             lists.ok_or_else(|| InputError::new("view", "not recorded", bound))
         }

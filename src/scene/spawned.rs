@@ -116,7 +116,7 @@ impl Scene {
                 let bound = "must be an instance of a mesh or a character";
                 Err(InputError::new("instance", "a patch of terrain", bound))
             }
-            Kind::Mesh | Kind::Character(_) => Ok(object),
+            Kind::Mesh(_) | Kind::Character(_) => Ok(object),
         }
     }
 

@@ -4,12 +4,15 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod counts;
 mod frame;
+mod host;
 mod life;
 mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
+mod query;
 mod targets;
 mod views;
 mod world;

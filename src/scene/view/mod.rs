@@ -1,5 +1,6 @@
 //! Views: a camera into a scene, with what it sees and how fine.
 
+mod counted;
 pub(crate) mod lists;
 mod uniforms;
 
@@ -17,6 +18,7 @@ use crate::scene::handles::SceneNumber;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
+use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
@@ -39,6 +41,7 @@ pub struct View {
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
     pub(crate) lists: Option<ViewLists>,
+    counts: Option<ViewCounts>,
 }
 
 impl View {
@@ -56,6 +59,7 @@ impl View {
             select,
             drawn,
             lists: None,
+            counts: None,
         })
     }
 
