@@ -37,8 +37,6 @@ mod terrain;
 mod view;
 mod watch;
 
-use std::sync::Arc;
-
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
 pub use pick::Bounds;
@@ -59,7 +57,7 @@ use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::{Error, InputError};
-use handles::{Slots, stale};
+use handles::Slots;
 use layout::Layout;
 use layouts::SceneLayouts;
 use object::{Kind, Object};
@@ -102,8 +100,6 @@ pub const RECORDINGS: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Tells this scene's views from others'.
-    token: Arc<()>,
     objects: Slots<Object>,
     shares: Shares,
     light: Light,
@@ -146,7 +142,6 @@ impl Scene {
         };
         Ok(Self {
             gpu: gpu.clone(),
-            token: Arc::default(),
             objects: Slots::default(),
             shares: Shares::default(),
             light: Light::default(),
@@ -236,10 +231,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
-        let ObjectId { index, generation } = object;
-        let entry =
-            self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))?;
-        Ok(entry.coarsening)
+        Ok(self.object_at(object)?.coarsening)
     }
 
     /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
@@ -252,11 +244,11 @@ impl Scene {
         self.now
     }
 
-    /// A view into the scene.
+    /// A view into the scene. It needs a camera ([`View::set`]) before a frame is recorded.
     ///
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, &self.token, quality)
+        View::new(&self.gpu, self.objects.scene(), quality)
     }
 }

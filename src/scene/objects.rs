@@ -3,7 +3,7 @@
 use crate::asset::Model;
 use crate::gpu::Upload as _;
 use crate::scene::Scene;
-use crate::scene::handles::{ObjectId, stale};
+use crate::scene::handles::{ObjectId, foreign, stale};
 use crate::scene::object::{Kind, Object};
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
@@ -15,8 +15,8 @@ impl Scene {
     /// [`Scene::ground`] reads.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, and for more
+    /// patches than one binding holds; [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         self.gpu.clone().block_on(self.add_terrain_async(source))
@@ -40,18 +40,18 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, or no terrain.
     pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
-        let ObjectId { index, generation } = terrain;
-        let object =
-            self.objects.get([index, generation]).ok_or_else(|| stale("terrain", index, generation))?;
-        match &object.kind {
+        match &self.object_at(terrain)?.kind {
             Kind::Terrain(terrain) => Ok(terrain.point_at(x, z)),
             _ => Err(InputError::new("terrain", "a mesh or a character", "must be terrain")),
         }
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
-    /// ([`add_levels`](crate::skinning::add_levels)) and materials. There is room for at least `capacity` instances, 1 to
-    /// 2²⁰; [`Scene::spawn`] says what happens to more.
+    /// ([`add_levels`](crate::skinning::add_levels); without them, every instance is drawn in full) and materials. There is
+    /// room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more. A world unit is one unit of
+    /// the model times [`Placement::scale`](crate::scene::Placement::scale);
+    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) tells about how large a model
+    /// is.
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
@@ -132,7 +132,7 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { index, generation }
+        ObjectId { scene: self.objects.scene(), index, generation }
     }
 
     /// Removes an object with all of its instances, and releases its memory.
@@ -140,8 +140,8 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn remove(&mut self, object: ObjectId) -> Result<(), InputError> {
-        let ObjectId { index, generation } = object;
-        self.objects.remove([index, generation]).ok_or_else(|| stale("object", index, generation))?;
+        self.object_at(object)?;
+        self.objects.remove([object.index, object.generation]);
         self.layout = None;
         Ok(())
     }
@@ -164,7 +164,18 @@ impl Scene {
     }
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {
-        let ObjectId { index, generation } = object;
+        let ObjectId { scene, index, generation } = object;
+        if scene != self.objects.scene() {
+            return Err(foreign("object"));
+        }
         self.objects.get_mut([index, generation]).ok_or_else(|| stale("object", index, generation))
+    }
+
+    pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
+        let ObjectId { scene, index, generation } = object;
+        if scene != self.objects.scene() {
+            return Err(foreign("object"));
+        }
+        self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
     }
 }
