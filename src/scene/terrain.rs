@@ -30,7 +30,7 @@ const MARGIN: u32 = 1;
 
 /// Terrain for [`Scene::add_terrain`](crate::scene::Scene::add_terrain): a recipe, the patches to show, and the textures of
 /// its zones. The origin of the world is the first sample of patch (0, 0), in the north-west; an edge of a patch is
-/// [`Config::edge_length`] world units long, and a height unit is a world unit.
+/// [`Config::terrain_scale`] · ([`Config::patch_size`] − 1) world units long, and a height unit is a world unit.
 #[derive(Debug, Clone)]
 pub struct TerrainSource {
     recipe: Recipe,
