@@ -48,7 +48,7 @@ impl World {
         let place = ground(&scene, 16.0, 12.0);
         scene.spawn(walls, Placement { at: place.at + Vec3::Y * 3.0, ..place.scaled(8.0) })?;
         if evening {
-            scene.set_light(Light { direction: [-0.8, 0.3, 0.1], ..Light::default() })?;
+            scene.set_light(Light { direction: Vec3::new(-0.8, 0.3, 0.1), ..Light::default() })?;
         }
         let mut renderer = Renderer::new(gpu, &TargetFormat::new(COLOR))?;
         renderer.prepare_async(&scene).await?;
