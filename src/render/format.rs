@@ -10,10 +10,33 @@ use crate::InputError;
 ///
 /// The first colour attachments are written; [`Contents`] says how many, and with what. Others may belong to the caller's
 /// own draws: what a renderer draws leaves them as they are.
+///
+/// # Examples
+///
+/// ```
+/// use relievo::render::{DepthFormat, TargetFormat};
+/// use wgpu::TextureFormat;
+///
+/// // A window with four samples, and depth of 1 near and 0 far. Clear it to 0.
+/// let window = TargetFormat::new(TextureFormat::Bgra8UnormSrgb).with_samples(4).reversed();
+///
+/// // An engine's pass with a second attachment of its own, and a stencil.
+/// let depth = DepthFormat { format: TextureFormat::Depth24PlusStencil8, reversed: false };
+/// let engine = TargetFormat::new(TextureFormat::Rgba16Float)
+///     .with_color(Some(TextureFormat::R32Uint.into()))
+///     .with_depth(Some(depth));
+///
+/// let shadow_map = TargetFormat::depth_only(TextureFormat::Depth32Float);
+/// for format in [window, engine, shadow_map] {
+///     format.validate()?;
+/// }
+/// # Ok::<(), relievo::InputError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with holes as in the pass. Those that hold what [`TargetFormat::contents`] says are
-    /// written as they say.
+    /// Colour attachments, at most 8, with `None` where the pass has none. Those that hold [`TargetFormat::contents`] are
+    /// written, with their blending and write masks. Shading writes values in linear light, which a format with `Srgb` in
+    /// its name encodes; the format must hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
     /// What the first colours hold.
     pub contents: Contents,
@@ -93,7 +116,8 @@ impl TargetFormat {
         Self { samples, ..self }
     }
 
-    /// Checks what the library needs of the attachments. What the device allows is checked when pipelines are compiled.
+    /// Checks what the library needs of the attachments. [`Renderer::new`](super::Renderer::new) checks what the device
+    /// allows.
     ///
     /// # Errors
     /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour of integers, a colour or
@@ -152,22 +176,63 @@ impl TargetFormat {
         Ok(())
     }
 
-    /// Checks that a device with these limits allows as many bytes of colour a sample.
+    /// Checks what a device allows of the attachments.
     ///
     /// # Errors
-    /// [`InputError`] if there are more.
-    pub(super) fn check_bytes(&self, limits: &wgpu::Limits) -> Result<(), InputError> {
-        let aligned = |sum: u32, format: Format| {
-            let (bytes, alignment) = (format.target_pixel_byte_cost(), format.target_component_alignment());
-            sum.next_multiple_of(alignment.unwrap_or(1)) + bytes.unwrap_or(0)
-        };
-        let bytes = self.color.iter().flatten().map(|color| color.format).fold(0, aligned);
-        let most = limits.max_color_attachment_bytes_per_sample;
+    /// [`InputError`] that names the field: a format that needs a feature, one that cannot be rendered to, blended or have
+    /// so many samples, and colours with more bytes a sample than the device's limit.
+    pub(super) fn check_on(&self, device: &wgpu::Device) -> Result<(), InputError> {
+        let mut bytes = 0_u32;
+        for (at, color) in self.color.iter().enumerate() {
+            let Some(color) = color else { continue };
+            let has = self.check_attachment(&format!("format.color[{at}].format"), color.format, device)?;
+            // What is drawn blends into the first colour alone.
+            let blends = at == 0 && color.blend.is_some();
+            if blends && !has.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
+                let bound = format!("must be none for {:?}", color.format);
+                return Err(InputError::new("format.color[0].blend", "some", bound));
+            }
+            let (size, alignment) =
+                (color.format.target_pixel_byte_cost(), color.format.target_component_alignment());
+            bytes = bytes.next_multiple_of(alignment.unwrap_or(1)) + size.unwrap_or(0);
+        }
+        let most = device.limits().max_color_attachment_bytes_per_sample;
         if bytes > most {
-            let bound = format!("must be at most {most} bytes a sample, the device's limit");
-            return Err(InputError::new("format.color", bytes, bound));
+            let bound = format!("must take at most {most}, the device's limit");
+            return Err(InputError::new("format.color", format!("{bytes} bytes a sample"), bound));
+        }
+        if let Some(depth) = self.depth {
+            self.check_attachment("format.depth.format", depth.format, device)?;
         }
         Ok(())
+    }
+
+    /// What a device can do with the format of an attachment.
+    fn check_attachment(
+        &self,
+        path: &str,
+        format: wgpu::TextureFormat,
+        device: &wgpu::Device,
+    ) -> Result<wgpu::TextureFormatFeatureFlags, InputError> {
+        let features = device.features();
+        if !features.contains(format.required_features()) {
+            let bound = "must need no feature that the device was opened without";
+            return Err(InputError::new(path, format!("{format:?}"), bound));
+        }
+        if features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
+            // What such a device allows is known when pipelines are compiled.
+            return Ok(wgpu::TextureFormatFeatureFlags::all());
+        }
+        let has = format.guaranteed_format_features(features);
+        if !has.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+            let bound = "must be a format that the device can render to";
+            return Err(InputError::new(path, format!("{format:?}"), bound));
+        }
+        if !has.flags.sample_count_supported(self.samples) {
+            let bound = format!("must be a number of samples that {format:?} can have");
+            return Err(InputError::new("format.samples", self.samples, bound));
+        }
+        Ok(has.flags)
     }
 
     /// The layers that can be drawn.
@@ -230,91 +295,4 @@ impl TargetFormat {
 const MAX_COLORS: usize = 8;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn formats_that_no_pass_has_are_refused_by_field() {
-        let good = || TargetFormat::new(Format::Rgba8UnormSrgb);
-        let with = |color: Vec<Option<wgpu::ColorTargetState>>| TargetFormat { color, ..good() };
-        let depth = |format| Some(DepthFormat { format, reversed: true });
-        let surface = |first: Format| {
-            let mut color = TargetFormat::surface().color;
-            color[0] = Some(first.into());
-            color
-        };
-        let mut blended = surface(Format::Rgba16Float);
-        blended[1].as_mut().expect("a colour").blend = Some(wgpu::BlendState::REPLACE);
-        for (format, path) in [
-            (good().with_samples(2), "format.samples"),
-            (good().with_depth(depth(Format::Stencil8)), "format.depth.format"),
-            (with(vec![Some(Format::R32Uint.into())]), "format.color[0].format"),
-            (with(vec![Some(Format::Depth32Float.into())]), "format.color[0].format"),
-            (good().with_color(Some(Format::Depth24Plus.into())), "format.color[1].format"),
-            (with(vec![None; 9]), "format.color.len"),
-            (with(vec![None]).with_depth(None), "format"),
-            (TargetFormat { color: vec![], ..TargetFormat::surface() }, "format.color[0]"),
-            (
-                TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() },
-                "format.color[0].format",
-            ),
-            (
-                TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() },
-                "format.color[0].format",
-            ),
-            (TargetFormat { color: blended, ..TargetFormat::surface() }, "format.color[1].blend"),
-            (TargetFormat::surface().with_depth(None), "format.depth"),
-            (TargetFormat::measure().with_samples(4), "format.samples"),
-            (TargetFormat { contents: Contents::Velocity, ..good() }, "format.color[0].format"),
-        ] {
-            assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
-        }
-        for format in [
-            good().with_samples(4).reversed(),
-            good().with_color(None).with_color(Some(Format::R32Uint.into())).with_depth(None),
-            TargetFormat::depth_only(Format::Depth24PlusStencil8),
-            with(vec![None, Some(Format::Rgba16Float.into())]),
-            TargetFormat::surface().with_samples(4).reversed(),
-            TargetFormat { color: surface(Format::Rgba32Float), ..TargetFormat::surface() },
-            TargetFormat::measure(),
-            TargetFormat::velocity().with_samples(4),
-        ] {
-            assert_eq!(format.validate(), Ok(()), "{format:?}");
-        }
-    }
-
-    #[test]
-    fn bytes_of_a_sample_are_counted_as_webgpu_counts_them() {
-        let limits = wgpu::Limits::default();
-        let measure = TargetFormat::measure();
-        assert_eq!(measure.check_bytes(&limits), Ok(()));
-        // 16 + 8 + 8; a colour of 8 bits a channel counts 8 bytes.
-        let full = measure.with_color(Some(Format::Rgba8Unorm.into()));
-        assert_eq!(full.check_bytes(&limits), Ok(()));
-        let error = full.with_color(Some(Format::R8Unorm.into())).check_bytes(&limits).expect_err("33 bytes");
-        assert_eq!((&*error.path, &*error.value), ("format.color", "33"));
-    }
-
-    #[test]
-    fn only_the_first_color_is_written_and_only_in_color() {
-        let blended = wgpu::ColorTargetState {
-            format: Format::Rgba8Unorm,
-            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            write_mask: wgpu::ColorWrites::COLOR,
-        };
-        let format = TargetFormat {
-            color: vec![Some(blended.clone()), None, Some(blended.clone())],
-            ..TargetFormat::new(Format::R8Unorm)
-        };
-        let masks = |layer| {
-            let targets = format.targets(layer);
-            targets
-                .into_iter()
-                .map(|target| target.map(|target| (target.write_mask, target.blend)))
-                .collect::<Vec<_>>()
-        };
-        let left = Some((wgpu::ColorWrites::empty(), None));
-        assert_eq!(masks(Layer::Color), [Some((blended.write_mask, blended.blend)), None, left]);
-        assert_eq!(masks(Layer::Depth), [left, None, left]);
-    }
-}
+mod tests;

@@ -337,6 +337,7 @@ fn velocities_need_the_last_frame() {
     let gpu = device();
     let (mut scene, mut view) = scene(&gpu);
     scene.keep_last_frame(false).expect("not kept");
+    scene.add_mesh(&model(&cube(), plain([1.0; 4], Alpha::Opaque), false), 1).expect("added");
     let raw = Raw::new(&gpu, TargetFormat::velocity(), SIZE);
     let renderer = raw.renderer(&gpu, &scene);
     let mut encoder = gpu.encoder("refused");

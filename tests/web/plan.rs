@@ -100,7 +100,7 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
         // Entries of such names take the vertices of one.
         let kind = |entry: &Value| {
-            ["_bumpy", "_whole", "_moving"].into_iter().find(|end| name_of(entry).ends_with(end))
+            ["_plain", "_bumpy", "_whole", "_moving"].into_iter().find(|end| name_of(entry).ends_with(end))
         };
         let fitting = of_stage("fragment").into_iter().filter(|fragment| kind(vertex) == kind(fragment));
         all.extend(fitting.map(|fragment| {

@@ -8,6 +8,8 @@ import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
+// Whether the only material of a part has a texture.
+override TEXTURED: bool = false;
 // Whether the colour is blended with what is behind it, by its alpha.
 override BLENDED: bool = false;
 // For whole surfaces: whether alpha leaves out pixels, and whether a material has a normal map.
@@ -68,6 +70,15 @@ struct BumpyVertex {
     @location(3) tangent: vec4<f32>,
 }
 
+// A vertex of an opaque part with one material and without a normal map.
+struct PlainVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    // The normal on the side of triangles that is in front, if both are seen, else outwards; w: the texture coordinate u.
+    @location(0) normal_and_u: vec4<f32>,
+    // The texture coordinate v, and the colour of the material and the instance, which all vertices of a triangle share.
+    @location(1) v_and_color: vec4<f32>,
+}
+
 // A vertex with everything that there is to know of a surface.
 struct WholeVertex {
     @invariant @builtin(position) clip: vec4<f32>,
@@ -79,6 +90,17 @@ struct WholeVertex {
     @location(4) position: vec3<f32>,
     // The index of the instance in the object.
     @location(5) @interpolate(flat) instance: u32,
+}
+
+@vertex
+fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> PlainVertex {
+    let placed = placed_vertex(instance, vertex);
+    let color = materials[0].color * unpack4x8unorm(placed.tint);
+    let is_behind = DOUBLE_SIDED && view.side * placed.side < 0.0;
+    return PlainVertex(
+        view.clip_from_world * vec4<f32>(placed.position, 1.0),
+        vec4<f32>(select(placed.normal, -placed.normal, is_behind), placed.uv.x),
+        vec4<f32>(placed.uv.y, color.rgb));
 }
 
 @vertex
@@ -159,6 +181,17 @@ fn bumpy_normal(in: BumpyVertex) -> vec3<f32> {
     let bitangent = in.tangent.w * cross(normal, tangent);
     let bumpy = normalize(bump.x * tangent + bump.y * bitangent + bump.z * normal);
     return select(bumpy, normal, is_plain);
+}
+
+// Ignores alpha.
+@fragment
+fn opaque_plain(in: PlainVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    var color = in.v_and_color.yzw;
+    if TEXTURED {
+        color *= textureSample(albedo, filtering, vec2<f32>(in.normal_and_u.w, in.v_and_color.x), 0).rgb;
+    }
+    let normal = normalize(in.normal_and_u.xyz);
+    return scene_shaded(scene_surface(color, select(normal, -normal, DOUBLE_SIDED && !is_front)));
 }
 
 fn flat_lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {

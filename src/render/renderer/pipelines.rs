@@ -15,7 +15,12 @@ use crate::surface::{ReliefOptions, Shadow};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     /// A mesh with materials.
-    Mesh { surface: SurfaceKind, normal_mapped: bool },
+    Mesh {
+        surface: SurfaceKind,
+        normal_mapped: bool,
+        /// Whether the only material of an opaque part without a normal map has a texture; `None` for other parts.
+        only_textured: Option<bool>,
+    },
     /// A mesh with relief.
     Relief { double_sided: bool, options: ReliefOptions },
     /// Patches of terrain, seen from both sides.
@@ -26,7 +31,13 @@ impl Kind {
     pub fn of(part: &MeshPart) -> Self {
         match &part.materials {
             MeshMaterials::Plain(materials) => {
-                Self::Mesh { surface: part.surface, normal_mapped: materials.normal_mapped }
+                let (surface, normal_mapped) = (part.surface, materials.normal_mapped);
+                let is_plain = !surface.cut_out && !surface.blended && !normal_mapped;
+                Self::Mesh {
+                    surface,
+                    normal_mapped,
+                    only_textured: materials.only_textured.filter(|_| is_plain),
+                }
             }
             MeshMaterials::Relief(relief) => {
                 Self::Relief { double_sided: part.surface.double_sided, options: relief.options }
@@ -45,9 +56,11 @@ impl Kind {
         let is_lit = layer.is_shaded();
         let has_normals = is_lit || layer == Layer::Surface;
         match self {
-            Self::Mesh { surface, normal_mapped } => {
-                Self::Mesh { surface, normal_mapped: normal_mapped && has_normals }
-            }
+            Self::Mesh { surface, normal_mapped, only_textured } => Self::Mesh {
+                surface,
+                normal_mapped: normal_mapped && has_normals,
+                only_textured: only_textured.filter(|_| layer == Layer::Color),
+            },
             Self::Relief { double_sided, options } => {
                 let shadow = if is_lit { options.shadow } else { Shadow::None };
                 let normal_map = options.normal_map.filter(|_| has_normals);
