@@ -277,7 +277,9 @@ impl Character {
             self.changed.all(self.plays.len());
         }
         for [from, to] in self.changed.take(self.plays.len()) {
-            let plays = self.plays[from..to].iter().map(|play| self.on_device(play));
+            let clips = &self.merged.model.clips;
+            let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
+            let plays = self.plays[from..to].iter().map(|play| play.on_device(duration(play), self.epoch));
             staged.elements(&self.runtime.crowd.instances, from, &plays.collect::<Vec<_>>())?;
         }
         let elapsed = (now - self.epoch) as f32;
@@ -286,19 +288,6 @@ impl Character {
             weights.set_through(staged, elapsed)?;
         }
         Ok(())
-    }
-
-    /// What an instance plays, with a start that is counted from the epoch. The start of a clip that repeats is moved by
-    /// whole repetitions, so that it stays near.
-    fn on_device(&self, play: &Playing) -> Instance {
-        let mut start = play.start - self.epoch;
-        let duration = f64::from(self.merged.model.clips[play.clip as usize].duration());
-        let period = duration / f64::from(play.rate.abs());
-        if play.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
-            start %= period;
-        }
-        // The device computes start + rate · elapsed inside the clip.
-        Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
     }
 
     /// Adds a stage to a compute pass.
