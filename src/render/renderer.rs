@@ -147,13 +147,14 @@ impl Renderer {
 
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
     /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: bind group 3,
-    /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format,
-    /// which wgpu checks.
+    /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the
+    /// renderer's format, which wgpu checks.
     ///
     /// # Errors
     /// [`InputError`] for a scene on another device; a view of another scene; one that was not recorded since objects were
     /// added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
-    /// of depth; a layer that the format has no attachment for; and objects that were added since [`Renderer::prepare`].
+    /// of depth; a layer that the format has no attachment for; objects that were added since [`Renderer::prepare`]; and for
+    /// [`Layer::Velocity`] a scene that does not keep its last frame.
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
