@@ -130,7 +130,7 @@ impl Renderer {
     /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; what the driver's compiler reports.
+    /// [`InputError`] for a scene on another device of the same [`wgpu::Instance`]; what the driver's compiler reports.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.check_device(scene)?;
         self.prepare_objects(scene.drawables())
@@ -174,6 +174,7 @@ impl Renderer {
         self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
     }
 
+    /// wgpu does not tell devices of different instances from each other.
     fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
         match scene.gpu().device() == self.gpu.device() {
             true => Ok(()),

@@ -31,7 +31,7 @@ use uniforms::{lod_camera, terrain_view};
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 ///
 /// What is set of a view counts from the next [`Scene::record`](super::Scene::record) on. Set it before that, and not between
-/// recording and drawing.
+/// recording and drawing. For half of a split screen, [`Camera::viewport`] is the size of that half.
 ///
 /// # Examples
 ///
