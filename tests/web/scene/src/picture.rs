@@ -10,8 +10,8 @@ use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource, View
 use relievo::terrain::config::Config;
 use relievo::{Error, wgpu};
 
-/// Pixels of the picture. Rows are 1024 bytes, which copies need.
-pub const SIZE: [u32; 2] = [256, 192];
+/// Pixels of the picture. Rows are 2048 bytes: copies need multiples of 256.
+pub const SIZE: [u32; 2] = [512, 384];
 
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const SKY: wgpu::Color = wgpu::Color { r: 0.36, g: 0.55, b: 0.8, a: 1.0 };
@@ -48,7 +48,7 @@ impl World {
         let place = ground(&scene, 16.0, 12.0);
         scene.spawn(walls, Placement { at: place.at + Vec3::Y * 3.0, ..place.scaled(8.0) })?;
         if evening {
-            scene.set_light(Light { direction: [-0.8, 0.3, 0.1], ..Light::default() })?;
+            scene.set_light(Light { direction: Vec3::new(-0.8, 0.3, 0.1), ..Light::default() })?;
         }
         let mut renderer = Renderer::new(gpu, &TargetFormat::new(COLOR))?;
         renderer.prepare_async(&scene).await?;
