@@ -18,6 +18,7 @@ mod job;
 mod kernel;
 mod memory;
 mod readback;
+mod readback_ring;
 pub mod shaders;
 mod shared;
 #[cfg(not(target_arch = "wasm32"))]
@@ -38,6 +39,7 @@ pub use job::{IndirectJob, Job, compute_pass};
 pub use kernel::{Group, Kernel};
 pub(crate) use kernel::{Layouts, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
+pub use readback_ring::ReadbackRing;
 #[cfg(not(target_arch = "wasm32"))]
 pub use timer::{Measurement, TimedBy, Timer};
 pub(crate) use tuning::Tuning;

@@ -1,5 +1,7 @@
 //! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
 
+mod posed;
+
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
 use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
@@ -9,15 +11,16 @@ use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
 use crate::lod::assign::{AssignBuffers, AssignPass};
 use crate::lod::{LodObject, SceneDraw, SceneInstance, SelectView};
 use crate::scene::drawable::Drawable;
+use crate::scene::frame::Stage;
 use crate::scene::instances::Changed;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
 use crate::scene::paging::{Needs, Paging, needs};
-use crate::scene::placement::{ClipTime, Play};
+use crate::scene::placement::Play;
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
-use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
@@ -41,6 +44,8 @@ pub(super) struct Character {
     unit: f32,
     /// The displacement of vertices per step of the fade of influences.
     stray: f32,
+    /// For each bone, the largest distance of a vertex that follows it, in the bone's space; `None` if none does.
+    radii: Vec<Option<f32>>,
     /// A sphere around each clip.
     spheres: Vec<BoundingSphere>,
     plays: Vec<Playing>,
@@ -87,11 +92,13 @@ impl Character {
         let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
         let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
         let gate = Gate::Bounded(table);
+        let follows = radii.iter().zip(followed(model));
+        let radii = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let plays = vec![Playing::REST; capacity];
         let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
         let mut changed = Changed::default();
         changed.all(capacity);
-        Ok(Self { merged, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, runtime })
+        Ok(Self { merged, set, gate, unit, stray, radii, spheres, plays, changed, epoch: 0.0, runtime })
     }
 
     /// Makes room for more instances. All of them start afresh.
@@ -157,14 +164,6 @@ impl Character {
             .clip(name)
             .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
-    }
-
-    /// The clip that an instance plays, and the time in it at a time of the scene.
-    pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
-        let play = &self.plays[index as usize];
-        let duration = self.merged.model.clips[play.clip as usize].duration();
-        let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
-        Ok(ClipTime { clip: play.clip as usize, seconds })
     }
 
     /// The skinned vertices of an instance, mesh by mesh.
@@ -277,13 +276,22 @@ impl Character {
         Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
     }
 
-    /// Adds sampling, gating and skinning to a compute pass.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+    /// Adds a stage to a compute pass.
+    pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
         let runtime = &self.runtime;
-        runtime.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
-        runtime.frame.dispatch(pass);
-        runtime.weights.iter().for_each(|weights| weights.dispatch(pass));
-        runtime.skins.iter().for_each(|skin| skin.dispatch(pass));
+        match stage {
+            Stage::Select => {}
+            Stage::Gate => {
+                runtime.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
+                runtime.frame.dispatch_gate(pass);
+            }
+            Stage::Sample => {
+                runtime.frame.dispatch_sample(pass);
+                runtime.weights.iter().for_each(|weights| weights.dispatch(pass));
+            }
+            Stage::LocalToModel => runtime.frame.dispatch_local_to_model(pass),
+            Stage::Skin => runtime.skins.iter().for_each(|skin| skin.dispatch(pass)),
+        }
     }
 }
 

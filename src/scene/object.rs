@@ -1,8 +1,10 @@
 //! Objects: what all instances of one model or one terrain share.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
-use crate::asset::Model;
+use crate::asset::{Mesh, Model};
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
@@ -14,11 +16,14 @@ use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
 use crate::scene::quality::Shares;
+use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
+use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
 
 /// An object of a scene.
@@ -47,11 +52,33 @@ pub(crate) struct Object {
     pub(super) fitted: u64,
 }
 
+/// What the host keeps of a mesh that does not move by itself.
+#[derive(Debug)]
+pub(super) struct MeshOnHost {
+    /// Its triangles in full detail.
+    pub surfaces: Vec<Surface>,
+}
+
+impl MeshOnHost {
+    /// Of merged meshes at rest.
+    fn of_merged(merged: &Merged) -> Self {
+        let meshes = merged.model.meshes.iter().enumerate();
+        let surface = |(at, mesh): (usize, &Mesh)| Surface::of_merged(merged, at, mesh.positions.clone());
+        Self { surfaces: meshes.map(surface).collect() }
+    }
+
+    /// Of a mesh with relief.
+    fn of_relief(Relief { mesh, double_sided, .. }: &Relief) -> Self {
+        let positions = mesh.vertices.iter().map(|vertex| vertex.position).collect();
+        Self { surfaces: vec![Surface::new(positions, mesh.indices.clone(), *double_sided)] }
+    }
+}
+
 /// What an object is.
 #[derive(Debug)]
 pub(super) enum Kind {
     Terrain(Terrain),
-    Mesh,
+    Mesh(MeshOnHost),
     Character(Box<Character>),
 }
 
@@ -101,7 +128,8 @@ impl Object {
         let instances = room(capacity)?;
         let (merged, sphere) = mesh::at_rest_merged(model)?;
         let drawn = mesh::drawn(gpu, layouts, &merged)?;
-        Ok(Self::new(Kind::Mesh, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+        let kind = Kind::Mesh(MeshOnHost::of_merged(&merged));
+        Ok(Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
     }
 
     /// A mesh with relief.
@@ -113,7 +141,8 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
-        Ok(Self::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), drawn))
+        let kind = Kind::Mesh(MeshOnHost::of_relief(relief));
+        Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// A model that has clips.
@@ -136,7 +165,7 @@ impl Object {
     pub(super) fn spacing(&self) -> Option<f64> {
         match &self.kind {
             Kind::Terrain(terrain) => Some(terrain.spacing),
-            Kind::Mesh | Kind::Character(_) => None,
+            Kind::Mesh(_) | Kind::Character(_) => None,
         }
     }
 
@@ -222,7 +251,7 @@ impl Object {
             Kind::Character(character) => {
                 character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
             }
-            Kind::Mesh | Kind::Terrain(_) => Ok(()),
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
         }
     }
 
@@ -273,5 +302,6 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
         range.first_list += 2 * object.errors.len() as u32 * instances;
         range.first_draw += object.draws.len() as u32;
     }
-    Layout::new(gpu, (&all, draws), range, version)
+    let counted = Arc::new(Counted::new(objects));
+    Layout::new(gpu, (&all, draws), range, (version, counted))
 }

@@ -4,11 +4,14 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod counts;
 mod frame;
+mod host;
 mod life;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
+mod query;
 mod targets;
 mod views;
 mod world;

@@ -1,5 +1,6 @@
 //! Views: a camera into a scene, with what it sees and how fine.
 
+mod counted;
 pub(crate) mod lists;
 mod uniforms;
 
@@ -18,6 +19,7 @@ use crate::scene::camera::Camera;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
+use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
@@ -35,6 +37,7 @@ pub struct View {
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
     pub(crate) lists: Option<ViewLists>,
+    counts: Option<ViewCounts>,
 }
 
 impl View {
@@ -52,6 +55,7 @@ impl View {
             select,
             drawn,
             lists: None,
+            counts: None,
         })
     }
 
