@@ -15,7 +15,9 @@ use crate::animation::ModelMatrices;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::asset::Model;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
-use crate::skinning::vertex::{Blend, Vertex};
+use crate::skinning::vertex::Blend;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::skinning::vertex::Vertex;
 
 /// The prepared skinning of all instances of one mesh into pages, by linear blending.
 #[derive(Debug, Clone)]
