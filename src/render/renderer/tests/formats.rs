@@ -20,8 +20,13 @@ fn kinds() -> Vec<Kind> {
     let flags = || [false, true].into_iter();
     let surfaces =
         flags().flat_map(|cut_out| flags().map(move |double_sided| SurfaceKind { cut_out, double_sided }));
-    let meshes =
-        surfaces.flat_map(|surface| flags().map(move |normal_mapped| Kind::Mesh { surface, normal_mapped }));
+    let mesh = |surface, normal_mapped, only_textured| Kind::Mesh { surface, normal_mapped, only_textured };
+    let meshes = surfaces.flat_map(|surface| {
+        let is_plain = !surface.cut_out;
+        let only =
+            flags().filter(move |_| is_plain).map(move |textured| mesh(surface, false, Some(textured)));
+        flags().map(move |normal_mapped| mesh(surface, normal_mapped, None)).chain(only)
+    });
     let reliefs = Method::ALL.into_iter().flat_map(|method| {
         [
             (Shadow::None, None, false),
