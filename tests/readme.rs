@@ -150,6 +150,21 @@ fn links_lead_somewhere() {
     }
 }
 
+/// A program in `examples/` that nobody finds helps nobody.
+#[test]
+fn every_example_is_named() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let mut programs = 0;
+    for path in std::fs::read_dir(folder).expect("examples").map(|entry| entry.expect("an entry").path()) {
+        if path.extension().is_some_and(|extension| extension == "rs") || path.join("main.rs").exists() {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            assert!(README.contains(&format!("](examples/{name}")), "{name}");
+            programs += 1;
+        }
+    }
+    assert!(programs > 1);
+}
+
 /// Compiles the README's example of embedding, with the variables that it leaves out.
 #[allow(dead_code, reason = "it is compiled, not run")]
 fn embedding(

@@ -6,10 +6,33 @@ use crate::InputError;
 ///
 /// The crate's shading writes the first colour attachment. Others may belong to the caller's own draws: what a
 /// renderer draws leaves them as they are.
+///
+/// # Examples
+///
+/// ```
+/// use relievo::render::{DepthFormat, TargetFormat};
+/// use wgpu::TextureFormat;
+///
+/// // A window with four samples, and depth of 1 near and 0 far. Clear it to 0.
+/// let window = TargetFormat::new(TextureFormat::Bgra8UnormSrgb).with_samples(4).reversed();
+///
+/// // An engine's pass with a second attachment of its own, and a stencil.
+/// let depth = DepthFormat { format: TextureFormat::Depth24PlusStencil8, reversed: false };
+/// let engine = TargetFormat::new(TextureFormat::Rgba16Float)
+///     .with_color(Some(TextureFormat::R32Uint.into()))
+///     .with_depth(Some(depth));
+///
+/// let shadow_map = TargetFormat::depth_only(TextureFormat::Depth32Float);
+/// for format in [window, engine, shadow_map] {
+///     format.validate()?;
+/// }
+/// # Ok::<(), relievo::InputError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with holes as in the pass. The first is written as it says, in linear light; its
-    /// format must hold floats.
+    /// Colour attachments, at most 8, with `None` where the pass has none. The first is written, with its blending and its
+    /// write mask. Shading writes values in linear light, which a format with `Srgb` in its name encodes; the format must
+    /// hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
     /// The depth attachment. Without one, what is drawn last covers the rest.
     pub depth: Option<DepthFormat>,

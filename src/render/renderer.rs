@@ -28,7 +28,38 @@ pub enum Layer {
     Depth,
 }
 
-/// Draws scenes on targets of one format.
+/// Draws scenes on targets of one format. A shadow map, or a target of another format, has a renderer of its own.
+///
+/// # Examples
+///
+/// A prepass of depth, and colour behind it, in one pass with the program's own draws. The whole frame is in
+/// [`scene`](crate::scene#examples).
+///
+/// ```no_run
+/// use relievo::gpu::Gpu;
+/// use relievo::render::{Layer, Renderer, TargetFormat};
+/// use relievo::scene::{Scene, View};
+///
+/// # fn load(gpu: &Gpu, scene: &Scene) -> Result<Renderer, relievo::Error> {
+/// // Once, and `prepare` again whenever objects were added to the scene.
+/// let format = TargetFormat::new(wgpu::TextureFormat::Bgra8UnormSrgb).with_samples(4);
+/// let mut renderer = Renderer::new(gpu, &format)?;
+/// renderer.prepare(scene)?;
+/// # Ok(renderer)
+/// # }
+/// # fn frame(
+/// #     renderer: &Renderer,
+/// #     pass: &mut wgpu::RenderPass<'_>,
+/// #     (scene, view): (&Scene, &View),
+/// # ) -> Result<(), relievo::Error> {
+///
+/// // In a frame, after `Scene::record`.
+/// renderer.draw(pass, scene, view, Layer::Depth)?;
+/// renderer.draw(pass, scene, view, Layer::Color)?;
+/// // From here on, the program sets its own pipeline, bind groups and buffers again.
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -76,8 +107,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Compiles every pipeline that the objects of a scene need and that is not there yet. Call it again after objects
-    /// were added; drawing never compiles.
+    /// Compiles every pipeline that the objects of a scene need and that is not there yet: drawing never compiles. Call it
+    /// again after objects were added. Instances that are spawned, objects that grow, and cameras that change need no new
+    /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -85,14 +117,14 @@ impl Renderer {
         self.prepare_objects(scene.drawables())
     }
 
-    /// Draws a layer of a scene as a view saw it in the last [`Scene::record`]. It sets pipelines, the bind groups 0 to 2,
-    /// the first vertex buffer and the index buffer, and nothing else: viewport, scissor and stencil reference are the
-    /// caller's.
+    /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
+    /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: viewport, scissor
+    /// and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format.
     ///
     /// # Errors
-    /// [`InputError`] for a view of another scene, one that was not recorded since objects were added or grew, one with
-    /// the other direction of depth, a layer that the format has no attachment for, and objects that were added since
-    /// [`Renderer::prepare`].
+    /// [`InputError`] for a view of another scene; one that was not recorded since objects were added, removed or grew, or
+    /// since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction of depth; a layer that the
+    /// format has no attachment for; and objects that were added since [`Renderer::prepare`].
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,

@@ -15,25 +15,55 @@ pub enum Depth {
 }
 
 /// A camera: perspective (with a finite or infinite far plane, off-axis or jittered) or parallel.
+///
+/// # Examples
+///
+/// [`Camera::looking_at`] is a shortcut. An engine has matrices of its own:
+///
+/// ```
+/// use glam::{Mat4, Quat, Vec3};
+/// use relievo::scene::{Camera, Depth};
+///
+/// // Two units above the ground, looking north-west (0.8 to the left of −Z), 0.1 downwards.
+/// let turn = Quat::from_rotation_y(0.8) * Quat::from_rotation_x(-0.1);
+/// let world_from_view = Mat4::from_rotation_translation(turn, Vec3::new(0.0, 2.0, 0.0));
+/// let camera = Camera {
+///     cell: [0; 3],
+///     view_from_world: world_from_view.inverse(),
+///     // Reversed depth: 1 at 0.1 units ahead, 0 at infinity. The renderer's format says so too.
+///     clip_from_view: glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 16.0 / 9.0, 0.1),
+///     viewport: [1920, 1080],
+///     depth: Depth::Reversed,
+/// };
+/// assert!(camera.eye().distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-5);
+/// camera.validate()?;
+/// # Ok::<(), relievo::InputError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// The cell to whose corner the world of `view_from_world` is relative; see
-    /// [`Placement`](crate::scene::Placement). Near the origin of the world, (0, 0, 0) will do.
+    /// The cell to whose corner the world of `view_from_world` is relative: corner `cell` ·
+    /// [`Placement::CELL`](crate::scene::Placement::CELL) is its origin. Near the origin of the world, (0, 0, 0) will do;
+    /// kilometres away, the eye's own cell keeps the picture from trembling.
     pub cell: [i32; 3],
     /// The matrix from the world, relative to the cell's corner, to the camera's space: a rotation and a translation. It
-    /// may mirror.
+    /// may mirror, as for a reflection in water.
     pub view_from_world: Mat4,
-    /// The projection, to clip space with depth 0 to 1.
+    /// The projection, to clip space: +X to the right, +Y up, depth 0 to 1. It says which way the camera looks: along −Z if it
+    /// is made for right-handed spaces.
     pub clip_from_view: Mat4,
-    /// Width and height of the picture in pixels.
+    /// Width and height of the picture in physical pixels: those that [`Quality::pixels`](crate::scene::Quality::pixels)
+    /// counts, and those of the viewport that the caller sets in its pass.
     pub viewport: [u32; 2],
-    /// The direction of depth, which must agree with that of the target.
+    /// The direction of depth, which must be that of the projection, and of the renderer's
+    /// [`TargetFormat`](crate::render::TargetFormat).
     pub depth: Depth,
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, both relative to cell (0, 0, 0), with +Y up, a vertical field of view
-    /// in radians, a near plane at `near` and depth from 0 there to 1 at `far`.
+    /// A perspective camera at `eye` that looks at `target`, both relative to the corner of cell (0, 0, 0), with +Y up.
+    /// `field_of_view` is the vertical one, in radians; `near_far` are the distances of the near and the far plane in world
+    /// units, where depth is 0 and 1; `viewport` is width and height in pixels. Straight up and down, the top of the picture
+    /// is north.
     pub fn looking_at(
         eye: Vec3,
         target: Vec3,

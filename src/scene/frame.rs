@@ -46,7 +46,8 @@ impl Stage {
 }
 
 impl Scene {
-    /// Gives up all recordings whose encoders were dropped, and lets everything start afresh.
+    /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as
+    /// [`Scene::refresh`] does. Without this, the device would miss what they should have told it.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -79,8 +80,16 @@ impl Scene {
     }
 
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
-    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones. Two recordings for one
-    /// submission are two frames.
+    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones.
+    ///
+    /// Pass every view that the frame draws, in one call: characters are posed and skinned once, as fine as the finest of
+    /// these views needs, and for what these views see. A frame may have other views than the one before. A view that it
+    /// leaves out must not be drawn in it: that view's lists are those of the frame in which it was last recorded, and the
+    /// vertices that they count on may be gone.
+    ///
+    /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
+    /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
+    /// that: in a submission, or in [`wgpu::Device::poll`].
     ///
     /// # Errors
     /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been

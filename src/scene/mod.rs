@@ -1,11 +1,10 @@
-//! A scene: terrain, meshes and characters on the device, seen through any number of views.
+//! A scene: terrain, meshes, reliefs and characters on the device, seen through any number of views.
 //!
-//! A [`Scene`] is everything there is; it knows no camera and no target. A [`View`] is a camera into it, with what it
-//! sees and how fine. [`render::Renderer`](crate::render) draws a scene through a view in the caller's render pass.
+//! A [`Scene`] is everything there is; it knows no camera and no target. A [`View`] is a camera into it, with what that
+//! camera sees and how fine. A [`Renderer`](crate::render::Renderer) draws a scene through a view in the caller's render
+//! pass.
 //!
-//! In a frame, the caller moves instances, advances the time, sets the cameras of the views, records the scene's work
-//! into an encoder of its own ([`Scene::record`]), and draws. Nothing is submitted, waited for or allocated in a frame,
-//! except where an object outgrows its capacity.
+#![doc = include_str!("overview.md")]
 
 mod camera;
 mod character;
@@ -64,7 +63,36 @@ use watch::Watch;
 /// The number of recordings that may wait for their submission or execution.
 pub const RECORDINGS: usize = 4;
 
-/// Everything there is, on the device.
+/// Everything there is, on the device: objects, which are terrain, meshes, reliefs and characters, and instances of them.
+///
+/// # Examples
+///
+/// A crowd of 100 foxes, 20 of which walk backwards, and one of which leaves.
+///
+/// ```no_run
+/// use relievo::asset::Model;
+/// use relievo::scene::{Placement, Play, Scene};
+/// # let (device, queue): (wgpu::Device, wgpu::Queue) = unimplemented!();
+///
+/// let gpu = relievo::gpu::Gpu::from_wgpu(device, queue);
+/// let mut scene = Scene::new(&gpu)?;
+/// let mut model = Model::from_file("fox.glb".as_ref())?;
+/// relievo::skinning::add_levels(&mut model, &[0], 60)?; // levels of detail, for the first clip's poses
+/// let fox = scene.add_character(&model, 100)?;
+/// let mut foxes = Vec::new();
+/// for at in 0..100 {
+///     // In a row to the east, each facing 0.1 further to the left than the one before.
+///     let place = Placement::at_world([2.0 * f64::from(at), 0.0, 0.0]);
+///     let instance = scene.spawn(fox, place.turned(0.1 * at as f32).scaled(0.01))?; // a model in centimetres
+///     let rate = if at % 5 == 0 { -1.0 } else { 1.0 };
+///     scene.play(instance, &Play { rate, ..Play::new("Walk") })?;
+///     foxes.push(instance);
+/// }
+/// scene.set_tint(foxes[3], [1.0, 0.5, 0.5, 1.0])?;
+/// scene.despawn(foxes[4])?;
+/// assert!(scene.placement(foxes[4]).is_err()); // its handle is stale from now on
+/// # Ok::<(), relievo::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
@@ -138,7 +166,7 @@ impl Scene {
         &self.gpu
     }
 
-    /// Sets the light of everything, from the next frame on.
+    /// Sets the light of everything, from the next recording on. Its direction is one of the world, towards the light.
     ///
     /// # Errors
     /// [`InputError`] as [`Light::validate`].
@@ -148,7 +176,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets how the permitted displacement of characters is divided.
+    /// Sets how the permitted displacement of characters is divided, from the next recording on.
     ///
     /// # Errors
     /// [`InputError`] as [`Shares::validate`].
@@ -164,7 +192,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Advances the time of the scene by so many seconds; negative ones go back.
+    /// Advances the time of the scene by so many seconds; negative ones go back. Call it once a frame: what is sampled in a
+    /// frame depends on how far the time went.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite.

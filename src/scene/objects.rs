@@ -11,7 +11,8 @@ use crate::terrain::mesh::GroundPoint;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Adds terrain: generates its patches, and shows them.
+    /// Adds terrain: generates its patches on the device, and shows them. It waits for their heights, which
+    /// [`Scene::ground`] reads.
     ///
     /// # Errors
     /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
@@ -21,8 +22,9 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// The ground of a terrain that is drawn, at a position of the world in world units east and south of its origin: height
-    /// and normal of the triangle there. `None` where the terrain has no patch.
+    /// The ground of a terrain at a position of the world, `x` units east and `z` units south of its origin: height in
+    /// world units, and normal, of the triangle that is drawn there. `None` where the terrain has no patch. It is computed
+    /// on the CPU, from heights that the scene keeps there.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, or no terrain.
@@ -37,22 +39,26 @@ impl Scene {
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
-    /// ([`add_levels`](crate::skinning::add_levels)) and materials. There is room for `capacity` instances; more than
-    /// that let it grow, which allocates.
+    /// ([`add_levels`](crate::skinning::add_levels)) and materials. There is room for at least `capacity` instances, 1 to
+    /// 2²⁰; [`Scene::spawn`] says what happens to more.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
+    /// [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(self.add(object))
     }
 
     /// Adds a character: its bones are sampled from its clips, gated, and its meshes morphed and skinned, each only as
-    /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for `capacity`
-    /// instances; more than that let it grow, which allocates and lets all of them start afresh.
+    /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for at least `capacity`
+    /// instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more.
+    ///
+    /// Without [`add_levels`](crate::skinning::add_levels) before, there is no level of detail but the model itself.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
+    /// [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
@@ -61,11 +67,12 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// Adds a mesh that carries a relief. There is room for `capacity` instances; more than that let it grow, which
-    /// allocates.
+    /// Adds a mesh that carries a relief. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
+    /// what happens to more.
     ///
     /// # Errors
-    /// [`InputError`] for maps, options or a mesh that do not fit each other; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for maps, options or a mesh that do not fit each other;
+    /// [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
         Ok(self.add(object))
@@ -88,7 +95,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Shows or hides all instances of an object. Hidden ones cost nothing, and go on playing.
+    /// Shows or hides all instances of an object, in all views, from the next recording on. Hidden ones are neither sampled,
+    /// skinned nor drawn; the time of their clips goes on.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene; [`crate::gpu::GpuError`].

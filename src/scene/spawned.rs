@@ -8,8 +8,12 @@ use crate::scene::placement::{Placement, Play};
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Spawns an instance. A character plays the first clip of its model, from time 0 of the scene on; see
-    /// [`Scene::play`]. If there is no room, the object grows to twice its capacity.
+    /// Spawns an instance. It shows from the next recording on. A character plays the first clip of its model, from time 0
+    /// of the scene on; see [`Scene::play`].
+    ///
+    /// If there is no room, the object grows to twice its capacity. This allocates memory, here and in the next recording,
+    /// and lets all instances of a character be sampled and skinned in full once. Handles stay valid, and no pipeline has to
+    /// be compiled; but views must be recorded again before they are drawn.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain, whose patches are its instances, and as
@@ -40,7 +44,7 @@ impl Scene {
         Ok(InstanceId { object, index, generation })
     }
 
-    /// Removes an instance.
+    /// Removes an instance. Its handle is stale from then on, also where another instance takes its place in memory.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -49,7 +53,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves an instance.
+    /// Moves, turns and scales an instance: replaces its placement.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, and as [`Placement::checked`].
@@ -60,7 +64,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Lets a character play a clip.
+    /// Lets a character play a clip, at once and without a transition.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that its model does
@@ -75,7 +79,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the colour by which an instance's colours are multiplied: linear red, green, blue and alpha, each 0 to 1.
+    /// Sets the factor of an instance's colours: red, green, blue and alpha, each 0 to 1, in linear light; (1, 1, 1, 1) at
+    /// first. It is kept in steps of 1/255. Alpha counts only where the material is cut out or dithered.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, and for values out of range.
@@ -97,7 +102,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the visibility mask of an instance, and whether it casts shadows. At first all bits are set, and it casts.
+    /// Sets the visibility mask of an instance, and whether it casts shadows. At first all bits are set, and it casts. A view
+    /// sees instances that share a bit with its own mask ([`View::set_mask`](crate::scene::View::set_mask)), and, if it is
+    /// for shadows, that cast them ([`View::set_casters_only`](crate::scene::View::set_casters_only)).
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.

@@ -27,7 +27,8 @@ use crate::{Error, InputError};
 const MARGIN: u32 = 1;
 
 /// Terrain for [`Scene::add_terrain`](crate::scene::Scene::add_terrain): a recipe, the patches to show, and the textures of
-/// its zones. Position 0 of the world is the first sample of patch (0, 0).
+/// its zones. The origin of the world is the first sample of patch (0, 0), in the north-west; an edge of a patch is
+/// [`Config::terrain_scale`] · ([`Config::patch_size`] − 1) world units long, and a height unit is a world unit.
 #[derive(Debug, Clone)]
 pub struct TerrainSource {
     recipe: Recipe,
@@ -42,7 +43,7 @@ impl TerrainSource {
         Recipe::new(config).into()
     }
 
-    /// Shows these patches: columns to the east, rows to the south.
+    /// Shows these patches instead: for each its column, counted to the east, and its row, counted to the south.
     #[must_use]
     pub fn with_patches(self, patches: &[[i32; 2]]) -> Self {
         Self { patches: patches.to_vec(), ..self }
