@@ -1,5 +1,7 @@
 //! Terrain in a scene: patches of one recipe, generated on the device, each an instance.
 
+use std::collections::HashSet;
+
 use glam::{DVec3, Vec3};
 
 use crate::gpu::{Buffer, Gpu, Uniform};
@@ -27,7 +29,8 @@ use crate::{Error, InputError};
 const MARGIN: u32 = 1;
 
 /// Terrain for [`Scene::add_terrain`](crate::scene::Scene::add_terrain): a recipe, the patches to show, and the textures of
-/// its zones. Position 0 of the world is the first sample of patch (0, 0).
+/// its zones. The origin of the world is the first sample of patch (0, 0), in the north-west; an edge of a patch is
+/// [`Config::terrain_scale`] · ([`Config::patch_size`] − 1) world units long, and a height unit is a world unit.
 #[derive(Debug, Clone)]
 pub struct TerrainSource {
     recipe: Recipe,
@@ -42,7 +45,7 @@ impl TerrainSource {
         Recipe::new(config).into()
     }
 
-    /// Shows these patches: columns to the east, rows to the south.
+    /// Shows these patches instead, each given once: its column, counted to the east, and its row, counted to the south.
     #[must_use]
     pub fn with_patches(self, patches: &[[i32; 2]]) -> Self {
         Self { patches: patches.to_vec(), ..self }
@@ -114,6 +117,11 @@ pub(super) async fn generated(
     let config = &recipe.config;
     if patches.is_empty() {
         return Err(InputError::new("patches", "none", "must be at least one").into());
+    }
+    let mut known = HashSet::new();
+    if let Some(at) = patches.iter().position(|patch| !known.insert(patch)) {
+        let path = format!("patches[{at}]");
+        return Err(InputError::new(path, format!("{:?}", patches[at]), "must not be given twice").into());
     }
     let generator = Generator::new(gpu, recipe.clone())?;
     let mut parts = generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await?;

@@ -4,10 +4,13 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+#[cfg(unix)]
+mod cost;
 mod counts;
 mod frame;
 mod host;
 mod life;
+mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
