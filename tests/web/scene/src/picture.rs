@@ -66,7 +66,7 @@ impl World {
         for _ in 0..FRAMES {
             scene.advance(0.1)?;
             let mut encoder = gpu.encoder("frame");
-            scene.record(&mut encoder, &mut [eye])?;
+            scene.record(&mut encoder, &mut [&mut *eye])?;
             target.record(&mut encoder, SKY, |pass| renderer.draw(pass, scene, eye, Layer::Color))?;
             gpu.queue().submit([encoder.finish()]);
             // As a page waits for its next frame.
