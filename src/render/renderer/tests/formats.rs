@@ -7,7 +7,6 @@ use super::mesh::{mesh, painted, placements};
 use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, renderer, view};
 use crate::Error;
 use crate::asset::material::Alpha;
-use crate::gpu::GpuError;
 use crate::render::renderer::pipelines::{Kind, PipelineKey};
 use crate::render::renderer::{Layer, Renderer};
 use crate::render::{DepthFormat, TargetFormat};
