@@ -162,6 +162,21 @@ fn links_lead_somewhere() {
     }
 }
 
+/// A program in `examples/` that nobody finds helps nobody.
+#[test]
+fn every_example_is_named() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let mut programs = 0;
+    for path in std::fs::read_dir(folder).expect("examples").map(|entry| entry.expect("an entry").path()) {
+        if path.extension().is_some_and(|extension| extension == "rs") || path.join("main.rs").exists() {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            assert!(README.contains(&format!("](examples/{name}")), "{name}");
+            programs += 1;
+        }
+    }
+    assert!(programs > 1);
+}
+
 /// Compiles the README's example of embedding, with the variables that it leaves out.
 #[allow(dead_code, reason = "it is compiled, not run")]
 fn embedding(
@@ -208,14 +223,19 @@ fn characters(
 #[test]
 fn rust_is_compiled_as_it_stands_there() {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-    let compiled =
-        squeezed(include_str!("readme.rs")) + &squeezed(include_str!("../examples/engine/main.rs"));
+    let compiled = [
+        include_str!("readme.rs"),
+        include_str!("../examples/engine/main.rs"),
+        include_str!("web/scene/src/lib.rs"),
+        include_str!("web/scene/src/picture.rs"),
+    ];
+    let compiled: String = compiled.map(squeezed).concat();
     let lines = code("rust", "//");
     assert!(!lines.is_empty());
     for line in lines {
         assert!(
             compiled.contains(&squeezed(line)),
-            "neither tests/readme.rs nor examples/engine holds `{line}`"
+            "neither tests/readme.rs nor examples/engine nor tests/web/scene holds `{line}`"
         );
     }
 }

@@ -73,6 +73,7 @@ impl Target {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn draw(
         &self,
         gpu: &Gpu,
@@ -118,6 +119,7 @@ impl Target {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
         let pixels = self.read_bytes(gpu, 4)?;
         image::RgbaImage::from_raw(self.color.width(), self.color.height(), pixels).ok_or_else(|| {
@@ -129,11 +131,13 @@ impl Target {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_linear(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, GpuError> {
         let pixels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read_bytes(gpu, 16)?);
         Ok(pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     fn read_bytes(&self, gpu: &Gpu, texel: u32) -> Result<Vec<u8>, GpuError> {
         read_texture(gpu, &self.color, wgpu::TextureAspect::All, texel)
     }

@@ -2,10 +2,12 @@
 
 use crate::animation::Frame;
 use crate::gpu::{Staged, Upload as _, compute_pass};
-use crate::lod::SelectView;
+use crate::lod::{SceneInstance, SelectView};
 use crate::scene::camera::Depth;
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
+use crate::scene::handles::foreign;
 use crate::scene::object::{self, Kind, Object};
+use crate::scene::order::Ordered;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
@@ -46,7 +48,8 @@ impl Stage {
 }
 
 impl Scene {
-    /// Gives up all recordings whose encoders were dropped, and lets everything start afresh.
+    /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as
+    /// [`Scene::refresh`] does. Without this, the device would miss what they should have told it.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -78,9 +81,33 @@ impl Scene {
         Ok(())
     }
 
+    /// Keeps where everything was in the last frame from the next frame on, or does no longer; at first it is not kept.
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) needs it. Skinned vertices then take 1.4 times the memory,
+    /// what moved is skinned once more after it stops, and what the host changes is uploaded twice. Characters start
+    /// afresh.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last_frame(&mut self, keeps: bool) -> Result<(), Error> {
+        if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
+            return Ok(());
+        }
+        self.objects.iter_mut().for_each(|object| object.keep_last(keeps));
+        self.refresh()
+    }
+
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
-    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones. Two recordings for one
-    /// submission are two frames.
+    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones.
+    ///
+    /// Pass every view that the frame draws, in one call: characters are posed and skinned once, as fine as the finest of
+    /// these views needs, and for what these views see. A frame may have other views than the one before. A view that it
+    /// leaves out must not be drawn in it: that view's lists are those of the frame in which it was last recorded, and the
+    /// vertices that they count on may be gone.
+    ///
+    /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
+    /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
+    /// that: in a submission, or in [`wgpu::Device::poll`]. Of an empty scene nothing is recorded, and nothing
+    /// drawn.
     ///
     /// # Errors
     /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been
@@ -91,6 +118,10 @@ impl Scene {
         views: &mut [&mut View],
     ) -> Result<(), Error> {
         self.check(views)?;
+        if self.is_empty() {
+            self.uploaded = 0;
+            return Ok(());
+        }
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
@@ -101,7 +132,10 @@ impl Scene {
         }
         self.record_stages(encoder, views);
         self.count(encoder, views);
+        views.iter_mut().for_each(|view| view.recorded(self.frames));
         self.frames += 1;
+        // Unless the time advances again, the next frame is as this one.
+        self.step = 0.0;
         Ok(())
     }
 
@@ -151,19 +185,26 @@ impl Scene {
         self.objects.iter().flat_map(|object| &object.drawables)
     }
 
-    /// What a renderer needs of a view and of all objects that are shown.
+    fn is_empty(&self) -> bool {
+        self.objects.iter().next().is_none()
+    }
+
+    /// What a renderer needs of a view and of all objects that are shown; `None` for a scene without objects.
     pub(crate) fn drawn<'a>(
         &'a self,
         view: &'a View,
-    ) -> Result<(DrawnView<'a>, Vec<DrawnObject<'a>>), InputError> {
-        if !view.is_of(&self.token) {
-            return Err(InputError::new("view", "of another scene", "must be of this scene"));
+    ) -> Result<Option<(DrawnView<'a>, Vec<DrawnObject<'a>>)>, InputError> {
+        if !view.is_of(self.objects.scene()) {
+            return Err(foreign("view"));
         }
-        let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
+        if self.is_empty() {
+            return Ok(None);
+        }
+        let (Some(lists), Some(camera)) = (&view.lists, view.camera()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
-        if lists.version != layout.version {
-            let bound = "must be recorded again, since objects were added or grew";
+        if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
+            let bound = "must be recorded again, since objects were added, removed or grew, or the scene started afresh";
             return Err(InputError::new("view", "out of date", bound));
         }
         let drawn = DrawnView {
@@ -172,12 +213,13 @@ impl Scene {
             arguments: &lists.arguments,
             mirrors: is_mirrored(&camera.clip_from_world()),
             reversed: camera.depth == Depth::Reversed,
+            keeps_last: self.keeps_last,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
         for object in self.objects.iter() {
-            let ground = object.spacing().and_then(|_| view.ground(terrains));
-            terrains += usize::from(object.spacing().is_some());
+            let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
+            terrains += usize::from(object.seen_terrain().is_some());
             if object.is_shown {
                 let of_object = object.drawables.iter().zip(&object.lods);
                 objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
@@ -188,15 +230,37 @@ impl Scene {
                 }));
             }
         }
-        Ok((drawn, objects))
+        Ok(Some((drawn, objects)))
+    }
+
+    /// What is drawn instance by instance in a view, from back to front.
+    pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
+        let lists = view.lists.as_ref()?;
+        let (_, draws) = lists.singles.as_ref()?;
+        let objects: Vec<&Object> = self.objects.iter().collect();
+        let mut parts = Vec::new();
+        for Ordered { object, instance, .. } in &lists.order {
+            let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
+            let placed = object.instances.all().get(*instance as usize);
+            let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
+            for single in &object.singles {
+                let Drawable::Mesh(mesh) = &object.drawables[single.drawable] else { continue };
+                let (part, draw) = (&mesh.parts[single.part], single.first + instance);
+                parts.push(DrawnSingle { mesh, part, draw, instance: *instance, is_mirrored });
+            }
+        }
+        Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
         }
-        if let Some(at) = views.iter().position(|view| !view.is_of(&self.token)) {
-            return Err(InputError::new(format!("views[{at}]"), "of another scene", "must be of this scene"));
+        if let Some(at) = views.iter().position(|view| !view.is_of(self.objects.scene())) {
+            return Err(foreign(&format!("views[{at}]")));
+        }
+        if views.iter().any(|view| view.camera().is_none()) {
+            return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
         }
         Ok(())
     }
@@ -205,7 +269,7 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, (self.layouts, self.keeps_last))?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
@@ -213,9 +277,9 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
-        let terrains = self.objects.iter().filter_map(Object::spacing).count();
+        let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list);
+            let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
             view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
         }
@@ -225,20 +289,27 @@ impl Scene {
         Ok(())
     }
 
-    fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
+    fn stage(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
         let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
         for object in self.objects.iter_mut() {
             object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
         }
-        let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
+        let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
+        for (view, selected) in views.iter_mut().zip(&seen) {
+            view.order(self.objects.iter(), selected);
+        }
         for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;
+            let of_frame = (self.frames, at == 0);
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {
             let first = object.range.first as usize;
+            for (at, run) in object.instances.take_last() {
+                self.staged.elements(&layout.last_instances, first + at, &run)?;
+            }
             for (at, run) in object.instances.take_changed() {
                 self.staged.elements(&layout.instances, first + at, run)?;
             }

@@ -44,13 +44,15 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// A square wall with an edge of one world unit, centered at the origin and facing +Z, that shows the maps `tiles` times
-    /// along each edge. Otherwise as [`Relief::new`].
+    /// An upright square wall with an edge of one unit of the model, centered at the model's origin and facing +Z, that shows
+    /// the maps `tiles` times along each edge, their top edge upwards. Its back is not drawn, unless `double_sided` is set.
+    /// Otherwise as [`Relief::new`].
     pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::new(SurfaceMesh::square(tiles), heights, albedo)
     }
 
-    /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief.
+    /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief. Where
+    /// heights are largest, the relief touches the mesh; elsewhere it lies behind it.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self {
             mesh,
@@ -82,14 +84,19 @@ pub(super) fn drawn(
     let uv: Vec<[f32; 2]> = relief.mesh.vertices.iter().map(|vertex| vertex.uv).collect();
     let material_of = Buffer::new(gpu, "materials of vertices", vertices.len())?;
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: 0 })?,
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0 },
+        )?,
         vertices: Buffer::from_slice(gpu, "mesh vertices", &vertices)?,
+        last: 0,
         page_table: material_of.clone(),
         uv: Buffer::from_slice(gpu, "mesh uv", &uv)?,
         material_of,
         indices: Buffer::from_slice(gpu, "mesh indices", &relief.mesh.indices)?,
     };
-    let surface = SurfaceKind { cut_out: false, double_sided: relief.double_sided };
+    let surface = SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided };
     let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);
     let parts = vec![MeshPart { surface, materials }];
     let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);

@@ -4,14 +4,23 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+#[cfg(unix)]
+mod cost;
 mod counts;
 mod frame;
 mod host;
 mod life;
+mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
 mod query;
+mod raw;
+mod rays;
+mod shading;
+mod surfaces;
 mod targets;
+mod transparent;
+mod velocity;
 mod views;
 mod world;

@@ -67,7 +67,7 @@ impl<'a> Document<'a> {
         let Container { json, binary } = Container::new(bytes)?;
         let mut value: Value = serde_json::from_slice(json).map_err(|error| {
             let place = format!("line {} column {}", error.line(), error.column());
-            InputError::new("JSON", place, error.to_string())
+            InputError::new("JSON", place, format!("must be glTF 2.0, as GLB or JSON ({error})"))
         })?;
         check_required(&value, is_bare)?;
         let is_draco = required_names(&value).any(|name| name == DRACO);

@@ -1,0 +1,135 @@
+//! A scene in the browser: its device is opened without blocking, and its picture equals the native one.
+
+use std::sync::OnceLock;
+use std::task::{Context, Poll, Waker};
+use std::time::{Duration, Instant};
+
+use base64::Engine as _;
+use image::RgbaImage;
+use image::imageops::{FilterType, resize};
+use relievo::gpu::Gpu;
+use serde_json::Value;
+
+use crate::harness::{Difference, Tolerance, browser, gpu};
+use crate::picture::{SIZE, World};
+use crate::wasm;
+
+/// The results of one page load, which all tests of this file examine.
+fn said() -> &'static Value {
+    static SAID: OnceLock<Value> = OnceLock::new();
+    SAID.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let start = Instant::now();
+        wasm::scene(folder.path()).expect("the scene compiles for browsers");
+        let built = start.elapsed().as_secs_f32();
+        let read = |name: &str| std::fs::read(folder.path().join(name)).expect("written");
+        let (script, program) = (read("scene.js"), read("scene_bg.wasm"));
+        let files = [
+            ("/", include_bytes!("scene.html").as_slice()),
+            ("/scene.js", script.as_slice()),
+            ("/scene_bg.wasm", program.as_slice()),
+        ];
+        let browser = browser::program().expect("the suite needs a browser");
+        let result = browser::visit(&browser, &files, Duration::from_secs(240)).expect("a result");
+        println!(
+            "built in {built:.1} s, {} bytes of WebAssembly; {} s; all {:.1} s",
+            program.len(),
+            result["seconds"],
+            start.elapsed().as_secs_f32()
+        );
+        result
+    })
+}
+
+fn picture(name: &str) -> RgbaImage {
+    let said = said();
+    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+    let text = said[name].as_str().expect("pixels");
+    let pixels = base64::prelude::BASE64_STANDARD.decode(text).expect("base64");
+    reduced(pixels)
+}
+
+/// Half the size, since triangles have jagged edges with one sample a pixel.
+fn reduced(pixels: Vec<u8>) -> RgbaImage {
+    let picture = RgbaImage::from_raw(SIZE[0], SIZE[1], pixels).expect("of that size");
+    resize(&picture, SIZE[0] / 2, SIZE[1] / 2, FilterType::Triangle)
+}
+
+/// Drives work that awaits the device.
+fn driven<T>(gpu: &Gpu, work: impl Future<Output = T>) -> T {
+    let mut work = std::pin::pin!(work);
+    loop {
+        match work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(done) => return done,
+            Poll::Pending => gpu.wait().expect("the device answers"),
+        }
+    }
+}
+
+fn native() -> RgbaImage {
+    let gpu = gpu();
+    let drawn = async { World::new(&gpu, false).await?.draw(&gpu).await };
+    reduced(driven(&gpu, drawn).expect("drawn"))
+}
+
+/// The fraction of pixels with a channel beyond those of the 9 pixels around its place in the other picture, by more than
+/// `levels`.
+fn foreign(actual: &RgbaImage, expected: &RgbaImage, levels: u8) -> f64 {
+    let (width, height) = expected.dimensions();
+    let is_foreign = |x: u32, y: u32, channel: usize| {
+        let rows = y.saturating_sub(1)..(y + 2).min(height);
+        let columns = x.saturating_sub(1)..(x + 2).min(width);
+        let around =
+            || rows.clone().flat_map(|y| columns.clone().map(move |x| expected.get_pixel(x, y).0[channel]));
+        let (low, high) = (around().min().unwrap_or(0), around().max().unwrap_or(u8::MAX));
+        !(low.saturating_sub(levels)..=high.saturating_add(levels))
+            .contains(&actual.get_pixel(x, y).0[channel])
+    };
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let found = pixels.filter(|(x, y)| (0..3).any(|channel| is_foreign(*x, *y, channel))).count();
+    found as f64 / f64::from(width * height)
+}
+
+/// How far pictures of two drivers may differ. A pixel beyond 3 levels lies on an edge of a triangle, a brick or a shadow,
+/// which the drivers place otherwise by a fraction of a pixel: its colours are then among those around it. lavapipe and
+/// SwiftShader have 0.5 % such pixels without the reduction; where both sides are SwiftShader, no pixel differs at all.
+const TOLERANCE: Tolerance = Tolerance { levels: 3, outliers: 0.01, flip: 0.01 };
+
+/// The largest fraction of pixels with colours that are not among those around them: details finer than a pixel.
+const FOREIGN: f64 = 0.000_5;
+
+#[test]
+fn a_scene_in_the_browser_equals_the_native_one_and_another_light_does_not() {
+    let (native, browser, evening) = (native(), picture("day"), picture("evening"));
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("web-scene");
+    std::fs::create_dir_all(&folder).expect("writable");
+    for (name, picture) in [("native", &native), ("browser", &browser), ("evening", &evening)] {
+        picture.save(folder.join(format!("{name}.png"))).expect("writable");
+    }
+    let compared = |picture: &RgbaImage| {
+        let difference = Difference::of(picture, &native, TOLERANCE.levels);
+        (difference, foreign(picture, &native, TOLERANCE.levels))
+    };
+    let (difference, beyond) = compared(&browser);
+    println!("{difference:?}, {beyond} foreign; see {}", folder.display());
+    assert!(difference.within(TOLERANCE), "{difference:?}; see {}", folder.display());
+    assert!(beyond <= FOREIGN, "{beyond} foreign; see {}", folder.display());
+    let (difference, beyond) = compared(&evening);
+    println!("another light: {difference:?}, {beyond} foreign");
+    assert!(
+        !difference.within(TOLERANCE) && beyond > FOREIGN,
+        "another light passes: {difference:?}, {beyond}"
+    );
+}
+
+/// A browser tells errors only after the call, and then to whoever asks.
+#[test]
+fn a_browser_tells_a_mistake_late_and_the_device_goes_on() {
+    let said = said();
+    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+    let said: Vec<&str> = (said["mistake"].as_array().expect("three lines").iter())
+        .map(|line| line.as_str().expect("text"))
+        .collect();
+    assert_eq!((said[0], said[2]), ("nothing", "[1, 7]"));
+    assert!(said[1].contains("wgpu refused a call"), "{}", said[1]);
+}
