@@ -144,6 +144,7 @@ impl Target {
 }
 
 /// Reads an aspect of a texture of `texel` bytes a texel, row by row. Waits for the device.
+#[cfg(not(target_arch = "wasm32"))]
 pub(super) fn read_texture(
     gpu: &Gpu,
     texture: &wgpu::Texture,

@@ -115,6 +115,7 @@ impl CameraPath {
 }
 
 /// The camera of the columns `from..to` of a camera's picture.
+#[cfg(any(test, not(target_arch = "wasm32")))]
 pub(super) fn columns(camera: &Camera, from: u32, to: u32) -> Camera {
     let [width, height] = camera.viewport;
     let part = (to - from) as f32 / width as f32;

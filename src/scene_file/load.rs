@@ -48,7 +48,7 @@ impl LoadedScene {
         &self.file
     }
 
-    /// Reads a scene file and the files that it names.
+    /// Reads a scene file and the files that it names, from the file system.
     ///
     /// # Errors
     /// [`Error::File`] if the file cannot be read; [`Error::InputFile`] with the path of a mistake inside the file.
