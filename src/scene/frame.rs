@@ -1,14 +1,12 @@
 //! A frame of a scene: what is recorded for it, and what is drawn of it.
 
 use crate::animation::Frame;
-use crate::gpu::{Staged, Upload as _, compute_pass};
+use crate::gpu::{Staged, compute_pass};
 use crate::lod::SelectView;
-use crate::scene::camera::Depth;
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
 use crate::scene::object::{self, Kind, Object};
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
-use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
 
 impl Scene {
@@ -48,6 +46,7 @@ impl Scene {
         views: &mut [&mut View],
     ) -> Result<(), Error> {
         self.check(views)?;
+        self.provide(views)?;
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
@@ -69,7 +68,7 @@ impl Scene {
 
     /// What is drawn, object by object.
     pub(crate) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
-        self.objects.iter().flat_map(|object| &object.drawables)
+        self.objects.iter().flat_map(Object::drawables)
     }
 
     /// What a renderer needs of a view and of all objects that are shown.
@@ -80,7 +79,7 @@ impl Scene {
         if !view.is_of(&self.token) {
             return Err(InputError::new("view", "of another scene", "must be of this scene"));
         }
-        let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
+        let (Some(layout), Some(lists), Some(recorded)) = (&self.layout, &view.lists, view.recorded()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
         if lists.version != layout.version {
@@ -91,22 +90,18 @@ impl Scene {
             group: &lists.group,
             lists: &lists.lists,
             arguments: &lists.arguments,
-            mirrors: is_mirrored(&camera.clip_from_world()),
-            reversed: camera.depth == Depth::Reversed,
+            mirrors: recorded.mirrors,
+            reversed: recorded.reversed,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
-        for object in self.objects.iter() {
+        for (object, sides) in self.objects.iter().zip(&recorded.sides) {
             let ground = object.spacing().and_then(|_| view.ground(terrains));
             terrains += usize::from(object.spacing().is_some());
             if object.is_shown {
-                let of_object = object.drawables.iter().zip(&object.lods);
-                objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
-                    drawable,
-                    lod,
-                    mirrors: true,
-                    ground,
-                }));
+                let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
+                let sides = *sides;
+                objects.extend(drawn.map(|(drawable, lod)| DrawnObject { drawable, lod, sides, ground }));
             }
         }
         Ok((drawn, objects))
@@ -118,6 +113,19 @@ impl Scene {
         }
         if let Some(at) = views.iter().position(|view| !view.is_of(&self.token)) {
             return Err(InputError::new(format!("views[{at}]"), "of another scene", "must be of this scene"));
+        }
+        Ok(())
+    }
+
+    /// Provides pages for what the views see.
+    fn provide(&mut self, views: &[&mut View]) -> Result<(), Error> {
+        let blocks = self.layout.as_ref().map_or(0, |layout| layout.blocks);
+        let seen = views.iter().map(|view| Ok(view.select_view(blocks, true)?.1));
+        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        for object in self.objects.iter_mut() {
+            if object.provide(&self.gpu, &self.layouts_of_groups, &seen)? {
+                self.layout = None;
+            }
         }
         Ok(())
     }
@@ -142,26 +150,16 @@ impl Scene {
         Ok(())
     }
 
-    fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
+    fn stage(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
-        let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
-        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
-        for object in self.objects.iter_mut() {
-            object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
-        }
         let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
-        for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;
+        for (at, view) in views.iter_mut().enumerate() {
+            let sides = self.objects.iter().map(|object| object.instances.sides());
+            view.stage(&mut self.staged, (layout.blocks, &self.light), (&spacings, sides), at == 0)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
         for object in self.objects.iter_mut() {
-            let first = object.range.first as usize;
-            for (at, run) in object.instances.take_changed() {
-                self.staged.elements(&layout.instances, first + at, run)?;
-            }
-            if let Kind::Character(character) = &mut object.kind {
-                character.stage(&mut self.staged, &frame, self.now)?;
-            }
+            object.stage((&mut self.staged, layout), (&frame, self.now))?;
         }
         Ok(())
     }

@@ -13,6 +13,7 @@ use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::{Merged, Part, merged};
 use crate::skinning::pages::PageBuffers;
+use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 
 /// What an object is drawn from: how, and for each part the draws of all lists.
@@ -44,11 +45,32 @@ pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
 pub(super) fn drawn(gpu: &Gpu, layouts: &SceneLayouts, merged: &Merged) -> Result<Drawn, Error> {
     let (mut drawables, mut draws) = (Vec::new(), Vec::new());
     for (index, mesh) in merged.model.meshes.iter().enumerate() {
+        check_binding(gpu, mesh)?;
         let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
         draws.extend(part_draws(merged, index, &buffers));
         drawables.push(drawable((gpu, layouts), merged, index, (&buffers, &clusters), None)?);
     }
     Ok((drawables, draws))
+}
+
+/// Checks that one binding of the device holds the vertices of a merged mesh, and another its triangles.
+pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
+    let indices = mesh.indices.len() + mesh.levels.iter().map(|level| level.indices.len()).sum::<usize>();
+    let all = [
+        ("model.meshes.positions.len", mesh.vertices(), size_of::<Vertex>()),
+        ("model.meshes.indices.len", indices, size_of::<u32>()),
+    ];
+    all.into_iter().try_for_each(|(path, count, bytes)| within_binding(gpu, path, count, bytes))
+}
+
+/// Checks that one binding of the device holds so many elements of so many bytes.
+pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) -> Result<(), InputError> {
+    let most = gpu.max_binding() / bytes as u64;
+    if count as u64 <= most {
+        return Ok(());
+    }
+    let bound = format!("must be at most {most}, which one binding of the device holds: add several objects");
+    Err(InputError::new(path, count, bound))
 }
 
 fn check(model: &Model) -> Result<(), InputError> {

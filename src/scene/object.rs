@@ -2,17 +2,19 @@
 
 use glam::Vec3;
 
+use crate::animation::Frame;
 use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
-use crate::scene::character::Character;
+use crate::scene::character::{Character, Provided, Replaced};
+use crate::scene::chunk::{Chunk, common};
 use crate::scene::drawable::{Drawable, MeshDrawable};
 use crate::scene::handles::Slots;
 use crate::scene::instances::Instances;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::mesh;
+use crate::scene::mesh::{self, Drawn};
 use crate::scene::quality::Shares;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, Terrain, TerrainSource};
@@ -31,20 +33,16 @@ pub(crate) struct Object {
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
-    /// The factor by which its levels are coarser than the views ask for: 1 unless its vertices exceed a binding.
+    /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
     pub(super) coarsening: f32,
-    /// Its number among the objects of the layout.
-    pub(super) number: usize,
+    /// Whether the device does not know the factor yet.
+    is_retuned: bool,
     pub(super) is_shown: bool,
-    /// What is drawn, part by part.
-    pub(crate) drawables: Vec<Drawable>,
-    /// Of each part, the draws of all lists, without instances.
-    pub(super) draws: Vec<SceneDraw>,
-    pub(crate) range: ObjectRange,
-    /// For each drawable, the object as kernels see it, with the draws of the drawable's parts, in the layout for which it
-    /// was prepared.
-    pub(crate) lods: Vec<LodObject>,
-    pub(super) fitted: u64,
+    /// Of each part, the draws of all lists of a chunk, without instances.
+    draws: Vec<SceneDraw>,
+    /// At least one.
+    pub(super) chunks: Vec<Chunk>,
+    fitted: u64,
 }
 
 /// What an object is.
@@ -61,7 +59,7 @@ impl Object {
         kind: Kind,
         (instances, sphere): (Instances, BoundingSphere),
         (errors, mesh_fraction): (Vec<f32>, f32),
-        (drawables, draws): (Vec<Drawable>, Vec<SceneDraw>),
+        (chunks, draws): (Vec<Chunk>, Vec<SceneDraw>),
     ) -> Self {
         Self {
             kind,
@@ -70,12 +68,10 @@ impl Object {
             errors,
             mesh_fraction,
             coarsening: 1.0,
-            number: 0,
+            is_retuned: false,
             is_shown: true,
-            drawables,
             draws,
-            range: ObjectRange::default(),
-            lods: Vec::new(),
+            chunks,
             fitted: 0,
         }
     }
@@ -84,6 +80,7 @@ impl Object {
     pub(super) fn terrain(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Self, Error> {
         let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source)?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+        let drawn = whole(&instances, drawn);
         Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
@@ -96,7 +93,7 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let (merged, sphere) = mesh::at_rest_merged(model)?;
-        let drawn = mesh::drawn(gpu, layouts, &merged)?;
+        let drawn = whole(&instances, mesh::drawn(gpu, layouts, &merged)?);
         Ok(Self::new(Kind::Mesh, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
     }
 
@@ -109,6 +106,7 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
+        let drawn = whole(&instances, drawn);
         Ok(Self::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
@@ -122,7 +120,7 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
-        let drawn = (character.drawables(gpu, layouts)?, character.draws());
+        let drawn = (character.chunks(gpu, layouts, None)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
         Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
@@ -136,14 +134,14 @@ impl Object {
         }
     }
 
-    /// The object as kernels see it.
-    pub(super) fn lod_object(&self) -> LodObject {
+    /// A chunk of the object as kernels see it.
+    pub(super) fn lod_object(&self, chunk: &Chunk) -> LodObject {
         LodObject {
-            first: self.range.first,
-            instances: self.instances.capacity() as u32,
+            first: chunk.range.first,
+            instances: chunk.room(),
             levels: self.errors.len() as u32,
-            first_list: self.range.first_list,
-            first_draw: self.range.first_draw,
+            first_list: chunk.range.first_list,
+            first_draw: chunk.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
             mesh_fraction: self.coarsening * self.mesh_fraction,
             shown: u32::from(self.is_shown),
@@ -160,34 +158,71 @@ impl Object {
     /// Lets everything start afresh.
     pub(super) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         self.instances.change_all();
-        if let Kind::Character(character) = &mut self.kind {
-            character.grow(gpu, self.instances.capacity())?;
-            rebind(&mut self.drawables, gpu, layouts, character)?;
+        let capacity = self.instances.capacity();
+        match &mut self.kind {
+            Kind::Character(character) => {
+                character.grow(gpu, capacity)?;
+                let known = self.chunks.first().map(|chunk| &*chunk.drawables);
+                self.chunks = character.chunks(gpu, layouts, known)?;
+            }
+            Kind::Mesh | Kind::Terrain(_) => {
+                self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+            }
         }
         Ok(())
     }
 
-    /// Provides what the views of a frame need of a character. Where a binding is too small for it, its levels of detail
-    /// are coarser.
+    /// Provides what the views of a frame need of a character. Where memory ends, its levels of detail are coarser. Returns
+    /// whether its chunks are others than before.
     pub(super) fn provide(
         &mut self,
         gpu: &Gpu,
         layouts: &SceneLayouts,
         views: &[SelectView],
+    ) -> Result<bool, Error> {
+        let all = Chunk::new(0..self.instances.capacity(), Vec::new());
+        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
+        let Kind::Character(character) = &mut self.kind else { return Ok(false) };
+        let Provided { coarsening, replaced } = character.provide(gpu, views, &lod, self.instances.all())?;
+        match replaced {
+            Replaced::Nothing => {}
+            Replaced::Pages => character.rebind(gpu, layouts, &mut self.chunks)?,
+            Replaced::Chunks => {
+                let known = self.chunks.first().map(|chunk| &*chunk.drawables);
+                self.chunks = character.chunks(gpu, layouts, known)?;
+            }
+        }
+        self.is_retuned |= coarsening != self.coarsening;
+        self.coarsening = coarsening;
+        Ok(replaced == Replaced::Chunks)
+    }
+
+    /// Stages what has changed since the last frame.
+    pub(super) fn stage(
+        &mut self,
         (staged, layout): (&mut Staged, &Layout),
+        (frame, now): (&Frame, f64),
     ) -> Result<(), Error> {
-        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object() };
-        let Kind::Character(character) = &mut self.kind else { return Ok(()) };
-        let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
-        if is_replaced {
-            rebind(&mut self.drawables, gpu, layouts, character)?;
+        for (at, changed) in self.instances.take_changed() {
+            for chunk in &self.chunks {
+                if let Some(own) = common(&(at..at + changed.len()), &chunk.slots) {
+                    let instances = &changed[own.start - at..own.end - at];
+                    staged.elements(&layout.instances, chunk.place(own.start), instances)?;
+                }
+            }
         }
-        if coarsening != self.coarsening {
-            self.coarsening = coarsening;
-            character.stage_mesh_fraction(staged, coarsening * self.mesh_fraction)?;
-            staged.elements(&layout.objects, self.number, &[self.lod_object()])?;
+        if std::mem::take(&mut self.is_retuned) {
+            for chunk in &self.chunks {
+                staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
+            }
+            if let Kind::Character(character) = &self.kind {
+                character.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
+            }
         }
-        Ok(())
+        match &mut self.kind {
+            Kind::Character(character) => character.stage(staged, frame, now),
+            Kind::Mesh | Kind::Terrain(_) => Ok(()),
+        }
     }
 
     /// Prepares what depends on the layout.
@@ -202,24 +237,43 @@ impl Object {
             return Ok(());
         }
         self.fitted = layout.version;
-        let mut lod = self.lod_object();
-        self.lods.clear();
-        for drawable in &self.drawables {
-            self.lods.push(lod);
-            lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
-        }
-        for drawable in &self.drawables {
-            if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                let params = MeshParams { first_instance: self.range.first, clusters: *clusters };
-                staged.uniform(&geometry.params, &params)?;
+        let lods: Vec<LodObject> = self.chunks.iter().map(|chunk| self.lod_object(chunk)).collect();
+        for (chunk, mut lod) in self.chunks.iter_mut().zip(lods) {
+            chunk.lods.clear();
+            for drawable in &chunk.drawables {
+                chunk.lods.push(lod);
+                lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
+                if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+                    let params = MeshParams { first_instance: chunk.range.first, clusters: *clusters };
+                    staged.uniform(&geometry.params, &params)?;
+                }
             }
         }
+        let mesh_fraction = self.coarsening * self.mesh_fraction;
         match &mut self.kind {
             Kind::Character(character) => {
-                character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
+                let object = (&*self.chunks, &*self.errors);
+                character.fit(gpu, layout, pass, object, (shares, mesh_fraction))
             }
             Kind::Mesh | Kind::Terrain(_) => Ok(()),
         }
+    }
+
+    /// The largest number of its draws in a view and a layer.
+    pub(super) fn draws(&self) -> usize {
+        let parts: usize = self.drawables().map(Drawable::parts).sum();
+        match self.kind {
+            Kind::Terrain(_) => parts,
+            Kind::Mesh | Kind::Character(_) => {
+                let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
+                sides * parts * self.errors.len()
+            }
+        }
+    }
+
+    /// What is drawn, chunk by chunk.
+    pub(super) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
+        self.chunks.iter().flat_map(|chunk| &chunk.drawables)
     }
 
     /// Number of instances that there is room for.
@@ -228,19 +282,9 @@ impl Object {
     }
 }
 
-/// Binds a character's pages, after they were replaced.
-fn rebind(
-    drawables: &mut [Drawable],
-    gpu: &Gpu,
-    layouts: &SceneLayouts,
-    character: &Character,
-) -> Result<(), Error> {
-    for (drawable, pages) in drawables.iter_mut().zip(character.pages()) {
-        if let Drawable::Mesh(mesh) = drawable {
-            *mesh = mesh.with_pages(gpu, layouts, pages)?;
-        }
-    }
-    Ok(())
+/// What is drawn of all instances in one chunk.
+fn whole(instances: &Instances, (drawables, draws): Drawn) -> (Vec<Chunk>, Vec<SceneDraw>) {
+    (vec![Chunk::new(0..instances.capacity(), drawables)], draws)
 }
 
 /// Room for at least `capacity` instances.
@@ -251,7 +295,7 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
     }
 }
 
-/// Lays out objects, one after the other, and tells each its range.
+/// Lays out the chunks of objects, one after the other, and tells each its range.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
@@ -259,15 +303,18 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
     let mut range = ObjectRange::default();
     let (mut all, mut draws) = (Vec::new(), Vec::new());
     for object in objects.iter_mut() {
-        object.range = range;
-        object.number = all.len();
-        object.coarsening = 1.0;
-        let instances = object.instances.capacity() as u32;
-        all.push(object.lod_object());
-        draws.extend_from_slice(&object.draws);
-        range.first += instances;
-        range.first_list += 2 * object.errors.len() as u32 * instances;
-        range.first_draw += object.draws.len() as u32;
+        let levels = object.errors.len() as u32;
+        for at in 0..object.chunks.len() {
+            let chunk = &mut object.chunks[at];
+            chunk.range = range;
+            chunk.number = all.len();
+            let instances = chunk.room();
+            range.first += instances;
+            range.first_list += 2 * levels * instances;
+            range.first_draw += object.draws.len() as u32;
+            draws.extend_from_slice(&object.draws);
+            all.push(object.lod_object(&object.chunks[at]));
+        }
     }
     Layout::new(gpu, (&all, draws), range, version)
 }

@@ -4,11 +4,14 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod chunks;
 mod frame;
 mod life;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
+mod sides;
+mod solids;
 mod targets;
 mod views;
 mod world;

@@ -14,7 +14,7 @@ use crate::lod::select::SelectPass;
 #[cfg(feature = "verify")]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
-use crate::scene::camera::Camera;
+use crate::scene::camera::{Camera, Depth};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
@@ -34,7 +34,19 @@ pub struct View {
     casters: bool,
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
+    recorded: Option<Recorded>,
     pub(crate) lists: Option<ViewLists>,
+}
+
+/// What a renderer needs to know of a view's last frame.
+#[derive(Debug, Default)]
+pub(super) struct Recorded {
+    /// Whether the picture is a mirror image.
+    pub mirrors: bool,
+    /// Whether depth falls with distance.
+    pub reversed: bool,
+    /// For each object, whether it has instances that are not mirrored, and such that are.
+    pub sides: Vec<[bool; 2]>,
 }
 
 impl View {
@@ -51,6 +63,7 @@ impl View {
             casters: false,
             select,
             drawn,
+            recorded: None,
             lists: None,
         })
     }
@@ -145,12 +158,18 @@ impl View {
         self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
-    /// Stages the view's uniforms. `spacings` gives the distance between the samples of each terrain.
+    /// The last frame, if there was one.
+    pub(super) fn recorded(&self) -> Option<&Recorded> {
+        self.recorded.as_ref()
+    }
+
+    /// Stages the view's uniforms. `spacings` gives the distance between the samples of each terrain, `sides` what each
+    /// object has, as [`Recorded::sides`].
     pub(super) fn stage(
-        &self,
+        &mut self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
-        spacings: &[f64],
+        (spacings, sides): (&[f64], impl Iterator<Item = [bool; 2]>),
         is_first: bool,
     ) -> Result<(), Error> {
         let (camera, view) = self.select_view(blocks, is_first)?;
@@ -160,6 +179,11 @@ impl View {
         for ((uniform, _), spacing) in terrain.zip(spacings) {
             staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
         }
+        let recorded = self.recorded.get_or_insert_default();
+        recorded.mirrors = camera.is_mirrored();
+        recorded.reversed = camera.depth == Depth::Reversed;
+        recorded.sides.clear();
+        recorded.sides.extend(sides);
         Ok(())
     }
 

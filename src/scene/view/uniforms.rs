@@ -9,7 +9,6 @@ use crate::scene::camera::{Camera, Depth};
 use crate::scene::placement::Placement;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
-use crate::skinning::picture::is_mirrored;
 
 impl SceneView {
     pub(super) fn new(camera: &Camera, own: &LodCamera, light: &Light) -> Self {
@@ -22,7 +21,7 @@ impl SceneView {
             eye,
             light: light.direction.normalize().extend(light.ambient),
             light_color: light.color,
-            side: if is_mirrored(&camera.clip_from_world()) { -1.0 } else { 1.0 },
+            side: if camera.is_mirrored() { -1.0 } else { 1.0 },
         }
     }
 

@@ -7,6 +7,7 @@ use crate::gpu::bindings::skinning::pages as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::pages::PageParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::skinning::clusters::CLUSTER;
 use crate::skinning::vertex::Vertex;
 
 impl SeenAs<PageState> for u32 {}
@@ -16,6 +17,8 @@ impl SeenAs<PageState> for u32 {}
 pub struct PageBuffers {
     /// The skinned vertices, 64 a page.
     pub skinned: Buffer<Vertex>,
+    /// The same vertices before skinning, if the mesh has morph targets; else empty.
+    pub morphed: Buffer<Vertex>,
     /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Buffer<u32>,
     /// For each instance the number of clusters, from the first on, that have a page.
@@ -34,8 +37,11 @@ impl PageBuffers {
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd, pages: u32) -> Result<Self, GpuError> {
         let stack: Vec<u32> = (0..pages).rev().collect();
         let entries = crowd.instances * mesh.clusters();
+        let vertices = CLUSTER * pages as usize;
+        let morphed = if mesh.targets == 0 { 0 } else { vertices };
         Ok(Self {
-            skinned: Buffer::new(gpu, "pages of vertices", super::super::clusters::CLUSTER * pages as usize)?,
+            skinned: Buffer::new(gpu, "pages of vertices", vertices)?,
+            morphed: Buffer::new(gpu, "pages of morphed vertices", morphed)?,
             table: Buffer::from_slice(gpu, "page table", &vec![NO_PAGE; entries])?,
             held: Buffer::new(gpu, "pages held", crowd.instances)?,
             stack: Buffer::from_slice(gpu, "free pages", &stack)?,

@@ -1,32 +1,34 @@
 //! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
 
-use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::frame::GatedFrame;
+mod provide;
+mod runtime;
+
+use std::ops::Range;
+
 use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
-use crate::asset::Model;
 use crate::asset::mesh::bone_radii;
-use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
-use crate::lod::assign::{AssignBuffers, AssignPass};
-use crate::lod::{LodObject, SceneDraw, SceneInstance, SelectView};
+use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::lod::SceneDraw;
+use crate::lod::assign::AssignPass;
+use crate::scene::chunk::{Chunk, common};
 use crate::scene::drawable::Drawable;
 use crate::scene::instances::Changed;
-use crate::scene::layout::{Layout, ObjectRange, error_vectors};
+use crate::scene::layout::{Layout, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
-use crate::scene::paging::{Needs, Paging, needs};
 use crate::scene::placement::{ClipTime, Play};
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
-use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::PagedSkin;
-use crate::skinning::pages::PageBuffers;
 #[cfg(feature = "verify")]
 use crate::skinning::vertex::Vertex;
 use crate::skinning::{Extent, poses_of};
 use crate::{Error, InputError};
+pub(super) use provide::{Provided, Replaced};
+use runtime::{Runtime, Shared};
 
 /// The time in seconds after which starts are counted from a later moment, because `f32` seconds lose precision.
 const EPOCH: f64 = 128.0;
@@ -35,8 +37,6 @@ const EPOCH: f64 = 128.0;
 #[derive(Debug)]
 pub(super) struct Character {
     merged: Merged,
-    set: ClipSet,
-    gate: Gate,
     /// Metres of the model per unit of the gate's table.
     unit: f32,
     /// The displacement of vertices per step of the fade of influences.
@@ -47,7 +47,11 @@ pub(super) struct Character {
     changed: Changed,
     /// The time of the scene from which the device counts.
     epoch: f64,
-    runtime: Runtime,
+    shared: Shared,
+    /// One for each chunk of instances, in ascending order.
+    runtimes: Vec<Runtime>,
+    /// Whether there was no memory to divide a chunk.
+    is_memory_short: bool,
 }
 
 /// What an instance plays.
@@ -57,20 +61,6 @@ struct Playing {
     wrap: Wrap,
     start: f64,
     rate: f32,
-}
-
-/// What lies on the device, with room for all instances.
-#[derive(Debug)]
-struct Runtime {
-    crowd: Crowd,
-    frame: GatedFrame,
-    skins: Vec<PagedSkin>,
-    /// One for each of `skins`.
-    paging: Vec<Paging>,
-    weights: Vec<MorphWeightsJob>,
-    assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
-    /// The layout for which `assign` was prepared.
-    version: u64,
 }
 
 impl Character {
@@ -86,17 +76,19 @@ impl Character {
         let every: Vec<usize> = (0..clips.len()).collect();
         let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
         let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
-        let gate = Gate::Bounded(table);
+        let shared = Shared::new(gpu, model, set, Gate::Bounded(table))?;
         let plays = vec![Playing::REST; capacity];
-        let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
+        let runtimes = Runtime::all(gpu, model, &shared, 0..capacity)?;
         let mut changed = Changed::default();
         changed.all(capacity);
-        Ok(Self { merged, set, gate, unit, stray, spheres, plays, changed, epoch: 0.0, runtime })
+        let (epoch, is_memory_short) = (0.0, false);
+        Ok(Self { merged, unit, stray, spheres, plays, changed, epoch, shared, runtimes, is_memory_short })
     }
 
     /// Makes room for more instances. All of them start afresh.
     pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
+        self.runtimes = Runtime::all(gpu, &self.merged.model, &self.shared, 0..capacity)?;
+        self.is_memory_short = false;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         Ok(())
@@ -112,24 +104,55 @@ impl Character {
         mesh::errors(&self.merged)
     }
 
-    /// The pages of each mesh.
-    pub fn pages(&self) -> impl Iterator<Item = &PageBuffers> {
-        self.runtime.skins.iter().map(|skin| &skin.pages)
+    /// Binds the pages of all chunks, after some were replaced.
+    pub fn rebind(&self, gpu: &Gpu, layouts: &SceneLayouts, chunks: &mut [Chunk]) -> Result<(), Error> {
+        for (chunk, runtime) in chunks.iter_mut().zip(&self.runtimes) {
+            for (drawable, skin) in chunk.drawables.iter_mut().zip(&runtime.skins) {
+                if let Drawable::Mesh(mesh) = drawable {
+                    *mesh = mesh.with_pages(gpu, layouts, skin.pages())?;
+                }
+            }
+        }
+        Ok(())
     }
 
-    /// What is drawn: each mesh, from the vertices of each instance.
-    pub fn drawables(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Vec<Drawable>, Error> {
-        let skins = self.runtime.skins.iter().enumerate();
-        let drawable = |(index, skin): (usize, &PagedSkin)| {
-            let mesh = (&skin.mesh, &skin.clusters);
-            mesh::drawable((gpu, layouts), &self.merged, index, mesh, Some(&skin.pages))
+    /// The chunks of its instances. What is drawn of them differs in the pages; `known` has the meshes and materials, if
+    /// there are any yet.
+    pub fn chunks(
+        &self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        known: Option<&[Drawable]>,
+    ) -> Result<Vec<Chunk>, Error> {
+        let first = match known {
+            Some(known) => known.to_vec(),
+            None => self.drawables(gpu, layouts)?,
         };
-        skins.map(drawable).collect()
+        let chunk = |runtime: &Runtime| {
+            let drawable = |(drawable, skin): (&Drawable, &PagedSkin)| match drawable {
+                Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.beside(gpu, layouts, skin.pages())?)),
+                Drawable::Terrain(_) => Ok(drawable.clone()),
+            };
+            let drawables = first.iter().zip(&runtime.skins).map(drawable);
+            Ok(Chunk::new(runtime.slots.clone(), drawables.collect::<Result<_, Error>>()?))
+        };
+        self.runtimes.iter().map(chunk).collect()
     }
 
-    /// The draws of all parts.
+    /// What is drawn of the first chunk: each mesh, from the vertices of each instance.
+    fn drawables(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Vec<Drawable>, Error> {
+        let drawable = |(index, skin): (usize, &PagedSkin)| {
+            let mesh = (&skin.mesh, &*skin.clusters);
+            mesh::drawable((gpu, layouts), &self.merged, index, mesh, Some(skin.pages()))
+        };
+        self.runtimes
+            .first()
+            .map_or(Ok(Vec::new()), |runtime| runtime.skins.iter().enumerate().map(drawable).collect())
+    }
+
+    /// The draws of all parts of a chunk.
     pub fn draws(&self) -> Vec<SceneDraw> {
-        let skins = self.runtime.skins.iter().enumerate();
+        let skins = self.runtimes.first().into_iter().flat_map(|runtime| runtime.skins.iter().enumerate());
         skins.flat_map(|(index, skin)| mesh::part_draws(&self.merged, index, &skin.mesh)).collect()
     }
 
@@ -170,77 +193,45 @@ impl Character {
     /// The skinned vertices of an instance, mesh by mesh.
     #[cfg(feature = "verify")]
     pub fn skinned(&self, gpu: &Gpu, index: u32) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
-        self.runtime.skins.iter().map(|skin| skin.read(gpu, index as usize)).collect()
+        let index = index as usize;
+        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index));
+        let skins = runtime
+            .into_iter()
+            .flat_map(|runtime| runtime.skins.iter().map(|skin| skin.read(gpu, index - runtime.slots.start)));
+        skins.collect()
     }
 
-    /// Prepares the assignment of levels for a layout, unless it is prepared.
+    /// Prepares the assignment of levels for a layout, unless it is prepared. `mesh_fraction` is the fraction of the allowed
+    /// displacement that levels of detail use.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
         pass: &AssignPass,
-        (range, errors, shares): (ObjectRange, &[f32], Shares),
+        (chunks, errors): (&[Chunk], &[f32]),
+        (shares, mesh_fraction): (Shares, f32),
     ) -> Result<(), Error> {
-        if self.runtime.version == layout.version {
-            return Ok(());
-        }
-        let instances = self.plays.len() as u32;
-        let params = AssignParams {
-            first: range.first,
-            instances,
-            levels: errors.len() as u32,
-            max_influences: InstanceLod::FULL.max_influences,
-            mesh_fraction: shares.mesh,
-            bone_fraction: shares.bones,
-            influence_fraction: shares.influences,
-            unit: self.unit,
-            stray: self.stray,
-            errors: error_vectors(errors),
-        };
-        let runtime = &mut self.runtime;
-        runtime.assign.clear();
-        for skin in &runtime.skins {
-            let uniform = Uniform::new(gpu, "assign", &params)?;
-            let buffers = AssignBuffers {
-                params: &uniform,
-                allowed: &layout.allowed,
-                lods: &runtime.frame.state.lods,
-                instance_lods: &skin.crowd.instance_lods,
+        for (runtime, chunk) in self.runtimes.iter_mut().zip(chunks) {
+            let params = AssignParams {
+                first: chunk.range.first,
+                instances: 0,
+                levels: errors.len() as u32,
+                max_influences: InstanceLod::FULL.max_influences,
+                mesh_fraction,
+                bone_fraction: shares.bones,
+                influence_fraction: shares.influences,
+                unit: self.unit,
+                stray: self.stray,
+                errors: error_vectors(errors),
             };
-            let job = pass.prepare(gpu, buffers, instances)?;
-            runtime.assign.push((uniform, params, job));
+            runtime.fit(gpu, layout, pass, params)?;
         }
-        runtime.version = layout.version;
         Ok(())
-    }
-
-    /// Provides the pages that the views of a frame need. Returns the factor by which levels of detail must be coarser
-    /// (1 unless a binding is too small), and whether pages were replaced.
-    pub fn provide(
-        &mut self,
-        gpu: &Gpu,
-        views: &[SelectView],
-        object: &LodObject,
-        instances: &[SceneInstance],
-    ) -> Result<(f32, bool), Error> {
-        let Runtime { skins, paging, .. } = &mut self.runtime;
-        if skins.iter().zip(&*paging).all(|(skin, paging)| skin.pages.pages() as u32 >= paging.full) {
-            return Ok((1.0, false));
-        }
-        let Needs { pages, coarsening } = needs(views, object, instances, paging);
-        let mut is_replaced = false;
-        for ((skin, paging), needed) in skins.iter_mut().zip(&*paging).zip(pages) {
-            if needed as usize > skin.pages.pages() {
-                skin.set_pages(gpu, paging.enough(needed))?;
-                is_replaced = true;
-            }
-        }
-        Ok((coarsening, is_replaced))
     }
 
     /// Stages the fraction of the allowed displacement that levels of detail use.
     pub fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
-        for (params, values, _) in &self.runtime.assign {
+        for (params, values, _) in self.runtimes.iter().flat_map(|runtime| &runtime.assign) {
             staged.uniform(params, &AssignParams { mesh_fraction: fraction, ..*values })?;
         }
         Ok(())
@@ -253,13 +244,23 @@ impl Character {
             self.changed.all(self.plays.len());
         }
         for [from, to] in self.changed.take(self.plays.len()) {
-            let plays = self.plays[from..to].iter().map(|play| self.on_device(play));
-            staged.elements(&self.runtime.crowd.instances, from, &plays.collect::<Vec<_>>())?;
+            self.stage_plays(staged, &(from..to))?;
         }
         let elapsed = (now - self.epoch) as f32;
-        self.runtime.frame.set_through(staged, frame, elapsed)?;
-        for weights in &self.runtime.weights {
-            weights.set_through(staged, elapsed)?;
+        for runtime in &self.runtimes {
+            runtime.frame.set_through(staged, frame, elapsed)?;
+            for weights in &runtime.weights {
+                weights.set_through(staged, elapsed)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn stage_plays(&self, staged: &mut Staged, run: &Range<usize>) -> Result<(), Error> {
+        for Runtime { slots, crowd, .. } in &self.runtimes {
+            let Some(own) = common(run, slots) else { continue };
+            let plays = self.plays[own.clone()].iter().map(|play| self.on_device(play));
+            staged.elements(&crowd.instances, own.start - slots.start, &plays.collect::<Vec<_>>())?;
         }
         Ok(())
     }
@@ -279,45 +280,11 @@ impl Character {
 
     /// Adds sampling, gating and skinning to a compute pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let runtime = &self.runtime;
-        runtime.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
-        runtime.frame.dispatch(pass);
-        runtime.weights.iter().for_each(|weights| weights.dispatch(pass));
-        runtime.skins.iter().for_each(|skin| skin.dispatch(pass));
+        self.runtimes.iter().for_each(|runtime| runtime.dispatch(pass));
     }
 }
 
 impl Playing {
     /// The first clip, from time 0 on.
     const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
-}
-
-impl Runtime {
-    fn new(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate, capacity: usize) -> Result<Self, Error> {
-        let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
-        let crowd = Crowd::new(gpu, set, &vec![rest; capacity])?;
-        let clips = ClipBuffers::new(gpu, set)?;
-        let frame = GatedFrame::new(gpu, &model.skeleton, &clips, &crowd, gate)?;
-        let every: Vec<usize> = (0..model.clips.len()).collect();
-        let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, mesh) in model.meshes.iter().enumerate() {
-            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
-            let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
-            paging.push(Paging::new(clusters, capacity, gpu.max_binding()));
-            if !mesh.targets.is_empty() {
-                let keys = WeightSet::new(mesh, set, &every)?;
-                weights.push(MorphWeightsPass::new(gpu)?.prepare(
-                    gpu,
-                    &keys,
-                    &crowd.instances,
-                    &skin.crowd,
-                )?);
-            }
-            skins.push(skin);
-        }
-        for (skin, paging) in skins.iter_mut().zip(&paging) {
-            skin.set_pages(gpu, paging.initial())?;
-        }
-        Ok(Self { crowd, frame, skins, paging, weights, assign: Vec::new(), version: 0 })
-    }
 }

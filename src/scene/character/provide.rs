@@ -1,0 +1,100 @@
+//! Pages for what the views of a frame see of a character.
+
+use std::ops::Range;
+
+use crate::Error;
+use crate::gpu::Gpu;
+use crate::lod::{LodObject, SceneInstance, SelectView};
+use crate::scene::chunk::halved;
+use crate::scene::paging::{Paging, Seen};
+
+use super::Character;
+use super::runtime::{Runtime, is_out_of_memory};
+
+/// What was provided for a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::scene) struct Provided {
+    /// The factor by which levels of detail must be coarser: 1 unless memory has ended.
+    pub coarsening: f32,
+    pub replaced: Replaced,
+}
+
+/// What is another than before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::scene) enum Replaced {
+    Nothing,
+    /// The pages of some chunks.
+    Pages,
+    /// The chunks. The instances of those that were divided start afresh.
+    Chunks,
+}
+
+impl Character {
+    /// Provides the pages that the views of a frame need. A chunk whose pages would exceed a binding is divided; where
+    /// memory ends, levels of detail must be coarser.
+    pub fn provide(
+        &mut self,
+        gpu: &Gpu,
+        views: &[SelectView],
+        object: &LodObject,
+        instances: &[SceneInstance],
+    ) -> Result<Provided, Error> {
+        if self.runtimes.iter().all(Runtime::is_full) {
+            return Ok(Provided { coarsening: 1.0, replaced: Replaced::Nothing });
+        }
+        let seen = Seen::new(views, object, instances);
+        let is_divided = self.divide(gpu, &seen)?;
+        let mut has_pages = false;
+        let coarsening = loop {
+            let coarsening = seen.coarsening(self.runtimes.iter().map(chunk));
+            let mut is_short = false;
+            for runtime in &mut self.runtimes {
+                let needed = seen.pages(&runtime.slots, &runtime.paging, coarsening);
+                let [is_replaced, ends] = runtime.provide(gpu, &needed)?;
+                has_pages |= is_replaced;
+                is_short |= ends;
+            }
+            if !is_short {
+                break coarsening;
+            }
+        };
+        let replaced = match (is_divided, has_pages) {
+            (true, _) => Replaced::Chunks,
+            (false, true) => Replaced::Pages,
+            (false, false) => Replaced::Nothing,
+        };
+        Ok(Provided { coarsening, replaced })
+    }
+
+    /// Divides the chunks that need more pages than a binding holds. Returns whether there were any.
+    fn divide(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<bool, Error> {
+        if self.is_memory_short {
+            return Ok(false);
+        }
+        let mut is_divided = false;
+        let mut at = 0;
+        while let Some(Runtime { slots, paging, .. }) = self.runtimes.get(at) {
+            let ranges = halved(slots.clone(), |part| seen.fits(part, paging, 1.0));
+            let count = ranges.len();
+            if count > 1 {
+                let model = &self.merged.model;
+                let parts = ranges.into_iter().map(|part| Runtime::all(gpu, model, &self.shared, part));
+                let parts = parts.collect::<Result<Vec<_>, Error>>();
+                if is_out_of_memory(&parts) {
+                    // Another attempt in each frame would cost more than it gains.
+                    self.is_memory_short = true;
+                    return Ok(is_divided);
+                }
+                self.runtimes.splice(at..=at, parts?.into_iter().flatten());
+                is_divided = true;
+            }
+            at += count;
+        }
+        Ok(is_divided)
+    }
+}
+
+/// The instances and pages of a chunk.
+fn chunk(runtime: &Runtime) -> (&Range<usize>, &[Paging]) {
+    (&runtime.slots, &runtime.paging)
+}
