@@ -1,6 +1,7 @@
 //! Simplification of meshes: the same surface with fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3).
 
 pub mod nearest;
+pub mod ray;
 pub mod simplify;
 
 pub use simplify::{Collapse, Cost, Options, Simplified, Stopped, Surface, simplify, simplify_within};

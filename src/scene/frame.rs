@@ -5,9 +5,43 @@ use crate::gpu::{Staged, compute_pass};
 use crate::lod::SelectView;
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
 use crate::scene::object::{self, Kind, Object};
+use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
 use crate::{Error, InputError};
+
+/// Number of stages of a frame.
+pub(super) const STAGES: usize = 5;
+
+/// A stage of a frame's compute work. Each is recorded for everything before the next one begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// What views see and how fine.
+    Select,
+    /// Which bones are sampled.
+    Gate,
+    /// Their local transforms, and the weights of morph targets.
+    Sample,
+    /// Their model matrices.
+    LocalToModel,
+    /// The vertices.
+    Skin,
+}
+
+impl Stage {
+    /// All stages, in order.
+    pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Select => "scene: select",
+            Self::Gate => "scene: gate",
+            Self::Sample => "scene: sample",
+            Self::LocalToModel => "scene: local to model",
+            Self::Skin => "scene: skin",
+        }
+    }
+}
 
 impl Scene {
     /// Gives up all recordings whose encoders were dropped, and lets everything start afresh.
@@ -17,6 +51,15 @@ impl Scene {
     pub fn invalidate(&mut self) -> Result<(), Error> {
         self.staging.invalidate();
         self.staged = Staged::default();
+        if let Some(counts) = &mut self.counts {
+            counts.invalidate(&self.gpu)?;
+        }
+        if let Some(timer) = &mut self.timer {
+            timer.invalidate(&self.gpu)?;
+        }
+        if let Some(watch) = &mut self.watch {
+            watch.invalidate(&self.gpu)?;
+        }
         self.refresh()
     }
 
@@ -55,15 +98,51 @@ impl Scene {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
-        let mut pass = compute_pass(encoder, "scene");
-        views.iter().for_each(|view| view.dispatch(&mut pass));
+        self.record_stages(encoder, views);
+        self.count(encoder, views);
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Records all stages: in one compute pass, or in one each if their time is taken.
+    fn record_stages(&mut self, encoder: &mut wgpu::CommandEncoder, views: &[&mut View]) {
+        if let Some(timer) = &mut self.timer {
+            timer.begin(encoder, self.frames);
+        }
+        let timed = |stage: Stage| self.timer.as_ref().and_then(|timer| timer.stage(stage as usize));
+        if timed(Stage::Select).is_none() {
+            let mut pass = compute_pass(encoder, "scene");
+            return Stage::ALL.into_iter().for_each(|stage| self.dispatch(stage, views, &mut pass));
+        }
+        for stage in Stage::ALL {
+            let (label, timestamp_writes) = (Some(stage.label()), timed(stage));
+            let descriptor = wgpu::ComputePassDescriptor { label, timestamp_writes };
+            self.dispatch(stage, views, &mut encoder.begin_compute_pass(&descriptor));
+        }
+    }
+
+    fn dispatch(&self, stage: Stage, views: &[&mut View], pass: &mut wgpu::ComputePass<'_>) {
+        if stage == Stage::Select {
+            views.iter().for_each(|view| view.dispatch(pass));
+        }
         for object in self.objects.iter() {
             if let Kind::Character(character) = &object.kind {
-                character.dispatch(&mut pass);
+                character.dispatch(stage, pass);
             }
         }
-        self.frame = self.frame.wrapping_add(1);
-        Ok(())
+    }
+
+    /// Records the copies of counts and of watched bones.
+    fn count(&mut self, encoder: &mut wgpu::CommandEncoder, views: &mut [&mut View]) {
+        if let Some(counts) = &mut self.counts {
+            counts.record(encoder, self.frames, &self.objects);
+        }
+        if let (Some(watch), Some(layout)) = (&mut self.watch, &self.layout) {
+            watch.record(encoder, (self.frames, self.now), &self.objects, layout);
+        }
+        for view in views {
+            view.count(encoder, self.frames, &self.objects);
+        }
     }
 
     /// What is drawn, object by object.
@@ -146,6 +225,10 @@ impl Scene {
         for view in views {
             let passes = (&self.passes.select, &self.passes.list);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
+            view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
+        }
+        if self.counted && self.counts.as_ref().is_none_or(|counts| counts.version != layout.version) {
+            self.counts = Some(SceneCounts::new(&self.gpu, layout.version, &self.objects)?);
         }
         Ok(())
     }
@@ -157,7 +240,7 @@ impl Scene {
             let sides = self.objects.iter().map(|object| object.instances.sides());
             view.stage(&mut self.staged, (layout.blocks, &self.light), (&spacings, sides), at == 0)?;
         }
-        let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frame, ahead: self.step };
+        let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {
             object.stage((&mut self.staged, layout), (&frame, self.now))?;
         }

@@ -1,6 +1,7 @@
 //! Handles of objects and instances, which never name anything but what they were made for.
 
 use crate::InputError;
+use crate::scene::object::Object;
 
 /// An object of a scene: terrain, a mesh or a character. Instances of it can be spawned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,6 +72,12 @@ impl<T> Slots<T> {
         removed
     }
 
+    /// All values with their slots and generations, slot by slot.
+    fn numbered(&self) -> impl Iterator<Item = ([u32; 2], &T)> {
+        let slots = (0..).zip(&self.slots);
+        slots.filter_map(|(index, (generation, value))| Some(([index, *generation], value.as_ref()?)))
+    }
+
     /// All values, slot by slot.
     pub fn iter(&self) -> impl Iterator<Item = &T> {
         self.slots.iter().filter_map(|(_, value)| value.as_ref())
@@ -79,6 +86,20 @@ impl<T> Slots<T> {
     /// All values, slot by slot, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|(_, value)| value.as_mut())
+    }
+}
+
+impl Slots<Object> {
+    /// The object of an instance, if the instance exists.
+    pub fn existing(&self, instance: InstanceId) -> Option<&Object> {
+        let InstanceId { object: ObjectId { index, generation }, .. } = instance;
+        let object = self.get([index, generation])?;
+        object.instances.contains([instance.index, instance.generation]).then_some(object)
+    }
+
+    /// All objects with their handles, slot by slot.
+    pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
+        self.numbered().map(|([index, generation], object)| (ObjectId { index, generation }, object))
     }
 }
 

@@ -1,9 +1,12 @@
 //! How the instances and draws of all objects lie in the buffers of a scene and of its views.
 
+use std::sync::Arc;
+
 use glam::Vec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
+use crate::scene::statistics::view::Counted;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
@@ -35,6 +38,8 @@ pub(crate) struct Layout {
     pub list_words: u32,
     /// The draws of a view that sees nothing.
     pub draws: Vec<SceneDraw>,
+    /// What statistics need to know of the objects.
+    pub counted: Arc<Counted>,
 }
 
 impl Layout {
@@ -46,7 +51,7 @@ impl Layout {
         gpu: &Gpu,
         (objects, draws): (&[LodObject], Vec<SceneDraw>),
         end: ObjectRange,
-        version: u64,
+        (version, counted): (u64, Arc<Counted>),
     ) -> Result<Self, Error> {
         let of_object =
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
@@ -62,6 +67,7 @@ impl Layout {
             blocks: block_objects.len() as u32,
             list_words: end.first_list,
             draws,
+            counted,
         })
     }
 }

@@ -21,23 +21,33 @@ pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
 mod paging;
+mod pick;
 mod placement;
 mod quality;
 pub(crate) mod query;
+mod ray;
 mod relief;
 mod spawned;
+mod statistics;
 mod terrain;
 mod view;
+mod watch;
 
 use std::sync::Arc;
 
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
+pub use pick::Bounds;
 pub use placement::{ClipTime, Placement, Play};
 pub use quality::{Quality, Shares};
+pub use ray::{Hit, Ray};
 pub use relief::Relief;
+pub use statistics::{
+    CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
+};
 pub use terrain::TerrainSource;
 pub use view::View;
+pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
 use crate::gpu::{Gpu, Staged, StagingRing};
@@ -49,6 +59,8 @@ use handles::{Slots, stale};
 use layout::Layout;
 use layouts::SceneLayouts;
 use object::{Kind, Object};
+use statistics::{SceneCounts, StageTimer};
+use watch::Watch;
 
 /// The number of recordings that may wait for their submission or execution.
 pub const RECORDINGS: usize = 4;
@@ -65,7 +77,8 @@ pub struct Scene {
     /// Seconds since the scene began, and seconds since the last frame.
     now: f64,
     step: f32,
-    frame: u32,
+    /// Number of frames that were recorded.
+    frames: u64,
     layout: Option<Layout>,
     layouts: u64,
     staging: StagingRing,
@@ -73,6 +86,11 @@ pub struct Scene {
     uploaded: usize,
     passes: Passes,
     layouts_of_groups: SceneLayouts,
+    /// Whether frames are counted.
+    counted: bool,
+    counts: Option<SceneCounts>,
+    timer: Option<StageTimer>,
+    watch: Option<Watch>,
 }
 
 #[derive(Debug)]
@@ -101,7 +119,7 @@ impl Scene {
             light: Light::default(),
             now: 0.0,
             step: 0.0,
-            frame: 0,
+            frames: 0,
             layout: None,
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),
@@ -109,6 +127,10 @@ impl Scene {
             uploaded: 0,
             passes,
             layouts_of_groups: SceneLayouts::new(gpu)?,
+            counted: false,
+            counts: None,
+            timer: None,
+            watch: None,
         })
     }
 

@@ -1,9 +1,11 @@
 //! Objects: what all instances of one model or one terrain share.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use crate::animation::Frame;
-use crate::asset::Model;
+use crate::asset::{Mesh, Model};
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
@@ -16,11 +18,14 @@ use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh::{self, Drawn};
 use crate::scene::quality::Shares;
+use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
+use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
 
 /// An object of a scene.
@@ -39,17 +44,39 @@ pub(crate) struct Object {
     is_retuned: bool,
     pub(super) is_shown: bool,
     /// Of each part, the draws of all lists of a chunk, without instances.
-    draws: Vec<SceneDraw>,
+    pub(super) draws: Vec<SceneDraw>,
     /// At least one.
     pub(super) chunks: Vec<Chunk>,
     fitted: u64,
+}
+
+/// What the host keeps of a mesh that does not move by itself.
+#[derive(Debug)]
+pub(super) struct MeshOnHost {
+    /// Its triangles in full detail.
+    pub surfaces: Vec<Surface>,
+}
+
+impl MeshOnHost {
+    /// Of merged meshes at rest.
+    fn of_merged(merged: &Merged) -> Self {
+        let meshes = merged.model.meshes.iter().enumerate();
+        let surface = |(at, mesh): (usize, &Mesh)| Surface::of_merged(merged, at, mesh.positions.clone());
+        Self { surfaces: meshes.map(surface).collect() }
+    }
+
+    /// Of a mesh with relief.
+    fn of_relief(Relief { mesh, double_sided, .. }: &Relief) -> Self {
+        let positions = mesh.vertices.iter().map(|vertex| vertex.position).collect();
+        Self { surfaces: vec![Surface::new(positions, mesh.indices.clone(), *double_sided)] }
+    }
 }
 
 /// What an object is.
 #[derive(Debug)]
 pub(super) enum Kind {
     Terrain(Terrain),
-    Mesh,
+    Mesh(MeshOnHost),
     Character(Box<Character>),
 }
 
@@ -94,7 +121,8 @@ impl Object {
         let instances = room(capacity)?;
         let (merged, sphere) = mesh::at_rest_merged(model)?;
         let drawn = whole(&instances, mesh::drawn(gpu, layouts, &merged)?);
-        Ok(Self::new(Kind::Mesh, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+        let kind = Kind::Mesh(MeshOnHost::of_merged(&merged));
+        Ok(Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
     }
 
     /// A mesh with relief.
@@ -107,7 +135,8 @@ impl Object {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
         let drawn = whole(&instances, drawn);
-        Ok(Self::new(Kind::Mesh, (instances, sphere), (vec![0.0], 1.0), drawn))
+        let kind = Kind::Mesh(MeshOnHost::of_relief(relief));
+        Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// A model that has clips.
@@ -130,7 +159,7 @@ impl Object {
     pub(super) fn spacing(&self) -> Option<f64> {
         match &self.kind {
             Kind::Terrain(terrain) => Some(terrain.spacing),
-            Kind::Mesh | Kind::Character(_) => None,
+            Kind::Mesh(_) | Kind::Character(_) => None,
         }
     }
 
@@ -165,7 +194,7 @@ impl Object {
                 let known = self.chunks.first().map(|chunk| &*chunk.drawables);
                 self.chunks = character.chunks(gpu, layouts, known)?;
             }
-            Kind::Mesh | Kind::Terrain(_) => {
+            Kind::Mesh(_) | Kind::Terrain(_) => {
                 self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
             }
         }
@@ -221,7 +250,7 @@ impl Object {
         }
         match &mut self.kind {
             Kind::Character(character) => character.stage(staged, frame, now),
-            Kind::Mesh | Kind::Terrain(_) => Ok(()),
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
         }
     }
 
@@ -255,7 +284,7 @@ impl Object {
                 let object = (&*self.chunks, &*self.errors);
                 character.fit(gpu, layout, pass, object, (shares, mesh_fraction))
             }
-            Kind::Mesh | Kind::Terrain(_) => Ok(()),
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
         }
     }
 
@@ -264,11 +293,18 @@ impl Object {
         let parts: usize = self.drawables().map(Drawable::parts).sum();
         match self.kind {
             Kind::Terrain(_) => parts,
-            Kind::Mesh | Kind::Character(_) => {
+            Kind::Mesh(_) | Kind::Character(_) => {
                 let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
                 sides * parts * self.errors.len()
             }
         }
+    }
+
+    /// The index of an instance in the buffers of all instances.
+    pub(super) fn place(&self, index: u32) -> Option<usize> {
+        let index = index as usize;
+        let chunk = self.chunks.iter().find(|chunk| chunk.slots.contains(&index))?;
+        Some(chunk.place(index))
     }
 
     /// What is drawn, chunk by chunk.
@@ -316,5 +352,6 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
             all.push(object.lod_object(&object.chunks[at]));
         }
     }
-    Layout::new(gpu, (&all, draws), range, version)
+    let counted = Arc::new(Counted::new(objects));
+    Layout::new(gpu, (&all, draws), range, (version, counted))
 }

@@ -39,13 +39,19 @@ impl Scene {
         let InstanceId { object, index, .. } = self.existing(instance)?;
         match &self.object_at(object)?.kind {
             Kind::Character(character) => character.clip_time(index, self.now).map(Some),
-            Kind::Mesh | Kind::Terrain(_) => Ok(None),
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(None),
         }
     }
 
-    fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
+    pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
         let ObjectId { index, generation } = object;
         self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
+    }
+
+    /// The object of an instance that exists.
+    pub(super) fn object_of(&self, instance: InstanceId) -> Result<&Object, InputError> {
+        let InstanceId { object, .. } = self.existing(instance)?;
+        self.object_at(object)
     }
 
     /// The instance, if it exists.

@@ -8,6 +8,7 @@ use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh::{Drawn, NOTHING};
 use crate::scene::placement::Placement;
+use crate::scene::ray::SurfaceHit;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -71,11 +72,32 @@ impl From<Recipe> for TerrainSource {
 #[derive(Debug)]
 pub(super) struct Terrain {
     ground: Ground,
+    /// The patch of each instance.
+    patches: Vec<[i32; 2]>,
+    /// World units along an edge of a patch.
+    edge: f64,
     /// World units between samples.
     pub spacing: f64,
 }
 
 impl Terrain {
+    /// The first hit of a patch by a ray with a unit direction, relative to the corner of a cell.
+    pub fn hit(
+        &self,
+        index: u32,
+        cell: [i32; 3],
+        [at, direction]: [DVec3; 2],
+        limit: f64,
+    ) -> Option<SurfaceHit> {
+        let patch = *self.patches.get(index as usize)?;
+        let corner = DVec3::from(cell.map(f64::from)) * f64::from(Placement::CELL);
+        let [x, z] = patch.map(|index| f64::from(index) * self.edge);
+        let at = at + (corner - DVec3::new(x, 0.0, z));
+        let hit = self.ground.hit(patch, [at, direction], limit)?;
+        // The ground is seen from both sides.
+        Some(SurfaceHit { distance: hit.distance, normal: hit.normal })
+    }
+
     /// The ground at a position of the world, east and south of its origin.
     pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
         self.ground.point_at(x, z)
@@ -113,7 +135,12 @@ pub(super) fn generated(
         None => Texture::of_zones(&config.zones)?,
     };
     let (drawable, draws) = drawable((gpu, layouts), source, &fields, &textures)?;
-    let terrain = Terrain { ground, spacing: config.terrain_scale };
+    let terrain = Terrain {
+        ground,
+        patches: patches.clone(),
+        edge: config.edge_length(),
+        spacing: config.terrain_scale,
+    };
     Ok((terrain, instances, (vec![drawable], draws)))
 }
 

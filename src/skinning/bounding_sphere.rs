@@ -101,7 +101,7 @@ fn box_in_poses(model: &Model, poses: impl Iterator<Item = Vec<Transform>>) -> [
 }
 
 /// For each bone, whether any vertex follows it.
-fn followed(model: &Model) -> Vec<bool> {
+pub(crate) fn followed(model: &Model) -> Vec<bool> {
     let mut followed = vec![false; model.skeleton.len()];
     for mesh in &model.meshes {
         let bones = &model.skins[mesh.skin].bones;

@@ -156,6 +156,11 @@ impl PagedSkin {
         Ok(self.clusters.in_mesh_order(&placed))
     }
 
+    /// Workgroups along x, y and z of the dispatch that skins, the number of clusters that it skins, and a counter.
+    pub fn dispatched(&self) -> &Buffer<u32> {
+        &self.active.dispatched
+    }
+
     /// The buffer of updated bones that the selection reads.
     pub fn updated_bones(&self) -> &Buffer<u32> {
         &self.paging.select.updated_bones

@@ -1,12 +1,15 @@
 //! The ground of a world of patches on the CPU: the height and the normal, at a world position, of the
 //! triangles that are drawn.
 
+mod ray;
+
 use std::collections::HashMap;
 
 use crate::InputError;
 use crate::terrain::config::Config;
 use crate::terrain::export::cropped;
 use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
+pub use ray::GroundHit;
 
 /// The heights of any number of patches of one configuration, kept on the CPU, which answer where the ground
 /// is.

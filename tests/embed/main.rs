@@ -5,11 +5,14 @@
 mod harness;
 
 mod chunks;
+mod counts;
 mod frame;
+mod host;
 mod life;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
+mod query;
 mod sides;
 mod solids;
 mod targets;

@@ -1,5 +1,6 @@
 //! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
 
+mod posed;
 mod provide;
 mod runtime;
 
@@ -12,14 +13,15 @@ use crate::lod::SceneDraw;
 use crate::lod::assign::AssignPass;
 use crate::scene::chunk::{Chunk, common};
 use crate::scene::drawable::Drawable;
+use crate::scene::frame::Stage;
 use crate::scene::instances::Changed;
 use crate::scene::layout::{Layout, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
-use crate::scene::placement::{ClipTime, Play};
+use crate::scene::placement::Play;
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
-use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
 use crate::skinning::paged::PagedSkin;
@@ -41,6 +43,8 @@ pub(super) struct Character {
     unit: f32,
     /// The displacement of vertices per step of the fade of influences.
     stray: f32,
+    /// For each bone, the largest distance of a vertex that follows it, in the bone's space; `None` if none does.
+    radii: Vec<Option<f32>>,
     /// A sphere around each clip.
     spheres: Vec<BoundingSphere>,
     plays: Vec<Playing>,
@@ -77,12 +81,26 @@ impl Character {
         let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
         let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
         let shared = Shared::new(gpu, model, set, Gate::Bounded(table))?;
+        let follows = radii.iter().zip(followed(model));
+        let radii = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let plays = vec![Playing::REST; capacity];
         let runtimes = Runtime::all(gpu, model, &shared, 0..capacity)?;
         let mut changed = Changed::default();
         changed.all(capacity);
         let (epoch, is_memory_short) = (0.0, false);
-        Ok(Self { merged, unit, stray, spheres, plays, changed, epoch, shared, runtimes, is_memory_short })
+        Ok(Self {
+            merged,
+            unit,
+            stray,
+            radii,
+            spheres,
+            plays,
+            changed,
+            epoch,
+            shared,
+            runtimes,
+            is_memory_short,
+        })
     }
 
     /// Makes room for more instances. All of them start afresh.
@@ -182,14 +200,6 @@ impl Character {
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
     }
 
-    /// The clip that an instance plays, and the time in it at a time of the scene.
-    pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
-        let play = &self.plays[index as usize];
-        let duration = self.merged.model.clips[play.clip as usize].duration();
-        let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
-        Ok(ClipTime { clip: play.clip as usize, seconds })
-    }
-
     /// The skinned vertices of an instance, mesh by mesh.
     #[cfg(feature = "verify")]
     pub fn skinned(&self, gpu: &Gpu, index: u32) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
@@ -278,9 +288,9 @@ impl Character {
         Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
     }
 
-    /// Adds sampling, gating and skinning to a compute pass.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.runtimes.iter().for_each(|runtime| runtime.dispatch(pass));
+    /// Adds a stage to a compute pass.
+    pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
+        self.runtimes.iter().for_each(|runtime| runtime.dispatch(stage, pass));
     }
 }
 

@@ -10,6 +10,7 @@ use crate::animation::{ClipSet, Gate, Instance, Wrap};
 use crate::asset::Model;
 use crate::gpu::{Gpu, GpuError, Job, Uniform};
 use crate::lod::assign::{AssignBuffers, AssignPass};
+use crate::scene::frame::Stage;
 use crate::scene::layout::Layout;
 use crate::scene::mesh;
 use crate::scene::paging::Paging;
@@ -155,12 +156,21 @@ impl Runtime {
         Ok([is_replaced, is_short])
     }
 
-    /// Adds sampling, gating and skinning to a compute pass.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
-        self.frame.dispatch(pass);
-        self.weights.iter().for_each(|weights| weights.dispatch(pass));
-        self.skins.iter().for_each(|skin| skin.dispatch(pass));
+    /// Adds a stage to a compute pass.
+    pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
+        match stage {
+            Stage::Select => {}
+            Stage::Gate => {
+                self.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
+                self.frame.dispatch_gate(pass);
+            }
+            Stage::Sample => {
+                self.frame.dispatch_sample(pass);
+                self.weights.iter().for_each(|weights| weights.dispatch(pass));
+            }
+            Stage::LocalToModel => self.frame.dispatch_local_to_model(pass),
+            Stage::Skin => self.skins.iter().for_each(|skin| skin.dispatch(pass)),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Views: a camera into a scene, with what it sees and how fine.
 
+mod counted;
 pub(crate) mod lists;
 mod uniforms;
 
@@ -18,6 +19,7 @@ use crate::scene::camera::{Camera, Depth};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
+use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
@@ -36,6 +38,7 @@ pub struct View {
     drawn: Uniform<SceneView>,
     recorded: Option<Recorded>,
     pub(crate) lists: Option<ViewLists>,
+    counts: Option<ViewCounts>,
 }
 
 /// What a renderer needs to know of a view's last frame.
@@ -65,6 +68,7 @@ impl View {
             drawn,
             recorded: None,
             lists: None,
+            counts: None,
         })
     }
 

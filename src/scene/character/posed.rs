@@ -1,0 +1,97 @@
+//! What the host knows of a character: its clips and bones, and how an instance is posed at a time.
+
+use glam::{DAffine3, DVec3};
+
+use super::Character;
+use crate::InputError;
+use crate::animation::Pose;
+use crate::gpu::Buffer;
+use crate::scene::placement::ClipTime;
+use crate::scene::ray::Surface;
+use crate::scene::watch::{CharacterMatrices, affine_of};
+use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::morph::reference::morph;
+use crate::skinning::paged::PagedSkin;
+use crate::skinning::palette::reference::palette_for;
+use crate::skinning::skin::reference::skin;
+use crate::skinning::vertex::Blend;
+
+impl Character {
+    /// The index of a bone, by its name or its index. A name that is a number takes precedence.
+    pub fn bone(&self, name_or_index: &str) -> Result<usize, InputError> {
+        let bones = self.merged.model.skeleton.bones();
+        let by_name = bones.iter().position(|bone| bone.name == name_or_index);
+        let by_index = || name_or_index.parse().ok().filter(|index| *index < bones.len());
+        by_name.or_else(by_index).ok_or_else(|| {
+            let bound = format!("must be below {} or the name of a bone of the model", bones.len());
+            InputError::new("bone", name_or_index, bound)
+        })
+    }
+
+    /// The model matrices of the chunk in which an instance lies, and the index of the instance in the chunk.
+    pub fn model_matrices(&self, index: u32) -> Option<(CharacterMatrices<'_>, usize)> {
+        let index = index as usize;
+        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
+        let raw = runtime.frame.model_matrices().raw();
+        let matrices = CharacterMatrices { raw, bones: self.merged.model.skeleton.len() };
+        Some((matrices, index - runtime.slots.start))
+    }
+
+    /// The clip that an instance plays, and the time in it at a time of the scene.
+    pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
+        let play = &self.plays[index as usize];
+        let duration = self.merged.model.clips[play.clip as usize].duration();
+        let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
+        Ok(ClipTime { clip: play.clip as usize, seconds })
+    }
+
+    /// The pose of an instance at a time of the scene.
+    pub fn pose(&self, index: u32, now: f64) -> Result<Pose, InputError> {
+        let ClipTime { clip, seconds } = self.clip_time(index, now)?;
+        let model = &self.merged.model;
+        Ok(Pose::on_host(&model.skeleton, &model.clips[clip], seconds))
+    }
+
+    /// The corners of a box around a posed instance, along the axes of the space into which `placed` leads. Everything that a
+    /// bone moves lies in a sphere around its origin, which its matrix turns into an ellipsoid.
+    pub fn bounds(&self, pose: &Pose, placed: DAffine3) -> [DVec3; 2] {
+        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        for (matrix, radius) in pose.model_matrices.iter().zip(&self.radii) {
+            let Some(radius) = radius else { continue };
+            let DAffine3 { matrix3, translation } = placed * affine_of(matrix);
+            let rows = [0, 1, 2].map(|axis| matrix3.row(axis).length());
+            let half = f64::from(*radius) * DVec3::from(rows);
+            low = low.min(translation - half);
+            high = high.max(translation + half);
+        }
+        [low, high]
+    }
+
+    /// The surface of a posed instance at a time of the scene, in full detail.
+    pub fn surface(&self, index: u32, now: f64) -> Result<Vec<Surface>, InputError> {
+        let (ClipTime { clip, seconds }, pose) = (self.clip_time(index, now)?, self.pose(index, now)?);
+        let model = &self.merged.model;
+        let of_mesh = |(at, mesh): (usize, &crate::asset::Mesh)| {
+            let palette = palette_for(&model.skins[mesh.skin], &pose.model_matrices, Blend::Linear);
+            let morphed = morph(mesh, &mesh.weights_at(clip, seconds));
+            let vertices = skin(&morphed, &mesh.influences, &palette, InstanceLod::FULL);
+            let positions = vertices.iter().map(|vertex| vertex.position).collect();
+            Surface::of_merged(&self.merged, at, positions)
+        };
+        Ok(model.meshes.iter().enumerate().map(of_mesh).collect())
+    }
+
+    /// For each chunk the arguments of the dispatches that sample bones and, for each mesh, skin clusters: the fourth word of
+    /// each is their number.
+    pub fn counters(&self) -> impl Iterator<Item = &Buffer<u32>> {
+        self.runtimes.iter().flat_map(|runtime| {
+            let clusters = runtime.skins.iter().map(PagedSkin::dispatched);
+            std::iter::once(&runtime.frame.active.pairs.dispatched).chain(clusters)
+        })
+    }
+
+    /// The number of meshes, and the number of chunks.
+    pub fn counted(&self) -> [usize; 2] {
+        [self.merged.model.meshes.len(), self.runtimes.len()]
+    }
+}

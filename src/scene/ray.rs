@@ -1,0 +1,206 @@
+//! Rays, and the surfaces that they hit on the host.
+
+use glam::{DAffine3, DMat4, DVec3};
+
+use crate::InputError;
+use crate::mesh::ray::distance_to;
+use crate::scene::camera::{Camera, Depth};
+use crate::scene::handles::{InstanceId, ObjectId};
+use crate::skinning::merged::Merged;
+
+/// A ray in the world, for [`Scene::pick`](crate::scene::Scene::pick).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// The cell to whose corner `at` is relative; see [`Placement`](crate::scene::Placement).
+    pub cell: [i32; 3],
+    /// Where the ray begins, in world units relative to the cell's corner.
+    pub at: DVec3,
+    /// Its direction, of any length but 0.
+    pub direction: DVec3,
+    /// The largest distance of a hit, in world units.
+    pub limit: f64,
+    /// Instances are hit if their visibility mask shares a bit with this one.
+    pub mask: u16,
+}
+
+/// What a ray hits first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The instance. Of terrain, it is the patch.
+    pub instance: InstanceId,
+    /// Its object.
+    pub object: ObjectId,
+    /// The distance from the ray's beginning, in world units.
+    pub distance: f64,
+    /// The position in world units, relative to the corner of the ray's cell.
+    pub position: DVec3,
+    /// The unit normal of the triangle, on its outer side.
+    pub normal: DVec3,
+}
+
+impl Ray {
+    /// A ray from a position, relative to cell (0, 0, 0), without a limit, that hits what any mask shows.
+    pub fn new(at: impl Into<DVec3>, direction: impl Into<DVec3>) -> Self {
+        let (at, direction) = (at.into(), direction.into());
+        Self { cell: [0; 3], at, direction, limit: f64::INFINITY, mask: u16::MAX }
+    }
+
+    /// The ray from a camera's near plane through a point of its picture, in pixels from the left and from the top: the middle
+    /// of the first pixel is (0.5, 0.5).
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Camera::validate`], and for a point that is not finite.
+    pub fn through(camera: &Camera, [x, y]: [f32; 2]) -> Result<Self, InputError> {
+        camera.validate()?;
+        for (path, value) in [("pixel[0]", x), ("pixel[1]", y)] {
+            if !value.is_finite() {
+                return Err(InputError::new(path, value, "must be finite"));
+            }
+        }
+        let [width, height] = camera.viewport.map(f64::from);
+        let [right, up] = [2.0 * f64::from(x) / width - 1.0, 1.0 - 2.0 * f64::from(y) / height];
+        let world_from_clip: DMat4 =
+            (camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4()).inverse();
+        let point = |depth: f64| world_from_clip.project_point3(DVec3::new(right, up, depth));
+        let near = point(if camera.depth == Depth::Reversed { 1.0 } else { 0.0 });
+        Ok(Self { cell: camera.cell, ..Self::new(near, point(0.5) - near) })
+    }
+
+    /// Checks the ray.
+    ///
+    /// # Errors
+    /// [`InputError`] for a position or a direction that is not finite, a direction of length 0, and a limit that is negative.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !self.at.is_finite() {
+            return Err(InputError::new("ray.at", self.at, "must be finite"));
+        }
+        if self.direction.try_normalize().is_none() {
+            return Err(InputError::new("ray.direction", self.direction, "must be finite, and not 0"));
+        }
+        // The comparison is false for NaN.
+        if self.limit >= 0.0 {
+            return Ok(());
+        }
+        Err(InputError::new("ray.limit", self.limit, "must be at least 0"))
+    }
+}
+
+/// Triangles on the host, in a model's space.
+#[derive(Debug, Clone)]
+pub(super) struct Surface {
+    positions: Vec<[f32; 3]>,
+    /// Runs of triangles, each with whether both of its sides are seen.
+    parts: Vec<(Vec<u32>, bool)>,
+}
+
+/// A hit of a surface: the distance, and the triangle's normal of any length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SurfaceHit {
+    pub distance: f64,
+    pub normal: DVec3,
+}
+
+impl SurfaceHit {
+    /// The nearer one.
+    pub fn nearer(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        let all = one.into_iter().chain(other);
+        all.reduce(|one, other| if other.distance < one.distance { other } else { one })
+    }
+}
+
+impl Surface {
+    /// Triangles whose sides are both seen or not.
+    pub fn new(positions: Vec<[f32; 3]>, indices: Vec<u32>, double_sided: bool) -> Self {
+        Self { positions, parts: vec![(indices, double_sided)] }
+    }
+
+    /// A merged mesh in full detail, with these positions of its vertices.
+    pub fn of_merged(merged: &Merged, mesh: usize, positions: Vec<[f32; 3]>) -> Self {
+        let own = merged.parts.iter().filter(|part| part.mesh == mesh);
+        let indices = &merged.model.meshes[mesh].indices;
+        let part = |range: &std::ops::Range<u32>| indices[range.start as usize..range.end as usize].to_vec();
+        let parts = own.map(|part_of| (part(&part_of.indices[0]), part_of.key.double_sided)).collect();
+        Self { positions, parts }
+    }
+
+    /// The corners of a box around the surface, along the axes of the space into which `placed` leads.
+    pub fn bounds(&self, placed: DAffine3) -> [DVec3; 2] {
+        let corners = self.positions.iter().map(|corner| placed.transform_point3(point(*corner)));
+        corners.fold([DVec3::MAX, DVec3::MIN], |[low, high], corner| [low.min(corner), high.max(corner)])
+    }
+
+    /// The nearest hit of a ray with a direction of length 1, in the space into which `placed` leads, up to a distance.
+    /// Triangles that are seen from one side alone are hit from there alone.
+    pub fn hit(&self, placed: DAffine3, [at, direction]: [DVec3; 2], limit: f64) -> Option<SurfaceHit> {
+        let corners: Vec<DVec3> =
+            self.positions.iter().map(|corner| placed.transform_point3(point(*corner)) - at).collect();
+        let side = if placed.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let mut nearest: Option<SurfaceHit> = None;
+        for (indices, double_sided) in &self.parts {
+            for triangle in indices.as_chunks::<3>().0 {
+                let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
+                let normal = side * (b - a).cross(c - a);
+                if !double_sided && normal.dot(direction) >= 0.0 {
+                    continue;
+                }
+                let farthest = nearest.map_or(limit, |hit| hit.distance);
+                let found = distance_to([a, b, c], direction).filter(|distance| *distance <= farthest);
+                nearest = found.map(|distance| SurfaceHit { distance, normal }).or(nearest);
+            }
+        }
+        nearest
+    }
+}
+
+fn point(position: [f32; 3]) -> DVec3 {
+    DVec3::from(position.map(f64::from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_are_hit_where_they_are_seen() {
+        let surface =
+            Surface::new(vec![[0.0, 0.0, -2.0], [2.0, 0.0, -2.0], [0.0, 2.0, -2.0]], vec![0, 1, 2], false);
+        let ray = [DVec3::new(0.5, 0.5, 0.0), DVec3::NEG_Z];
+        let hit = |placed: DAffine3, ray: [DVec3; 2], limit: f64| {
+            surface.hit(placed, ray, limit).map(|hit| hit.distance)
+        };
+        assert_eq!(hit(DAffine3::IDENTITY, ray, 9.0), Some(2.0));
+        assert_eq!(hit(DAffine3::IDENTITY, ray, 1.9), None, "beyond the limit");
+        assert_eq!(hit(DAffine3::from_translation(DVec3::NEG_Z), ray, 9.0), Some(3.0));
+        let behind = [DVec3::new(0.5, 0.5, -9.0), DVec3::Z];
+        assert_eq!(hit(DAffine3::IDENTITY, behind, 9.0), None, "from behind");
+        let mirrored = DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0));
+        assert_eq!(hit(mirrored, [DVec3::new(0.5, 0.5, 9.0), DVec3::NEG_Z], 9.0), None, "the inner side");
+        assert_eq!(hit(mirrored, [DVec3::new(0.5, 0.5, 0.0), DVec3::Z], 9.0), Some(2.0));
+    }
+
+    #[test]
+    fn rays_are_checked_field_by_field() {
+        let good = Ray::new([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]);
+        let refused = |ray: Ray| ray.validate().expect_err("refused").path;
+        assert!(good.validate().is_ok());
+        assert_eq!(refused(Ray { at: DVec3::NAN, ..good }), "ray.at");
+        assert_eq!(refused(Ray { direction: DVec3::ZERO, ..good }), "ray.direction");
+        assert_eq!(refused(Ray { limit: f64::NAN, ..good }), "ray.limit");
+    }
+
+    #[test]
+    fn rays_go_through_pixels() {
+        let eye = glam::Vec3::new(3.0, 12.0, 16.0);
+        let camera = Camera::looking_at(eye, glam::Vec3::ZERO, 0.9, [0.5, 400.0], [200, 100]);
+        let middle = Ray::through(&camera, [100.0, 50.0]).expect("a pixel");
+        let ahead = (-eye).as_dvec3().normalize();
+        assert!(middle.direction.normalize().distance(ahead) < 1e-5);
+        assert!((middle.at - eye.as_dvec3()).length() < 0.501);
+        let corner = Ray::through(&camera, [0.0, 0.0]).expect("a pixel");
+        let up = ahead.cross(DVec3::Y).normalize().cross(ahead);
+        // Half the field of view up, and twice as far aside.
+        let rise = corner.direction.normalize().dot(up) / corner.direction.normalize().dot(ahead);
+        assert!((rise - 0.45_f64.tan()).abs() < 1e-5, "{rise}");
+        assert_eq!(Ray::through(&camera, [f32::NAN, 0.0]).expect_err("refused").path, "pixel[0]");
+    }
+}

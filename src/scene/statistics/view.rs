@@ -1,0 +1,158 @@
+//! Counts of what a view draws, copied from the arguments of its draws.
+
+use std::sync::Arc;
+
+use super::{FRAMES, LevelStatistics, ObjectStatistics, ViewStatistics};
+use crate::gpu::{Gpu, GpuError, ReadbackRing};
+use crate::lod::{OBJECT_LISTS, SceneDraw};
+use crate::scene::handles::{ObjectId, Slots};
+use crate::scene::object::Object;
+
+/// An object whose draws are counted.
+#[derive(Debug, Clone)]
+pub(in crate::scene) struct CountedObject {
+    object: ObjectId,
+    /// The first draw of each of its chunks.
+    first_draws: Vec<u32>,
+    parts: u32,
+    levels: u32,
+    mesh_fraction: f32,
+}
+
+/// All objects of a layout whose draws are counted.
+#[derive(Debug)]
+pub(crate) struct Counted {
+    objects: Vec<CountedObject>,
+}
+
+impl Counted {
+    /// These objects, whose places a layout has set.
+    pub(in crate::scene) fn new(objects: &Slots<Object>) -> Self {
+        let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
+            object,
+            first_draws: entry.chunks.iter().map(|chunk| chunk.range.first_draw).collect(),
+            parts: entry.draws.len() as u32 / OBJECT_LISTS,
+            levels: entry.errors.len() as u32,
+            mesh_fraction: entry.mesh_fraction,
+        };
+        Self { objects: objects.each().map(counted).collect() }
+    }
+}
+
+/// A frame on its way.
+#[derive(Debug)]
+struct About {
+    frame: u64,
+    counted: Arc<Counted>,
+    pixels: f32,
+    /// The smallest focal length in pixels of its perspective cameras, if it has any.
+    focal: Option<f32>,
+    /// The factors by which levels are coarser, object by object; empty if all are 1.
+    coarsening: Vec<f32>,
+}
+
+/// The counts of a view.
+#[derive(Debug)]
+pub(in crate::scene) struct ViewCounts {
+    counted: Arc<Counted>,
+    ring: ReadbackRing<About>,
+    last: Option<ViewStatistics>,
+}
+
+impl ViewCounts {
+    /// Room for the draws of a view.
+    pub fn new(gpu: &Gpu, counted: &Arc<Counted>, draws: &wgpu::Buffer) -> Result<Self, GpuError> {
+        let ring = ReadbackRing::new(gpu, "statistics of a view", FRAMES, draws.size())?;
+        Ok(Self { counted: counted.clone(), ring, last: None })
+    }
+
+    /// Whether it was made for these objects.
+    pub fn is_of(&self, counted: &Arc<Counted>) -> bool {
+        Arc::ptr_eq(&self.counted, counted)
+    }
+
+    /// Records the copy of a frame's draws, if a buffer is free.
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        draws: &wgpu::Buffer,
+        (frame, pixels, focal): (u64, f32, Option<f32>),
+        objects: &Slots<Object>,
+    ) {
+        self.arrive();
+        let is_coarser = objects.iter().any(|object| object.coarsening != 1.0);
+        let coarsening = objects.iter().filter(|_| is_coarser).map(|object| object.coarsening).collect();
+        let about = About { frame, counted: self.counted.clone(), pixels, focal, coarsening };
+        self.ring.record(encoder, about, |encoder, to| {
+            encoder.copy_buffer_to_buffer(draws, 0, to, 0, draws.size());
+        });
+    }
+
+    /// The statistics of the last frame that has arrived.
+    pub fn last(&mut self) -> Option<&ViewStatistics> {
+        self.arrive();
+        self.last.as_ref()
+    }
+
+    fn arrive(&mut self) {
+        let Some((about, bytes)) = self.ring.take() else { return };
+        let whole = bytes.len() / size_of::<SceneDraw>() * size_of::<SceneDraw>();
+        let draws = bytemuck::pod_collect_to_vec::<u8, SceneDraw>(&bytes[..whole]);
+        let objects: Vec<_> = (about.counted.objects.iter().enumerate())
+            .map(|(at, counted)| {
+                let coarser = about.coarsening.get(at).copied().unwrap_or(1.0);
+                let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0);
+                let pixels = coarser_pixels(about.pixels, factor, about.focal);
+                let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
+                ObjectStatistics { object: counted.object, pixels, levels }
+            })
+            .collect();
+        let pixels = objects.iter().map(|object| object.pixels).fold(about.pixels, f32::max);
+        self.last = Some(ViewStatistics { frame: about.frame, pixels, objects });
+    }
+}
+
+impl CountedObject {
+    /// What the draws of a level show.
+    fn level(&self, level: u32, draws: &[SceneDraw]) -> LevelStatistics {
+        let mut found = LevelStatistics::default();
+        let lists = [2 * level, 2 * level + 1].into_iter();
+        for (list, first) in lists.flat_map(|list| self.first_draws.iter().map(move |first| (list, first))) {
+            for part in 0..self.parts {
+                let at = (first + OBJECT_LISTS * part + list) as usize;
+                let Some(draw) = draws.get(at) else { continue };
+                found.instances += if part == 0 { draw.instances } else { 0 };
+                found.triangles += u64::from(draw.indices / 3) * u64::from(draw.instances);
+            }
+        }
+        found
+    }
+}
+
+/// The number of pixels by which something may be off if it may be off by `factor` times the distance that `pixels` allow.
+/// At depth z on the axis, that distance is d = z · pixels / (focal + pixels), and a point that is off by e is drawn at most
+/// focal · e / (z − e) pixels off.
+fn coarser_pixels(pixels: f32, factor: f32, focal: Option<f32>) -> f32 {
+    match focal {
+        _ if factor <= 1.0 => pixels,
+        None => factor * pixels,
+        Some(focal) => {
+            let share = factor * pixels / (focal + pixels);
+            if share < 1.0 { focal * share / (1.0 - share) } else { f32::INFINITY }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coarser_levels_are_more_pixels_off() {
+        assert_eq!(coarser_pixels(1.0, 1.0, Some(100.0)), 1.0);
+        assert_eq!(coarser_pixels(1.0, 3.0, None), 3.0);
+        // 3/101 of the depth: 100 · 3/98 pixels.
+        assert!((coarser_pixels(1.0, 3.0, Some(100.0)) - 300.0 / 98.0).abs() < 1e-5);
+        assert_eq!(coarser_pixels(1.0, 200.0, Some(100.0)), f32::INFINITY);
+    }
+}

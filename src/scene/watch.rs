@@ -1,0 +1,198 @@
+//! Bones whose matrices arrive on the host some frames later, without a wait.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::asset::Affine;
+use crate::gpu::{Gpu, GpuError, ReadbackRing};
+use crate::scene::Scene;
+use crate::scene::handles::{InstanceId, Slots};
+use crate::scene::layout::Layout;
+use crate::scene::object::{Kind, Object};
+use crate::shared::lod::instance::SceneInstance;
+use crate::{Error, InputError};
+
+/// The number of frames whose bones may be on their way. If all of them are, a frame's bones are left out.
+const FRAMES: usize = 8;
+
+/// Bones of instances, as a frame posed them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WatchedBones {
+    /// The frame: the number of frames that the scene had recorded before it.
+    pub frame: u64,
+    /// The time of the scene in that frame, in seconds.
+    pub time: f64,
+    /// The bones, in the order in which they were asked for. Those of instances that did not exist any more are left out.
+    pub bones: Vec<WatchedBone>,
+}
+
+/// A bone of an instance, as a frame posed it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WatchedBone {
+    /// The instance.
+    pub instance: InstanceId,
+    /// The index of the bone in the skeleton.
+    pub bone: usize,
+    /// Whether a view of the frame saw the instance. If none did, its bones were left as they were when one did last.
+    pub is_current: bool,
+    /// The cell of the instance's placement.
+    pub cell: [i32; 3],
+    /// From the bone's space to the world, relative to the cell's corner: three rows.
+    pub matrix: Affine,
+}
+
+impl WatchedBone {
+    /// The position of the bone's origin, in world units relative to the corner of [`WatchedBone::cell`].
+    pub fn position(&self) -> glam::Vec3 {
+        self.matrix.map(|row| row[3]).into()
+    }
+}
+
+/// A frame on its way.
+#[derive(Debug)]
+struct About {
+    frame: u64,
+    time: f64,
+    bones: Vec<(InstanceId, usize, SceneInstance)>,
+}
+
+/// The bones that are watched.
+#[derive(Debug)]
+pub(super) struct Watch {
+    chosen: Vec<(InstanceId, usize)>,
+    ring: ReadbackRing<About>,
+    last: Option<WatchedBones>,
+}
+
+/// Bytes of a bone: its model matrix, then what its instance is allowed.
+const BYTES: u64 = (size_of::<Affine>() + size_of::<f32>()) as u64;
+
+impl Scene {
+    /// Watches bones of characters, each by its name or by its index: from the next frame on, [`Scene::watched_bones`] gives
+    /// their matrices. They replace those that were watched before. A bone costs two small copies a frame.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
+    /// not have; [`GpuError`].
+    pub fn watch_bones(&mut self, bones: &[(InstanceId, &str)]) -> Result<(), Error> {
+        let chosen = bones.iter().map(|(instance, bone)| Ok((*instance, self.bone(*instance, bone)?)));
+        let chosen = chosen.collect::<Result<Vec<_>, InputError>>()?;
+        self.watch = match chosen.is_empty() {
+            true => None,
+            false => Some(Watch::new(&self.gpu, chosen)?),
+        };
+        Ok(())
+    }
+
+    /// The watched bones in the last frame whose matrices have arrived; `None` before the first. Nothing is waited for: they
+    /// arrive when the device has executed the frame and is polled, as each submission does.
+    pub fn watched_bones(&mut self) -> Option<&WatchedBones> {
+        let watch = self.watch.as_mut()?;
+        watch.arrive();
+        watch.last.as_ref()
+    }
+
+    /// The index of a bone of a character, by its name or its index. A name that is a number takes precedence.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
+    /// have.
+    pub fn bone(&self, instance: InstanceId, name_or_index: &str) -> Result<usize, InputError> {
+        match &self.object_of(instance)?.kind {
+            Kind::Character(character) => character.bone(name_or_index),
+            _ => Err(InputError::new("instance", "a mesh", "must be an instance of a character")),
+        }
+    }
+}
+
+impl Watch {
+    fn new(gpu: &Gpu, chosen: Vec<(InstanceId, usize)>) -> Result<Self, GpuError> {
+        let ring = ReadbackRing::new(gpu, "watched bones", FRAMES, BYTES * chosen.len() as u64)?;
+        Ok(Self { chosen, ring, last: None })
+    }
+
+    /// The same bones on another device.
+    pub(super) fn on(&self, gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { last: self.last.clone(), ..Self::new(gpu, self.chosen.clone())? })
+    }
+
+    /// Records the copies of a frame, if a buffer is free.
+    pub(super) fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        (frame, time): (u64, f64),
+        objects: &Slots<Object>,
+        layout: &Layout,
+    ) {
+        self.arrive();
+        let placed = |(instance, bone): &(InstanceId, usize)| {
+            let object = objects.existing(*instance)?;
+            Some((*instance, *bone, object.instances.all()[instance.index as usize]))
+        };
+        let bones = self.chosen.iter().filter_map(placed).collect();
+        let chosen = &self.chosen;
+        self.ring.record(encoder, About { frame, time, bones }, |encoder, to| {
+            let copies = chosen.iter().filter_map(|(instance, bone)| {
+                let object = objects.existing(*instance)?;
+                let Kind::Character(character) = &object.kind else { return None };
+                let (matrices, own) = character.model_matrices(instance.index)?;
+                Some((matrices, own, *bone, object.place(instance.index)?))
+            });
+            for (at, (matrices, instance, bone, place)) in (0..).zip(copies) {
+                let (matrix, word) = (size_of::<Affine>() as u64, size_of::<f32>() as u64);
+                let from = matrix * (instance * matrices.bones + bone) as u64;
+                encoder.copy_buffer_to_buffer(matrices.raw, from, to, BYTES * at, matrix);
+                let from = word * place as u64;
+                encoder.copy_buffer_to_buffer(layout.allowed.raw(), from, to, BYTES * at + matrix, word);
+            }
+        });
+    }
+
+    /// Gives up frames that were dropped.
+    pub(super) fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
+        self.ring.invalidate(gpu)
+    }
+
+    fn arrive(&mut self) {
+        let Some((About { frame, time, bones }, bytes)) = self.ring.take() else { return };
+        let words = bytemuck::pod_collect_to_vec::<u8, [f32; 13]>(&bytes[..BYTES as usize * bones.len()]);
+        let bone = |((instance, bone, placed), words): (&(InstanceId, usize, SceneInstance), &[f32; 13])| {
+            let rows: Affine = std::array::from_fn(|row| std::array::from_fn(|at| words[4 * row + at]));
+            let matrix = rows_of(placed_model(placed, placed.cell) * affine_of(&rows));
+            let (instance, is_current) = (*instance, words[12] >= 0.0);
+            WatchedBone { instance, bone: *bone, is_current, cell: placed.cell, matrix }
+        };
+        let bones = bones.iter().zip(&words).map(bone).collect();
+        self.last = Some(WatchedBones { frame, time, bones });
+    }
+}
+
+/// The model matrices of a character.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CharacterMatrices<'a> {
+    /// The matrices, at instance · bones + bone.
+    pub raw: &'a wgpu::Buffer,
+    /// Number of bones.
+    pub bones: usize,
+}
+
+/// The transform from the model's space to the world, relative to the corner of a cell.
+pub(super) fn placed_model(instance: &SceneInstance, cell: [i32; 3]) -> DAffine3 {
+    let cells = |axis: usize| f64::from(instance.cell[axis]) - f64::from(cell[axis]);
+    let corner = DVec3::from([0, 1, 2].map(cells)) * f64::from(crate::lod::CELL_SIZE);
+    let [x, y, z] = instance.axes().map(|axis| axis.as_dvec3());
+    let offset = DVec3::from(instance.offset.map(f64::from));
+    DAffine3 { matrix3: DMat3::from_cols(x, y, z), translation: corner + offset }
+}
+
+/// The transform of three rows.
+pub(super) fn affine_of(rows: &Affine) -> DAffine3 {
+    let column = |at: usize| DVec3::from(rows.map(|row| f64::from(row[at])));
+    DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
+}
+
+/// The three rows of a transform.
+fn rows_of(transform: DAffine3) -> Affine {
+    let columns =
+        [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis, transform.translation];
+    std::array::from_fn(|row| columns.map(|column| column[row] as f32))
+}

@@ -1,0 +1,182 @@
+//! Rays against the triangles of the ground.
+
+use glam::DVec3;
+
+use super::Ground;
+use crate::mesh::ray::distance_to;
+
+/// A hit of the ground by a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundHit {
+    /// The distance, in lengths of the ray's direction.
+    pub distance: f64,
+    /// The normal of the triangle, upwards, of any length.
+    pub normal: DVec3,
+}
+
+impl Ground {
+    /// The first hit of a patch by a ray, up to a distance in lengths of its direction. Positions are in world units from the
+    /// patch's first sample, x east, y up, z south. The triangles are those that are drawn; both of their sides are hit. `None`
+    /// where the ground has no such patch.
+    ///
+    /// The ray is followed from cell to cell, so that it takes as many tests as there are cells below it.
+    pub fn hit(&self, patch: [i32; 2], [at, direction]: [DVec3; 2], limit: f64) -> Option<GroundHit> {
+        let field = self.patches.get(&patch)?;
+        let cells = self.size as usize - 1;
+        let edge = self.spacing * cells as f64;
+        let [mut from, mut to] = [0.0, limit];
+        for (at, direction) in [(at.x, direction.x), (at.z, direction.z)] {
+            let [enter, leave] = slab(at, direction, edge)?;
+            (from, to) = (f64::max(from, enter), f64::min(to, leave));
+        }
+        let mut walk = Walk::new([at, direction], from, (self.spacing, cells));
+        while from <= to {
+            let [column, row] = walk.cell;
+            let corner = |dx: usize, dz: usize| {
+                let [x, z] = [column + dx, row + dz];
+                let height = field.point(x, z).unwrap_or(0.0);
+                DVec3::new(x as f64 * self.spacing, height, z as f64 * self.spacing) - at
+            };
+            // The diagonal runs from the north-eastern corner to the south-western one.
+            let [first, east, south, last] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+            let hits = [[first, south, east], [east, south, last]].into_iter().filter_map(|[a, b, c]| {
+                let distance = distance_to([a, b, c], direction)?;
+                (distance <= limit).then(|| GroundHit { distance, normal: (b - a).cross(c - a) })
+            });
+            let nearest = hits.reduce(|one, other| if other.distance < one.distance { other } else { one });
+            if nearest.is_some() {
+                return nearest;
+            }
+            from = walk.step()?;
+        }
+        None
+    }
+}
+
+/// The distances at which a ray enters and leaves the positions from 0 to `edge` along an axis.
+fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
+    if direction == 0.0 {
+        return (0.0..=edge).contains(&at).then_some([f64::NEG_INFINITY, f64::INFINITY]);
+    }
+    let [a, b] = [-at / direction, (edge - at) / direction];
+    Some([a.min(b), a.max(b)])
+}
+
+/// A walk along a ray from cell to cell.
+struct Walk {
+    cell: [usize; 2],
+    /// Number of cells along each axis.
+    cells: usize,
+    /// The distances at which the next cell along each axis begins, and those between cells.
+    next: [f64; 2],
+    step: [f64; 2],
+    forward: [bool; 2],
+}
+
+impl Walk {
+    fn new([at, direction]: [DVec3; 2], from: f64, (spacing, cells): (f64, usize)) -> Self {
+        let start = at + from * direction;
+        let axes = [(at.x, direction.x, start.x), (at.z, direction.z, start.z)];
+        // Conversion saturates.
+        let cell = axes.map(|(_, _, start)| ((start / spacing).floor().max(0.0) as usize).min(cells - 1));
+        let forward = axes.map(|(_, direction, _)| direction > 0.0);
+        let next = std::array::from_fn(|axis| {
+            let (at, direction, _) = axes[axis];
+            let border = (cell[axis] + usize::from(forward[axis])) as f64 * spacing;
+            if direction == 0.0 { f64::INFINITY } else { (border - at) / direction }
+        });
+        let step = axes.map(|(_, direction, _)| spacing / direction.abs());
+        Self { cell, cells, next, step, forward }
+    }
+
+    /// Goes on to the next cell; returns the distance at which it begins.
+    fn step(&mut self) -> Option<f64> {
+        let axis = usize::from(self.next[1] < self.next[0]);
+        let begins = self.next[axis];
+        if !begins.is_finite() {
+            return None;
+        }
+        self.cell[axis] = match self.forward[axis] {
+            true => Some(self.cell[axis] + 1).filter(|cell| *cell < self.cells)?,
+            false => self.cell[axis].checked_sub(1)?,
+        };
+        self.next[axis] += self.step[axis];
+        Some(begins)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::config::Config;
+    use crate::terrain::field::field;
+    use crate::terrain::recipe::Recipe;
+
+    /// Every ray hits what a search through all triangles finds, and on it the ground is as high as the hit.
+    #[test]
+    fn rays_hit_the_triangles_that_are_drawn() {
+        let config = Config::new(33, 6.0, "rays").expect("valid");
+        let heights = field(&Recipe::new(config.clone()), &[[1, -2]], 0).expect("generated");
+        let mut ground = Ground::new(&config).expect("valid");
+        ground.insert([1, -2], &heights[0], 0).expect("whole");
+        let edge = config.edge_length();
+        let mut seed = 3_u32;
+        let mut draw = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1 << 24)
+        };
+        let mut hits = 0;
+        for _ in 0..400 {
+            let at =
+                DVec3::new(edge * (2.0 * draw() - 0.5), 40.0 * draw() - 10.0, edge * (2.0 * draw() - 0.5));
+            let direction = DVec3::new(draw() - 0.5, 0.6 * (draw() - 0.7), draw() - 0.5);
+            let found = ground.hit([1, -2], [at, direction], f64::INFINITY);
+            let expected = nearest(&ground, [at, direction]);
+            assert_eq!(found.map(|hit| hit.distance), expected, "{at} {direction}");
+            let Some(GroundHit { distance, normal }) = found else { continue };
+            hits += 1;
+            let place = at + distance * direction;
+            let there = ground.point_from([1, -2], place.x, place.z).expect("inside");
+            assert!((there.height - place.y).abs() < 1e-6 * edge, "{} {}", there.height, place.y);
+            assert!(
+                normal.normalize().distance(DVec3::from(there.normal)) < 1e-9
+                    || distance < 1e-3
+                    || is_on_edge(&config, place)
+            );
+            assert_eq!(ground.hit([1, -2], [at, direction], 0.99 * distance), None);
+        }
+        assert!(hits > 100, "{hits}");
+        assert_eq!(ground.hit([0, 0], [DVec3::Y * 90.0, DVec3::NEG_Y], 1e9), None);
+        let down = ground.hit([1, -2], [DVec3::new(3.0, 900.0, 4.0), DVec3::NEG_Y], 1e9).expect("below");
+        assert!(
+            (900.0 - down.distance - ground.point_from([1, -2], 3.0, 4.0).expect("inside").height).abs()
+                < 1e-9
+        );
+    }
+
+    /// Whether a place lies next to an edge, where rounding decides which triangle answers.
+    fn is_on_edge(config: &Config, place: DVec3) -> bool {
+        let [u, v] = [place.x, place.z].map(|at| (at / config.terrain_scale).rem_euclid(1.0));
+        [u, v, u + v - 1.0].iter().any(|distance| distance.abs() < 1e-6 || distance.abs() > 1.0 - 1e-6)
+    }
+
+    /// The same without a walk: all triangles of the patch.
+    fn nearest(ground: &Ground, [at, direction]: [DVec3; 2]) -> Option<f64> {
+        let field = &ground.patches[&[1, -2]];
+        let cells = ground.size as usize - 1;
+        let mut found: Option<f64> = None;
+        for index in 0..cells * cells {
+            let corner = |dx: usize, dz: usize| {
+                let [x, z] = [index % cells + dx, index / cells + dz];
+                let height = field.point(x, z).expect("inside");
+                DVec3::new(x as f64 * ground.spacing, height, z as f64 * ground.spacing) - at
+            };
+            let quad = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
+            for triangle in [[quad[0], quad[1], quad[2]], [quad[2], quad[1], quad[3]]] {
+                let distance = distance_to(triangle, direction);
+                found = found.into_iter().chain(distance).reduce(f64::min);
+            }
+        }
+        found
+    }
+}

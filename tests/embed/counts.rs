@@ -1,0 +1,202 @@
+//! Statistics and watched bones: what arrives on the host some frames later.
+
+use glam::Vec3;
+use relievo::gpu::Gpu;
+use relievo::scene::{Camera, Placement, Quality, Scene, View};
+use relievo::wgpu;
+
+use crate::frame::device;
+use crate::host;
+use crate::world::{SIZE, World, model};
+
+/// From so far away that everything is in view.
+fn afar() -> Camera {
+    Camera::looking_at(Vec3::new(0.0, 250.0, 250.0), Vec3::ZERO, 1.0, [0.5, 2000.0], SIZE)
+}
+
+fn submit(scene: &mut Scene, views: &mut [&mut View]) {
+    let gpu = scene.gpu().clone();
+    let mut encoder = gpu.encoder("frame");
+    scene.record(&mut encoder, views).expect("recorded");
+    gpu.queue().submit([encoder.finish()]);
+}
+
+/// Counts are those of the frame that they name, by level and object.
+#[test]
+fn frames_are_counted() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 10);
+    let statue = world.scene.add_mesh(&model(), 4).expect("added");
+    for at in 0..3 {
+        world.scene.spawn(statue, Placement::at([at as f32, 0.0, 30.0])).expect("room");
+    }
+    let mut all = world.view(0.0);
+    all.set(afar()).expect("a camera");
+    let mut none = world.view(0.25);
+    none.set(Camera::looking_at(Vec3::Y * 900.0, Vec3::Y * 2000.0, 0.5, [0.5, 90.0], SIZE))
+        .expect("a camera");
+    submit(&mut world.scene, &mut [&mut all, &mut none]);
+    gpu.wait().expect("done");
+    assert!(world.scene.statistics().is_none() && all.statistics().is_none(), "nobody asked");
+    world.scene.set_statistics(true).expect("room");
+    world.scene.refresh().expect("afresh");
+    submit(&mut world.scene, &mut [&mut all, &mut none]);
+    gpu.wait().expect("done");
+    let of_all = all.statistics().expect("arrived").clone();
+    assert_eq!((of_all.frame, of_all.pixels, of_all.objects.len()), (1, 0.0, 3));
+    let triangles: u64 = model().meshes.iter().map(|mesh| mesh.indices.len() as u64 / 3).sum();
+    for (object, instances, each) in
+        [(world.land, 9, 2 * 32 * 32), (world.creature, 10, triangles), (statue, 3, triangles)]
+    {
+        let found = of_all.objects.iter().find(|found| found.object == object).expect("counted");
+        assert_eq!((found.levels[0].instances, found.instances()), (instances, instances));
+        assert_eq!(
+            (found.levels[0].triangles, found.triangles()),
+            (u64::from(instances) * each, found.triangles())
+        );
+    }
+    let of_none = none.statistics().expect("arrived");
+    assert!(of_none.objects.iter().all(|object| object.instances() == 0 && object.pixels == 0.25));
+    let characters = world.scene.statistics().expect("arrived").characters.clone();
+    // Everything afresh: every bone of every instance, and every cluster of 64 vertices.
+    let (bones, vertices) = (model().skeleton.len() as u32, model().meshes[0].positions.len());
+    assert_eq!((characters.len(), characters[0].object), (1, world.creature));
+    assert_eq!(
+        (characters[0].bones, characters[0].clusters),
+        (10 * bones, 10 * vertices.div_ceil(64) as u32)
+    );
+    assert!(world.scene.stage_times().is_none(), "a device without timestamps");
+    // Nothing moves: nothing is done. Coarser: fewer triangles.
+    all.set_quality(Quality { pixels: 2.0 }).expect("a quality");
+    world.scene.advance(0.0).expect("finite");
+    for _ in 0..2 {
+        submit(&mut world.scene, &mut [&mut all, &mut none]);
+    }
+    gpu.wait().expect("done");
+    let still = world.scene.statistics().expect("arrived").clone();
+    assert_eq!((still.frame, still.characters[0].bones, still.characters[0].clusters), (3, 0, 0));
+    let coarser = all.statistics().expect("arrived");
+    let creature = coarser.objects.iter().find(|found| found.object == world.creature).expect("counted");
+    assert_eq!((coarser.frame, coarser.pixels, creature.instances()), (3, 2.0, 10));
+    assert!(creature.levels.len() > 2 && creature.triangles() < 5 * triangles, "{creature:?}");
+    world.scene.set_statistics(false).expect("no more");
+    submit(&mut world.scene, &mut [&mut all, &mut none]);
+    assert!(world.scene.statistics().is_none() && all.statistics().is_none());
+}
+
+/// Many frames in a row are neither waited for nor lost for good: the last that has arrived is told, and dropped encoders
+/// do no harm.
+#[test]
+fn counts_arrive_late() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 3);
+    world.scene.set_statistics(true).expect("room");
+    let watched = [(world.crowd[0], "0")];
+    world.scene.watch_bones(&watched).expect("a bone");
+    let mut view = world.view(1.0);
+    let mut held = 0;
+    for at in 0..40 {
+        submit(&mut world.scene, &mut [&mut view]);
+        if at % 4 == 3 {
+            gpu.wait().expect("done");
+            let frame = world.scene.statistics().expect("arrived").frame;
+            assert!(frame <= at && frame + 4 > at, "{frame} after {at}");
+            assert_eq!(view.statistics().expect("arrived").frame, frame);
+            assert_eq!(world.scene.watched_bones().expect("arrived").frame, frame);
+        }
+        held = if at == 10 { gpu.memory().now() } else { held };
+    }
+    assert_eq!(gpu.memory().now(), held, "memory grows");
+    for _ in 0..3 {
+        let mut encoder = gpu.encoder("dropped");
+        for _ in 0..4 {
+            world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+        }
+        drop(encoder);
+        world.scene.invalidate().expect("afresh");
+    }
+    submit(&mut world.scene, &mut [&mut view]);
+    gpu.wait().expect("done");
+    assert_eq!(world.scene.statistics().expect("arrived").frame, 52);
+    assert_eq!(view.statistics().expect("arrived").frame, 52);
+    assert_eq!(world.scene.watched_bones().expect("arrived").frame, 52);
+}
+
+/// Where the device has timestamps, each stage takes its time, and the pictures are the same.
+#[test]
+fn stages_take_their_time() {
+    let gpu: Gpu = crate::harness::gpu();
+    let has_stamps = gpu.device().features().contains(wgpu::Features::TIMESTAMP_QUERY);
+    let mut world = World::new(&gpu, 10);
+    let mut view = world.view(0.0);
+    let frame = crate::frame::Frame::plain(&gpu, SIZE);
+    let renderer = frame.renderer(&gpu, &world.scene);
+    let expected = frame.shot(&mut world.scene, &mut view, &renderer);
+    world.scene.set_statistics(true).expect("room");
+    world.scene.refresh().expect("afresh");
+    assert!(
+        frame.shot(&mut world.scene, &mut view, &renderer) == expected,
+        "another picture in passes of their own"
+    );
+    for _ in 0..3 {
+        submit(&mut world.scene, &mut [&mut view]);
+        gpu.wait().expect("done");
+    }
+    let times = world.scene.stage_times().copied();
+    assert_eq!(times.is_some(), has_stamps);
+    let Some(times) = times else { return };
+    let all = [times.select, times.gate, times.sample, times.local_to_model, times.skin];
+    assert!(all.iter().all(|time| (0.0..1e4).contains(time)) && times.total() > 0.0, "{times:?}");
+    assert!((1..4).contains(&times.frame), "{times:?}");
+}
+
+/// Watched bones are where the host poses them, with the placement and at the time of their frame.
+#[test]
+fn bones_arrive_where_they_are() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 4);
+    let model = model();
+    let name = &model.skeleton.bones()[40].name;
+    let (near, far) = (world.crowd[1], world.crowd[2]);
+    let mirrored =
+        Placement { cell: [900_000, -3, 7], scale: Vec3::new(-3.0, 3.0, 2.0), ..world.placement(1) };
+    world.scene.move_to(near, Placement { at: mirrored.at, ..mirrored }).expect("there");
+    world.scene.watch_bones(&[(near, name), (far, "152"), (near, "0")]).expect("bones");
+    assert!(world.scene.watched_bones().is_none());
+    let mut view = world.view(0.0);
+    let eye = Camera {
+        cell: mirrored.cell,
+        ..Camera::looking_at(Vec3::new(0.0, 9.0, 30.0), mirrored.at, 1.2, [0.5, 400.0], SIZE)
+    };
+    view.set(eye).expect("a camera");
+    submit(&mut world.scene, &mut [&mut view]);
+    gpu.wait().expect("done");
+    let expected = host::bones(&world.scene, &model, near);
+    let time = world.scene.time();
+    // What happens later is not of that frame.
+    world.scene.move_to(near, Placement::default()).expect("there");
+    world.scene.advance(0.5).expect("finite");
+    let found = world.scene.watched_bones().expect("arrived").clone();
+    assert_eq!((found.frame, found.time, found.bones.len()), (0, time, 3));
+    let current: Vec<bool> = found.bones.iter().map(|bone| bone.is_current).collect();
+    assert_eq!(current, [true, false, true], "the other one is not in view");
+    for (at, bone) in [(0, 40), (2, 0)] {
+        let watched = &found.bones[at];
+        assert_eq!((watched.instance, watched.bone, watched.cell), (near, bone, mirrored.cell));
+        let corner = glam::DVec3::from(watched.cell.map(f64::from)) * 256.0;
+        let mut right = expected[bone];
+        right.translation -= corner;
+        let error = (right.inverse() * host::affine(&watched.matrix)).matrix3 - glam::DMat3::IDENTITY;
+        assert!(error.to_cols_array().iter().all(|entry| entry.abs() < 1e-4), "{error}");
+        assert!((right.translation - watched.position().as_dvec3()).length() < 2e-4);
+    }
+    // An instance that is gone is left out; a bone that is not there is refused.
+    world.scene.despawn(far).expect("there");
+    submit(&mut world.scene, &mut [&mut view]);
+    gpu.wait().expect("done");
+    let bones = &world.scene.watched_bones().expect("arrived").bones;
+    assert_eq!(bones.iter().map(|bone| bone.bone).collect::<Vec<_>>(), [40, 0]);
+    let refused = |result: Result<(), relievo::Error>| result.expect_err("refused").to_string();
+    assert!(refused(world.scene.watch_bones(&[(near, "153")])).contains("bone = 153"));
+    assert!(refused(world.scene.watch_bones(&[(far, "1")])).contains("instance"));
+}
