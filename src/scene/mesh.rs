@@ -4,14 +4,14 @@ use crate::asset::{Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::PartMaterials;
+use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::at_rest::at_rest;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
-use crate::skinning::merged::{Merged, Part, merged};
+use crate::skinning::merged::{Merged, Part, PartKey, merged};
 use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
@@ -42,13 +42,17 @@ pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
 }
 
 /// Uploads meshes that all instances share.
-pub(super) fn drawn(gpu: &Gpu, layouts: &SceneLayouts, merged: &Merged) -> Result<Drawn, Error> {
+pub(super) fn drawn(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    (merged, looks): (&Merged, &Looks),
+) -> Result<Drawn, Error> {
     let (mut drawables, mut draws) = (Vec::new(), Vec::new());
     for (index, mesh) in merged.model.meshes.iter().enumerate() {
         check_binding(gpu, mesh)?;
         let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
         draws.extend(part_draws(merged, index, &buffers));
-        drawables.push(drawable((gpu, layouts), merged, index, (&buffers, &clusters), None)?);
+        drawables.push(drawable((gpu, layouts), (merged, looks), index, (&buffers, &clusters), None)?);
     }
     Ok((drawables, draws))
 }
@@ -107,7 +111,7 @@ pub(super) const NOTHING: SceneDraw =
 /// A merged mesh, to be drawn from its own vertices, or from those in pages.
 pub(super) fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
-    merged: &Merged,
+    (merged, looks): (&Merged, &Looks),
     index: usize,
     (buffers, clusters): (&MeshBuffers, &Clusters),
     pages: Option<&PageBuffers>,
@@ -123,8 +127,9 @@ pub(super) fn drawable(
     let parts = (own.iter().zip(&tables))
         .map(|(part, table)| {
             let surface = SurfaceKind { cut_out: part.key.cut_out, double_sided: part.key.double_sided };
-            let sampling = part.key.sampling.unwrap_or_default();
-            let materials = PartMaterials::new(gpu, layouts, &merged.model, table, &sampling)?;
+            let PartKey { sampling, normal_sampling, .. } = part.key;
+            let samplings = [sampling, normal_sampling].map(Option::unwrap_or_default);
+            let materials = PartMaterials::new(gpu, layouts, looks, table, samplings)?;
             Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
         })
         .collect::<Result<_, Error>>()?;

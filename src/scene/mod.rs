@@ -17,6 +17,7 @@ mod instances;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
+mod materials;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;

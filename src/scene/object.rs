@@ -16,6 +16,7 @@ use crate::scene::handles::Slots;
 use crate::scene::instances::Instances;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
 use crate::scene::mesh::{self, Drawn};
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
@@ -43,6 +44,8 @@ pub(crate) struct Object {
     /// Whether the device does not know the factor yet.
     is_retuned: bool,
     pub(super) is_shown: bool,
+    /// The materials of a mesh or a character.
+    pub(super) looks: Option<Looks>,
     /// Of each part, the draws of all lists of a chunk, without instances.
     pub(super) draws: Vec<SceneDraw>,
     /// At least one.
@@ -97,6 +100,7 @@ impl Object {
             coarsening: 1.0,
             is_retuned: false,
             is_shown: true,
+            looks: None,
             draws,
             chunks,
             fitted: 0,
@@ -119,10 +123,12 @@ impl Object {
         capacity: usize,
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let (merged, sphere) = mesh::at_rest_merged(model)?;
-        let drawn = whole(&instances, mesh::drawn(gpu, layouts, &merged)?);
+        let (mut merged, sphere) = mesh::at_rest_merged(model)?;
+        let looks = Looks::taken(&mut merged.model);
+        let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
         let kind = Kind::Mesh(MeshOnHost::of_merged(&merged));
-        Ok(Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+        let object = Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn);
+        Ok(Self { looks: Some(looks), ..object })
     }
 
     /// A mesh with relief.
@@ -148,11 +154,15 @@ impl Object {
         shares: Shares,
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
-        let drawn = (character.chunks(gpu, layouts, None)?, character.draws());
+        let mut merged = mesh::moving_merged(model)?;
+        let looks = Looks::taken(&mut merged.model);
+        let character = Character::new(gpu, merged, instances.capacity())?;
+        let first = character.drawables(gpu, layouts, &looks)?;
+        let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
-        Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
+        let object = Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn);
+        Ok(Self { looks: Some(looks), ..object })
     }
 
     /// World units between the samples of a terrain.
@@ -191,8 +201,8 @@ impl Object {
         match &mut self.kind {
             Kind::Character(character) => {
                 character.grow(gpu, capacity)?;
-                let known = self.chunks.first().map(|chunk| &*chunk.drawables);
-                self.chunks = character.chunks(gpu, layouts, known)?;
+                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
+                self.chunks = character.chunks(gpu, layouts, first)?;
             }
             Kind::Mesh(_) | Kind::Terrain(_) => {
                 self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
@@ -217,8 +227,8 @@ impl Object {
             Replaced::Nothing => {}
             Replaced::Pages => character.rebind(gpu, layouts, &mut self.chunks)?,
             Replaced::Chunks => {
-                let known = self.chunks.first().map(|chunk| &*chunk.drawables);
-                self.chunks = character.chunks(gpu, layouts, known)?;
+                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
+                self.chunks = character.chunks(gpu, layouts, first)?;
             }
         }
         self.is_retuned |= coarsening != self.coarsening;

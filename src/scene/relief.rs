@@ -21,6 +21,10 @@ use crate::surface::{Address, Material, ReliefMaps, ReliefOptions};
 use crate::{Error, InputError};
 
 /// A mesh that carries a relief, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
+///
+/// It has no levels of detail, and is drawn as it is at any distance: the error of a level says how far its surface is off,
+/// and nothing of its texture coordinates, along which rays march through the relief. Use a mesh with few triangles; the
+/// relief itself has the detail.
 #[derive(Debug, Clone)]
 pub struct Relief {
     /// The mesh, in the model's space.

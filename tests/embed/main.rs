@@ -9,6 +9,7 @@ mod counts;
 mod frame;
 mod host;
 mod life;
+mod materials;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;

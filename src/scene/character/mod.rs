@@ -17,6 +17,7 @@ use crate::scene::frame::Stage;
 use crate::scene::instances::Changed;
 use crate::scene::layout::{Layout, error_vectors};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
 use crate::scene::mesh;
 use crate::scene::placement::Play;
 use crate::scene::quality::Shares;
@@ -134,18 +135,8 @@ impl Character {
         Ok(())
     }
 
-    /// The chunks of its instances. What is drawn of them differs in the pages; `known` has the meshes and materials, if
-    /// there are any yet.
-    pub fn chunks(
-        &self,
-        gpu: &Gpu,
-        layouts: &SceneLayouts,
-        known: Option<&[Drawable]>,
-    ) -> Result<Vec<Chunk>, Error> {
-        let first = match known {
-            Some(known) => known.to_vec(),
-            None => self.drawables(gpu, layouts)?,
-        };
+    /// The chunks of its instances. What is drawn of them differs in the pages; `first` has the meshes and materials.
+    pub fn chunks(&self, gpu: &Gpu, layouts: &SceneLayouts, first: &[Drawable]) -> Result<Vec<Chunk>, Error> {
         let chunk = |runtime: &Runtime| {
             let drawable = |(drawable, skin): (&Drawable, &PagedSkin)| match drawable {
                 Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.beside(gpu, layouts, skin.pages())?)),
@@ -158,10 +149,15 @@ impl Character {
     }
 
     /// What is drawn of the first chunk: each mesh, from the vertices of each instance.
-    fn drawables(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Vec<Drawable>, Error> {
+    pub fn drawables(
+        &self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        looks: &Looks,
+    ) -> Result<Vec<Drawable>, Error> {
         let drawable = |(index, skin): (usize, &PagedSkin)| {
             let mesh = (&skin.mesh, &*skin.clusters);
-            mesh::drawable((gpu, layouts), &self.merged, index, mesh, Some(skin.pages()))
+            mesh::drawable((gpu, layouts), (&self.merged, looks), index, mesh, Some(skin.pages()))
         };
         self.runtimes
             .first()
