@@ -1,6 +1,8 @@
 //! Characters whose vertices exceed a binding of the device, or its memory.
 
 use glam::Vec3;
+use relievo::asset::morph::{MorphDelta, MorphTarget};
+use relievo::asset::{Mesh, Model};
 use relievo::gpu::Gpu;
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Quality, Scene, View};
 
@@ -20,8 +22,12 @@ struct Crowd {
 
 impl Crowd {
     fn new(gpu: &Gpu, pixels: f32) -> Self {
+        Self::of(gpu, &model(), pixels)
+    }
+
+    fn of(gpu: &Gpu, model: &Model, pixels: f32) -> Self {
         let mut scene = Scene::new(gpu).expect("compiled");
-        let creature = scene.add_character(&model(), COUNT).expect("added");
+        let creature = scene.add_character(model, COUNT).expect("added");
         let all = (0..COUNT).map(|at| {
             let instance = scene.spawn(creature, placement(at)).expect("room");
             let play = Play { start: -0.31 * at as f64, ..Play::new("walk") };
@@ -143,4 +149,84 @@ fn where_memory_ends_levels_are_coarser() {
     assert_eq!(crowd.coarsening(), 1.0);
     let difference = Difference::of(&coarse, &fine, 3);
     assert!(difference.flip > 0.0 && difference.flip < 0.1, "coarse against fine: {difference:?}");
+}
+
+/// By how much a morph target moves vertices along their normals, at a weight of 1.
+const SWELLING: f32 = 0.04;
+
+/// The creature, swollen by half of a morph target, or by another shape of its meshes.
+fn swollen(by_target: bool) -> Model {
+    let swell = |mesh: &mut Mesh| {
+        let moved = |normal: &[f32; 3]| normal.map(|axis| SWELLING * axis);
+        let delta = |normal| MorphDelta { position: moved(normal), ..MorphDelta::default() };
+        if by_target {
+            let deltas: Vec<_> = mesh.normals.iter().map(delta).collect();
+            (mesh.targets, mesh.weights) = (vec![MorphTarget::new(&deltas)], vec![0.5]);
+        } else {
+            for (position, normal) in mesh.positions.iter_mut().zip(&mesh.normals) {
+                *position = std::array::from_fn(|axis| position[axis] + 0.5 * moved(normal)[axis]);
+            }
+        }
+    };
+    let mut model = model();
+    model.meshes.iter_mut().for_each(swell);
+    model
+}
+
+/// Morphed vertices are where they would be in a mesh of that shape, also where chunks of instances have pages of their own.
+#[test]
+fn morphed_vertices_are_where_they_belong() {
+    let gpu = device();
+    let frame = Frame::plain(&gpu, SIZE);
+    let [expected, morphed] = [false, true].map(|by_target| {
+        let mut crowd = Crowd::of(&gpu, &swollen(by_target), 0.0);
+        crowd.look(7.0);
+        crowd.shot(&frame)
+    });
+    let mut plain = Crowd::new(&gpu, 0.0);
+    plain.look(7.0);
+    let difference = Difference::of(&plain.shot(&frame), &expected, 3);
+    assert!(difference.outliers > 0.01, "nothing is swollen: {difference:?}");
+    let small = gpu_of_bindings(3 << 20);
+    let mut divided = Crowd::of(&small, &swollen(true), 0.0);
+    divided.look(7.0);
+    let in_chunks = divided.shot(&Frame::plain(&small, SIZE));
+    assert!(divided.draws() >= 3 * plain.draws() && divided.coarsening() == 1.0, "{}", divided.draws());
+    for picture in [&morphed, &in_chunks] {
+        let difference = Difference::of(picture, &expected, 1);
+        assert!(difference.outliers < 0.002, "{difference:?}");
+    }
+}
+
+/// Memory for morphed vertices follows what is seen, as that for skinned ones does.
+#[test]
+fn morphed_vertices_take_memory_where_they_are_seen() {
+    let gpu = device();
+    let model = swollen(true);
+    let vertices: usize = model.meshes.iter().map(Mesh::vertices).sum();
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let count = 1000;
+    let creature = scene.add_character(&model, count).expect("added");
+    for at in 0..count {
+        let place = [(at % 20) as f32 * 2.0 - 19.0, 0.0, (at / 20) as f32 * -5.0];
+        scene.spawn(creature, Placement::at(place).turned(at as f32)).expect("room");
+    }
+    let mut view = scene.view(Quality::default()).expect("a view");
+    let eye =
+        Camera::looking_at(Vec3::new(0.0, 2.0, 8.0), Vec3::new(0.0, 1.0, -20.0), 0.9, [0.3, 500.0], SIZE);
+    view.set(eye).expect("a camera");
+    let mut encoder = gpu.encoder("frame");
+    scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+    gpu.queue().submit([encoder.finish()]);
+    gpu.wait().expect("done");
+    let held = gpu.memory().by_label();
+    let of = |label: &str| held.iter().find(|(known, _)| *known == label).map_or(0, |(_, bytes)| *bytes);
+    let (morphed, skinned) = (of("pages of morphed vertices"), of("pages of vertices"));
+    // At full detail, by 40 bytes a vertex.
+    let full = (count * vertices * 40) as u64;
+    println!(
+        "morphed {morphed}, skinned {skinned} bytes of {full} at full detail, {} in all",
+        gpu.memory().now()
+    );
+    assert!(morphed == skinned && morphed > 0 && 4 * morphed < full, "{held:?}");
 }

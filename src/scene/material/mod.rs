@@ -89,8 +89,8 @@ impl PartMaterials {
         self.colors.images.contains(&image) || self.normals.images.contains(&image)
     }
 
-    /// The same with the materials and images that `looks` has now. If no image is new to them, `staged` takes the changes;
-    /// else, or if `anew`, everything is uploaded again.
+    /// The same with the materials and images that `looks` has now. If no image is new to them, only the table changes; else,
+    /// or if `anew`, everything is uploaded again.
     ///
     /// # Errors
     /// As [`PartMaterials::new`].
