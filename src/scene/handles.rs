@@ -29,20 +29,27 @@ impl InstanceId {
 #[derive(Debug)]
 pub(super) struct Slots<T> {
     slots: Vec<(u32, Option<T>)>,
+    /// The first generation of each slot.
+    first: u32,
 }
 
 impl<T> Default for Slots<T> {
     fn default() -> Self {
-        Self { slots: Vec::new() }
+        Self::of_number(0)
     }
 }
 
 impl<T> Slots<T> {
+    /// No values yet. Handles of slots with another number are stale here, as generations begin far from each other.
+    pub fn of_number(number: u32) -> Self {
+        Self { slots: Vec::new(), first: number.wrapping_mul(0x9e37_79b9) }
+    }
+
     /// Adds a value to the first free slot; returns the slot and its generation.
     pub fn insert(&mut self, value: T) -> [u32; 2] {
         let free = self.slots.iter().position(|(_, value)| value.is_none());
         let at = free.unwrap_or_else(|| {
-            self.slots.push((0, None));
+            self.slots.push((self.first, None));
             self.slots.len() - 1
         });
         self.slots[at].1 = Some(value);

@@ -5,7 +5,7 @@
 //!
 //! In a frame, the caller moves instances, advances the time, sets the cameras of the views, records the scene's work
 //! into an encoder of its own ([`Scene::record`]), and draws. Nothing is submitted, waited for or allocated in a frame,
-//! except where an object outgrows its capacity.
+//! except where an object outgrows its capacity, or what is seen of a character the memory for its vertices.
 
 mod camera;
 mod character;
@@ -35,6 +35,7 @@ mod view;
 mod watch;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
@@ -65,6 +66,9 @@ use watch::Watch;
 
 /// The number of recordings that may wait for their submission or execution.
 pub const RECORDINGS: usize = 4;
+
+/// The number of scenes so far, which tells their handles apart.
+static SCENES: AtomicU32 = AtomicU32::new(0);
 
 /// Everything there is, on the device.
 #[derive(Debug)]
@@ -115,7 +119,7 @@ impl Scene {
         Ok(Self {
             gpu: gpu.clone(),
             token: Arc::default(),
-            objects: Slots::default(),
+            objects: Slots::of_number(SCENES.fetch_add(1, Ordering::Relaxed)),
             shares: Shares::default(),
             light: Light::default(),
             now: 0.0,

@@ -29,6 +29,9 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
 
+/// The most instances of an object.
+const MAX_CAPACITY: usize = 1 << 20;
+
 /// An object of a scene.
 #[derive(Debug)]
 pub(crate) struct Object {
@@ -190,7 +193,12 @@ impl Object {
 
     /// Makes room for twice as many instances.
     pub(super) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        self.instances.grow(2 * self.instances.capacity());
+        let capacity = self.instances.capacity();
+        if capacity >= MAX_CAPACITY {
+            let bound = format!("must be at most {MAX_CAPACITY}: add another object");
+            return Err(InputError::new("object.capacity", 2 * capacity, bound).into());
+        }
+        self.instances.grow((2 * capacity).min(MAX_CAPACITY));
         self.refresh(gpu, layouts)
     }
 
@@ -335,9 +343,9 @@ fn whole(instances: &Instances, (drawables, draws): Drawn) -> (Vec<Chunk>, Vec<S
 
 /// Room for at least `capacity` instances.
 fn room(capacity: usize) -> Result<Instances, InputError> {
-    match (1..=1 << 20).contains(&capacity) {
+    match (1..=MAX_CAPACITY).contains(&capacity) {
         true => Ok(Instances::new(capacity)),
-        false => Err(InputError::new("capacity", capacity, "must be in 1..=1048576")),
+        false => Err(InputError::new("capacity", capacity, format!("must be in 1..={MAX_CAPACITY}"))),
     }
 }
 

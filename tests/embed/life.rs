@@ -38,6 +38,24 @@ fn stale_handles_are_errors() {
     );
 }
 
+/// A handle of another scene names nothing, although that scene has as many objects and instances.
+#[test]
+fn handles_of_other_scenes_are_errors() {
+    let gpu = device();
+    let (mut world, other) = (World::new(&gpu, 2), World::new(&gpu, 2));
+    let path = |result: Result<(), relievo::InputError>| result.expect_err("refused").path;
+    assert_eq!(path(world.scene.despawn(other.crowd[1])), "object");
+    assert_eq!(path(world.scene.remove(other.creature)), "object");
+    assert!(world.scene.despawn(world.crowd[1]).is_ok() && world.scene.remove(world.creature).is_ok());
+}
+
+/// Scenes, views and renderers may move to other threads.
+#[test]
+fn scenes_move_between_threads() {
+    fn moves<T: Send>() {}
+    moves::<(relievo::scene::Scene, View, relievo::render::Renderer)>();
+}
+
 /// More instances than there is room for let an object grow: the picture is that of a scene with enough room.
 #[test]
 fn objects_grow_in_flight() {
