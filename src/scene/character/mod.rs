@@ -55,6 +55,8 @@ pub(super) struct Character {
     shared: Shared,
     /// One for each chunk of instances, in ascending order.
     runtimes: Vec<Runtime>,
+    /// What was replaced since the last frame.
+    replaced: Replaced,
     /// Whether there was no memory to divide a chunk.
     is_memory_short: bool,
 }
@@ -100,6 +102,7 @@ impl Character {
             epoch,
             shared,
             runtimes,
+            replaced: Replaced::Nothing,
             is_memory_short,
         })
     }

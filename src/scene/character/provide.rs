@@ -20,7 +20,7 @@ pub(in crate::scene) struct Provided {
 }
 
 /// What is another than before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::scene) enum Replaced {
     Nothing,
     /// The pages of some chunks.
@@ -43,54 +43,54 @@ impl Character {
             return Ok(Provided { coarsening: 1.0, replaced: Replaced::Nothing });
         }
         let seen = Seen::new(views, object, instances);
-        let is_divided = self.divide(gpu, &seen)?;
-        let mut has_pages = false;
+        self.divide(gpu, &seen)?;
         let coarsening = loop {
             let coarsening = seen.coarsening(self.runtimes.iter().map(chunk));
             let mut is_short = false;
             for runtime in &mut self.runtimes {
                 let needed = seen.pages(&runtime.slots, &runtime.paging, coarsening);
-                let [is_replaced, ends] = runtime.provide(gpu, &needed)?;
-                has_pages |= is_replaced;
+                let [has_other, ends] = runtime.provide(gpu, &needed)?;
+                let replaced = if has_other { Replaced::Pages } else { Replaced::Nothing };
+                self.replaced = self.replaced.max(replaced);
                 is_short |= ends;
             }
             if !is_short {
                 break coarsening;
             }
         };
-        let replaced = match (is_divided, has_pages) {
-            (true, _) => Replaced::Chunks,
-            (false, true) => Replaced::Pages,
-            (false, false) => Replaced::Nothing,
-        };
+        // After an error it says what was replaced before.
+        let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
         Ok(Provided { coarsening, replaced })
     }
 
-    /// Divides the chunks that need more pages than a binding holds. Returns whether there were any.
-    fn divide(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<bool, Error> {
+    /// Divides the chunks that need more pages than a binding holds.
+    fn divide(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<(), Error> {
         if self.is_memory_short {
-            return Ok(false);
+            return Ok(());
         }
-        let mut is_divided = false;
         let mut at = 0;
         while let Some(Runtime { slots, paging, .. }) = self.runtimes.get(at) {
             let ranges = halved(slots.clone(), |part| seen.fits(part, paging, 1.0));
-            let count = ranges.len();
-            if count > 1 {
+            let replaced = at;
+            if ranges.len() > 1 {
                 let model = &self.merged.model;
                 let parts = ranges.into_iter().map(|part| Runtime::all(gpu, model, &self.shared, part));
                 let parts = parts.collect::<Result<Vec<_>, Error>>();
                 if is_out_of_memory(&parts) {
                     // Another attempt in each frame would cost more than it gains.
                     self.is_memory_short = true;
-                    return Ok(is_divided);
+                    return Ok(());
                 }
-                self.runtimes.splice(at..=at, parts?.into_iter().flatten());
-                is_divided = true;
+                let parts: Vec<Runtime> = parts?.into_iter().flatten().collect();
+                at += parts.len();
+                self.runtimes.splice(replaced..=replaced, parts);
+                self.changed.all(self.plays.len());
+                self.replaced = Replaced::Chunks;
+            } else {
+                at += 1;
             }
-            at += count;
         }
-        Ok(is_divided)
+        Ok(())
     }
 }
 
