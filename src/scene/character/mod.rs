@@ -57,7 +57,7 @@ pub(super) struct Character {
     runtimes: Vec<Runtime>,
     /// What was replaced since the last frame.
     replaced: Replaced,
-    /// Whether there was no memory to divide a chunk.
+    /// Whether memory has ended: then chunks are not divided.
     is_memory_short: bool,
 }
 

@@ -39,12 +39,19 @@ impl Character {
         object: &LodObject,
         instances: &[SceneInstance],
     ) -> Result<Provided, Error> {
-        if self.runtimes.iter().all(Runtime::is_full) {
-            return Ok(Provided { coarsening: 1.0, replaced: Replaced::Nothing });
-        }
-        let seen = Seen::new(views, object, instances);
-        self.divide(gpu, &seen)?;
-        let coarsening = loop {
+        let coarsening = match self.runtimes.iter().all(Runtime::is_full) {
+            true => 1.0,
+            false => self.provide_seen(gpu, &Seen::new(views, object, instances))?,
+        };
+        // After an error it says what was replaced before.
+        let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
+        Ok(Provided { coarsening, replaced })
+    }
+
+    /// Provides pages for what is seen; the factor by which levels of detail must be coarser.
+    fn provide_seen(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<f32, Error> {
+        self.divide(gpu, seen)?;
+        loop {
             let coarsening = seen.coarsening(self.runtimes.iter().map(chunk));
             let mut is_short = false;
             for runtime in &mut self.runtimes {
@@ -55,12 +62,10 @@ impl Character {
                 is_short |= ends;
             }
             if !is_short {
-                break coarsening;
+                return Ok(coarsening);
             }
-        };
-        // After an error it says what was replaced before.
-        let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
-        Ok(Provided { coarsening, replaced })
+            self.is_memory_short = true;
+        }
     }
 
     /// Divides the chunks that need more pages than a binding holds.
