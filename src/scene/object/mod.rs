@@ -1,33 +1,28 @@
 //! Objects: what all instances of one model or one terrain share.
 
-use std::sync::Arc;
+mod frame;
 
 use glam::Vec3;
 
-use crate::animation::Frame;
 use crate::asset::{Mesh, Model};
-use crate::gpu::{Gpu, Staged, Upload as _};
-use crate::lod::SelectView;
-use crate::lod::assign::AssignPass;
-use crate::scene::character::{Character, Provided, Replaced};
-use crate::scene::chunk::{Chunk, common};
-use crate::scene::drawable::{Drawable, MeshDrawable};
-use crate::scene::handles::Slots;
+use crate::gpu::Gpu;
+use crate::scene::character::Character;
+use crate::scene::chunk::Chunk;
+use crate::scene::drawable::Drawable;
 use crate::scene::instances::Instances;
-use crate::scene::layout::{Layout, ObjectRange, error_vectors};
+use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::mesh::{self, Drawn};
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
-use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
-use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
+pub(super) use frame::laid_out;
 
 /// The most instances of an object.
 const MAX_CAPACITY: usize = 1 << 20;
@@ -219,93 +214,6 @@ impl Object {
         Ok(())
     }
 
-    /// Provides what the views of a frame need of a character. Where memory ends, its levels of detail are coarser. Returns
-    /// whether its chunks are others than before.
-    pub(super) fn provide(
-        &mut self,
-        gpu: &Gpu,
-        layouts: &SceneLayouts,
-        views: &[SelectView],
-    ) -> Result<bool, Error> {
-        let all = Chunk::new(0..self.instances.capacity(), Vec::new());
-        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
-        let Kind::Character(character) = &mut self.kind else { return Ok(false) };
-        let Provided { coarsening, replaced } = character.provide(gpu, views, &lod, self.instances.all())?;
-        match replaced {
-            Replaced::Nothing => {}
-            Replaced::Pages => character.rebind(gpu, layouts, &mut self.chunks)?,
-            Replaced::Chunks => {
-                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
-                self.chunks = character.chunks(gpu, layouts, first)?;
-            }
-        }
-        self.is_retuned |= coarsening != self.coarsening;
-        self.coarsening = coarsening;
-        Ok(replaced == Replaced::Chunks)
-    }
-
-    /// Stages what has changed since the last frame.
-    pub(super) fn stage(
-        &mut self,
-        (staged, layout): (&mut Staged, &Layout),
-        (frame, now): (&Frame, f64),
-    ) -> Result<(), Error> {
-        for (at, changed) in self.instances.take_changed() {
-            for chunk in &self.chunks {
-                if let Some(own) = common(&(at..at + changed.len()), &chunk.slots) {
-                    let instances = &changed[own.start - at..own.end - at];
-                    staged.elements(&layout.instances, chunk.place(own.start), instances)?;
-                }
-            }
-        }
-        if std::mem::take(&mut self.is_retuned) {
-            for chunk in &self.chunks {
-                staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
-            }
-            if let Kind::Character(character) = &self.kind {
-                character.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
-            }
-        }
-        match &mut self.kind {
-            Kind::Character(character) => character.stage(staged, frame, now),
-            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
-        }
-    }
-
-    /// Prepares what depends on the layout.
-    pub(super) fn fit(
-        &mut self,
-        gpu: &Gpu,
-        layout: &Layout,
-        (pass, shares): (&AssignPass, Shares),
-        staged: &mut Staged,
-    ) -> Result<(), Error> {
-        if self.fitted == layout.version {
-            return Ok(());
-        }
-        self.fitted = layout.version;
-        let lods: Vec<LodObject> = self.chunks.iter().map(|chunk| self.lod_object(chunk)).collect();
-        for (chunk, mut lod) in self.chunks.iter_mut().zip(lods) {
-            chunk.lods.clear();
-            for drawable in &chunk.drawables {
-                chunk.lods.push(lod);
-                lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
-                if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                    let params = MeshParams { first_instance: chunk.range.first, clusters: *clusters };
-                    staged.uniform(&geometry.params, &params)?;
-                }
-            }
-        }
-        let mesh_fraction = self.coarsening * self.mesh_fraction;
-        match &mut self.kind {
-            Kind::Character(character) => {
-                let object = (&*self.chunks, &*self.errors);
-                character.fit(gpu, layout, pass, object, (shares, mesh_fraction))
-            }
-            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
-        }
-    }
-
     /// The largest number of its draws in a view and a layer.
     pub(super) fn draws(&self) -> usize {
         let parts: usize = self.drawables().map(Drawable::parts).sum();
@@ -347,29 +255,4 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
         true => Ok(Instances::new(capacity)),
         false => Err(InputError::new("capacity", capacity, format!("must be in 1..={MAX_CAPACITY}"))),
     }
-}
-
-/// Lays out the chunks of objects, one after the other, and tells each its range.
-///
-/// # Errors
-/// [`crate::gpu::GpuError`].
-pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
-    let mut range = ObjectRange::default();
-    let (mut all, mut draws) = (Vec::new(), Vec::new());
-    for object in objects.iter_mut() {
-        let levels = object.errors.len() as u32;
-        for at in 0..object.chunks.len() {
-            let chunk = &mut object.chunks[at];
-            chunk.range = range;
-            chunk.number = all.len();
-            let instances = chunk.room();
-            range.first += instances;
-            range.first_list += 2 * levels * instances;
-            range.first_draw += object.draws.len() as u32;
-            draws.extend_from_slice(&object.draws);
-            all.push(object.lod_object(&object.chunks[at]));
-        }
-    }
-    let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws), range, (version, counted))
 }
