@@ -21,8 +21,8 @@ impl Scene {
     /// that allocates, and a render bundle must be made anew.
     ///
     /// The first material with [`Alpha::Mask`](crate::asset::material::Alpha::Mask) or
-    /// [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered) among opaque ones, and the first with a normal map, may
-    /// need a pipeline that a renderer does not have: call [`Renderer::prepare`](crate::render::Renderer::prepare), which
+    /// [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered) among opaque ones, the first with a normal map, and the first
+    /// or last texture of a material that is drawn alone, may need a pipeline that a renderer does not have: call [`Renderer::prepare`](crate::render::Renderer::prepare), which
     /// compiles what is missing. Otherwise [`Renderer::draw`](crate::render::Renderer::draw) says that the object is not
     /// compiled.
     ///

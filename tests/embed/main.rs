@@ -5,11 +5,14 @@
 mod harness;
 
 mod chunks;
+#[cfg(unix)]
+mod cost;
 mod counts;
 mod frame;
 mod host;
 mod life;
 mod materials;
+mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;

@@ -7,6 +7,8 @@ mod runtime;
 use std::ops::Range;
 
 use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
+#[cfg(feature = "verify")]
+use crate::asset::Affine;
 use crate::asset::mesh::bone_radii;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SceneDraw;
@@ -113,6 +115,8 @@ impl Character {
         self.is_memory_short = false;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
+        // As in a scene that was made anew, whose starts are rounded alike.
+        self.epoch = 0.0;
         Ok(())
     }
 
@@ -197,6 +201,19 @@ impl Character {
             .clip(name)
             .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+    }
+
+    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
+    #[cfg(feature = "verify")]
+    pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
+        let bones = self.merged.model.skeleton.len();
+        let mut all = Vec::with_capacity(bones * self.plays.len());
+        for runtime in &self.runtimes {
+            all.extend(
+                runtime.frame.model_matrices().read_blocking(gpu)?.drain(..bones * runtime.slots.len()),
+            );
+        }
+        Ok((all, bones))
     }
 
     /// The skinned vertices of an instance, mesh by mesh.

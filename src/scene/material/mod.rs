@@ -26,6 +26,8 @@ pub(crate) struct PartMaterials {
     pub normal_mapped: bool,
     /// Whether alpha decides which pixels of one of them are drawn.
     pub cut_out: bool,
+    /// Whether the only one has a texture; `None` if there are several.
+    pub only_textured: Option<bool>,
     /// The material of each entry of the table.
     materials: Vec<Option<usize>>,
     entries: Buffer<SceneMaterial>,
@@ -67,16 +69,31 @@ impl PartMaterials {
             filtering: &sampler_of(gpu, color_sampling)?,
             normal_filtering: &sampler_of(gpu, normal_sampling)?,
         };
-        Ok(Self {
+        let all = Self {
             group: group.bind(gpu, &layouts.mesh)?,
-            normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
-            cut_out: table.iter().any(|entry| entry.cutoff != CUTOFF_OPAQUE),
+            normal_mapped: false,
+            cut_out: false,
+            only_textured: None,
             materials: materials.to_vec(),
             entries,
             colors,
             normals,
             samplings,
-        })
+        };
+        Ok(all.with_kinds(&table))
+    }
+
+    /// The same with what a table says of pipelines.
+    fn with_kinds(self, table: &[SceneMaterial]) -> Self {
+        Self {
+            normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
+            cut_out: table.iter().any(|entry| entry.cutoff != CUTOFF_OPAQUE),
+            only_textured: match table {
+                [only] => Some(only.layer != NO_LAYER),
+                _ => None,
+            },
+            ..self
+        }
     }
 
     /// Whether one of them is the object's material with this index.
@@ -108,10 +125,7 @@ impl PartMaterials {
             let materials = Self::new(gpu, layouts, looks, &self.materials, samplings)?;
             return Ok(Changed { materials, table: None });
         }
-        let normal_mapped = table.iter().any(|entry| entry.normal_layer != NO_LAYER);
-        let cut_out = table.iter().any(|entry| entry.cutoff != CUTOFF_OPAQUE);
-        let materials = Self { normal_mapped, cut_out, ..self.clone() };
-        Ok(Changed { materials, table: Some(table) })
+        Ok(Changed { materials: self.clone().with_kinds(&table), table: Some(table) })
     }
 
     /// How colours and normal maps are filtered.
