@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use crate::scene::drawable::Drawable;
 use crate::scene::layout::ObjectRange;
+use crate::scene::order::SinglePart;
 use crate::shared::lod::object::{BLOCK, LodObject};
 
 /// A chunk of an object.
@@ -20,12 +21,21 @@ pub(crate) struct Chunk {
     /// For each drawable, the chunk as kernels see it, with the draws of the drawable's parts, in the layout for which it
     /// was prepared.
     pub lods: Vec<LodObject>,
+    /// Its parts that are drawn instance by instance.
+    pub singles: Vec<SinglePart>,
 }
 
 impl Chunk {
     /// A chunk that no layout has yet.
     pub fn new(slots: Range<usize>, drawables: Vec<Drawable>) -> Self {
-        Self { slots, number: 0, range: ObjectRange::default(), drawables, lods: Vec::new() }
+        Self {
+            slots,
+            number: 0,
+            range: ObjectRange::default(),
+            drawables,
+            lods: Vec::new(),
+            singles: Vec::new(),
+        }
     }
 
     /// Number of instances for which it has room in the buffers of all instances: whole blocks.

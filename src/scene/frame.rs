@@ -2,10 +2,11 @@
 
 use crate::animation::Frame;
 use crate::gpu::{Staged, compute_pass};
-use crate::lod::SelectView;
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::lod::{SceneInstance, SelectView};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::handles::foreign;
 use crate::scene::object::{self, Kind, Object};
+use crate::scene::order::Ordered;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
@@ -78,6 +79,21 @@ impl Scene {
         Ok(())
     }
 
+    /// Keeps where everything was in the last frame from the next frame on, or does no longer; at first it is not kept.
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) needs it. Skinned vertices then take 1.4 times the memory,
+    /// what moved is skinned once more after it stops, and what the host changes is uploaded twice. Characters start
+    /// afresh.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last_frame(&mut self, keeps: bool) -> Result<(), Error> {
+        if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
+            return Ok(());
+        }
+        self.objects.iter_mut().for_each(|object| object.keep_last(keeps));
+        self.refresh()
+    }
+
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
     /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones.
     ///
@@ -115,6 +131,7 @@ impl Scene {
         }
         self.record_stages(encoder, views);
         self.count(encoder, views);
+        views.iter_mut().for_each(|view| view.recorded(self.frames));
         self.frames += 1;
         // Unless the time advances again, the next frame is as this one.
         self.step = 0.0;
@@ -182,7 +199,7 @@ impl Scene {
         if self.is_empty() {
             return Ok(None);
         }
-        let (Some(lists), Some(recorded)) = (&view.lists, view.recorded()) else {
+        let (Some(lists), Some(recorded)) = (&view.lists, view.last_recorded()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
         if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
@@ -195,12 +212,13 @@ impl Scene {
             arguments: &lists.arguments,
             mirrors: recorded.mirrors,
             reversed: recorded.reversed,
+            keeps_last: self.keeps_last,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
         for (object, sides) in self.objects.iter().zip(&recorded.sides) {
-            let ground = object.spacing().and_then(|_| view.ground(terrains));
-            terrains += usize::from(object.spacing().is_some());
+            let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
+            terrains += usize::from(object.seen_terrain().is_some());
             if object.is_shown {
                 let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
                 let sides = *sides;
@@ -208,6 +226,27 @@ impl Scene {
             }
         }
         Ok(Some((drawn, objects)))
+    }
+
+    /// What is drawn instance by instance in a view, from back to front.
+    pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
+        let lists = view.lists.as_ref()?;
+        let (_, draws) = lists.singles.as_ref()?;
+        let objects: Vec<&Object> = self.objects.iter().collect();
+        let mut parts = Vec::new();
+        for Ordered { object, instance, .. } in &lists.order {
+            let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
+            let placed = object.instances.all().get(*instance as usize);
+            let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
+            let Some(chunk) = object.chunk_of(*instance) else { continue };
+            let instance = (*instance as usize - chunk.slots.start) as u32;
+            for single in &chunk.singles {
+                let Drawable::Mesh(mesh) = &chunk.drawables[single.drawable] else { continue };
+                let (part, draw) = (&mesh.parts[single.part], single.first + instance);
+                parts.push(DrawnSingle { mesh, part, draw, instance, is_mirrored });
+            }
+        }
+        Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
@@ -240,7 +279,7 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, (self.layouts, self.keeps_last))?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
@@ -248,9 +287,9 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
-        let terrains = self.objects.iter().filter_map(Object::spacing).count();
+        let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list);
+            let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
             view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
         }
@@ -262,10 +301,16 @@ impl Scene {
 
     fn stage(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
-        let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
+        let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
+        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
+        for (view, selected) in views.iter_mut().zip(&seen) {
+            view.order(self.objects.iter(), selected);
+        }
         for (at, view) in views.iter_mut().enumerate() {
             let sides = self.objects.iter().map(|object| object.instances.sides());
-            view.stage(&mut self.staged, (layout.blocks, &self.light), (&spacings, sides), at == 0)?;
+            let of_frame = (self.frames, at == 0);
+            view.stage(&mut self.staged, (layout.blocks, &self.light), (&terrains, sides), of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {

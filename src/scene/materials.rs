@@ -2,7 +2,7 @@
 
 use image::RgbaImage;
 
-use crate::asset::material::Material;
+use crate::asset::material::{Alpha, Material};
 use crate::gpu::{Gpu, Staged};
 use crate::scene::Scene;
 use crate::scene::drawable::{Drawable, MeshMaterials};
@@ -26,9 +26,11 @@ impl Scene {
     /// compiles what is missing. Otherwise [`Renderer::draw`](crate::render::Renderer::draw) says that the object is not
     /// compiled.
     ///
+    /// Whether a material is blended stays as it was: blended surfaces are drawn in a layer of their own.
+    ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for a material or an image that the
-    /// model does not have, for values out of range, and for a sampling that differs from that of the other materials with
+    /// model does not have, for values out of range, for a change from or to blending, and for a sampling that differs from that of the other materials with
     /// which it is drawn; [`crate::gpu::GpuError`]. The material stays what it was then.
     pub fn set_material(&mut self, object: ObjectId, material: &str, new: &Material) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
@@ -40,6 +42,12 @@ impl Scene {
                 (looks.find(material)?, looks)
             };
             looks.check(new)?;
+            let (is_blended, was_blended) =
+                (new.alpha == Alpha::Blended, looks.materials[index].alpha == Alpha::Blended);
+            if is_blended != was_blended {
+                let bound = if was_blended { "must be blended, as before" } else { "must not be blended" };
+                return Err(InputError::new("material.alpha", format!("{:?}", new.alpha), bound).into());
+            }
             let old = std::mem::replace(&mut looks.materials[index], new.clone());
             let set = entry.change_materials((&gpu, &layouts), &mut staged, &Change::Material(index, &old));
             if let (Err(_), Some(looks)) = (&set, &mut entry.looks) {

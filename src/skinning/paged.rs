@@ -15,7 +15,9 @@ use crate::animation::ModelMatrices;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::asset::Model;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
-use crate::skinning::vertex::{Blend, Vertex};
+use crate::skinning::vertex::Blend;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::skinning::vertex::Vertex;
 
 /// The prepared skinning of all instances of one mesh into pages, by linear blending.
 #[derive(Debug, Clone)]
@@ -51,7 +53,8 @@ impl Paging {
         (select, active): (SelectBuffers, &ActiveClusters),
         pages: u32,
     ) -> Result<Self, Error> {
-        let pages = PageBuffers::new(gpu, mesh, crowd, pages)?;
+        let allocated = if active.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
+        let pages = allocated(gpu, mesh, crowd, pages)?;
         let deal = PagesPass::new(gpu)?.prepare(gpu, mesh, crowd, &pages)?;
         let selections = SelectPass::new(gpu)?.prepare_both(gpu, mesh, crowd, &select, active)?;
         let morph = MorphPass::new(gpu)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
@@ -80,10 +83,11 @@ impl PagedSkin {
             return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
         };
         let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
-        Self::of_mesh(gpu, (mesh, Arc::new(clusters)), matrices, instances, pages)
+        Self::of_mesh(gpu, (mesh, Arc::new(clusters)), matrices, (instances, pages, false))
     }
 
-    /// As [`PagedSkin::new`], of a mesh that is on the device already.
+    /// As [`PagedSkin::new`], of a mesh that is on the device already: for so many instances, with so many pages, and with last
+    /// positions ([`PagedSkin::keep_last`]) or without.
     ///
     /// # Errors
     /// As [`PagedSkin::new`].
@@ -91,8 +95,7 @@ impl PagedSkin {
         gpu: &Gpu,
         (mesh, clusters): (MeshBuffers, Arc<Clusters>),
         matrices: &ModelMatrices,
-        instances: usize,
-        pages: u32,
+        (instances, pages, keeps_last): (usize, u32, bool),
     ) -> Result<Self, Error> {
         let Some(updated) = matrices.updated_bones() else {
             return Err(InputError::new("matrices.updated_bones", "none", "must be recorded").into());
@@ -100,10 +103,22 @@ impl PagedSkin {
         let crowd = SkinnedCrowd::paged(gpu, &mesh, instances, Blend::Linear)?;
         let updated_bones = updated.bits().clone();
         let select = SelectBuffers { updated_bones, ..SelectBuffers::new(gpu, &mesh, &crowd)? };
-        let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
+        let listed = if keeps_last { ActiveClusters::keeping } else { ActiveClusters::new };
+        let active = listed(gpu, &mesh, &crowd)?;
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
         let paging = Paging::new(gpu, (&mesh, &crowd), (select, &active), pages)?;
         Ok(Self { mesh, clusters, crowd, active, palette, paging, reader: Arc::new(updated.reader()) })
+    }
+
+    /// Keeps the position that each vertex had before the last [`PagedSkin::dispatch`], behind the vertices of all pages
+    /// ([`PageBuffers::last`]): a page takes 3584 bytes then instead of 2560. What moves is skinned once more after it
+    /// stops. What was not seen in the frame before counts as if it had not moved. Replaces the pages.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        self.active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
+        self.set_pages(gpu, self.pages().pages() as u32)
     }
 
     /// The pages, and the vertices in them.

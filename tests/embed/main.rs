@@ -17,8 +17,14 @@ mod placements;
 #[cfg(feature = "verify")]
 mod promise;
 mod query;
+mod raw;
+mod rays;
+mod shading;
 mod sides;
 mod solids;
+mod surfaces;
 mod targets;
+mod transparent;
+mod velocity;
 mod views;
 mod world;

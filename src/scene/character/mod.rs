@@ -6,7 +6,7 @@ mod runtime;
 
 use std::ops::Range;
 
-use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
+use crate::animation::{BoundTable, ClipSet, Frame, Gate, RotationPath};
 #[cfg(feature = "verify")]
 use crate::asset::Affine;
 use crate::asset::mesh::bone_radii;
@@ -22,6 +22,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::mesh;
 use crate::scene::placement::Play;
+use crate::scene::playing::Playing;
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
@@ -54,6 +55,8 @@ pub(super) struct Character {
     changed: Changed,
     /// The time of the scene from which the device counts.
     epoch: f64,
+    /// Whether last positions are kept.
+    keeps_last: bool,
     shared: Shared,
     /// One for each chunk of instances, in ascending order.
     runtimes: Vec<Runtime>,
@@ -63,18 +66,9 @@ pub(super) struct Character {
     is_memory_short: bool,
 }
 
-/// What an instance plays.
-#[derive(Debug, Clone, Copy)]
-struct Playing {
-    clip: u32,
-    wrap: Wrap,
-    start: f64,
-    rate: f32,
-}
-
 impl Character {
     /// Prepares a model that has clips, with room for `capacity` instances.
-    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize, keeps_last: bool) -> Result<Self, Error> {
         let model = &merged.model;
         let clips: Vec<_> = model.clips.iter().collect();
         let set = ClipSet::new(&clips)?;
@@ -89,7 +83,7 @@ impl Character {
         let follows = radii.iter().zip(followed(model));
         let radii = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let plays = vec![Playing::REST; capacity];
-        let runtimes = Runtime::all(gpu, model, &shared, 0..capacity)?;
+        let runtimes = Runtime::all(gpu, model, &shared, 0..capacity, keeps_last)?;
         let mut changed = Changed::default();
         changed.all(capacity);
         let (epoch, is_memory_short) = (0.0, false);
@@ -102,6 +96,7 @@ impl Character {
             plays,
             changed,
             epoch,
+            keeps_last,
             shared,
             runtimes,
             replaced: Replaced::Nothing,
@@ -109,9 +104,15 @@ impl Character {
         })
     }
 
+    /// Keeps last positions from the next [`Character::grow`] on, or does no longer.
+    pub fn keep_last(&mut self, keeps_last: bool) {
+        self.keeps_last = keeps_last;
+    }
+
     /// Makes room for more instances. All of them start afresh.
     pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        self.runtimes = Runtime::all(gpu, &self.merged.model, &self.shared, 0..capacity)?;
+        let model = &self.merged.model;
+        self.runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
         self.is_memory_short = false;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
@@ -283,34 +284,19 @@ impl Character {
     }
 
     fn stage_plays(&self, staged: &mut Staged, run: &Range<usize>) -> Result<(), Error> {
+        let clips = &self.merged.model.clips;
+        let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
         for Runtime { slots, crowd, .. } in &self.runtimes {
             let Some(own) = common(run, slots) else { continue };
-            let plays = self.plays[own.clone()].iter().map(|play| self.on_device(play));
+            let plays = self.plays[own.clone()].iter();
+            let plays = plays.map(|play| play.on_device(duration(play), self.epoch));
             staged.elements(&crowd.instances, own.start - slots.start, &plays.collect::<Vec<_>>())?;
         }
         Ok(())
-    }
-
-    /// What an instance plays, with a start that is counted from the epoch. The start of a clip that repeats is moved by
-    /// whole repetitions, so that it stays near.
-    fn on_device(&self, play: &Playing) -> Instance {
-        let mut start = play.start - self.epoch;
-        let duration = f64::from(self.merged.model.clips[play.clip as usize].duration());
-        let period = duration / f64::from(play.rate.abs());
-        if play.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
-            start %= period;
-        }
-        // The device computes start + rate · elapsed inside the clip.
-        Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
     }
 
     /// Adds a stage to a compute pass.
     pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
         self.runtimes.iter().for_each(|runtime| runtime.dispatch(stage, pass));
     }
-}
-
-impl Playing {
-    /// The first clip, from time 0 on.
-    const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
 }

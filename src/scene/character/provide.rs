@@ -79,7 +79,9 @@ impl Character {
             let replaced = at;
             if ranges.len() > 1 {
                 let model = &self.merged.model;
-                let parts = ranges.into_iter().map(|part| Runtime::all(gpu, model, &self.shared, part));
+                let parts = ranges
+                    .into_iter()
+                    .map(|part| Runtime::all(gpu, model, &self.shared, part, self.keeps_last));
                 let parts = parts.collect::<Result<Vec<_>, Error>>();
                 if is_out_of_memory(&parts) {
                     // Another attempt in each frame would cost more than it gains.

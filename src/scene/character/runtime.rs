@@ -61,10 +61,16 @@ pub(super) struct Runtime {
 
 impl Runtime {
     /// Instances that start afresh, in as few chunks as bindings permit.
-    pub fn all(gpu: &Gpu, model: &Model, shared: &Shared, slots: Range<usize>) -> Result<Vec<Self>, Error> {
+    pub fn all(
+        gpu: &Gpu,
+        model: &Model,
+        shared: &Shared,
+        slots: Range<usize>,
+        keeps_last: bool,
+    ) -> Result<Vec<Self>, Error> {
         let (mut open, mut done) = (vec![slots], Vec::new());
         while let Some(slots) = open.pop() {
-            match Self::new(gpu, model, shared, slots.clone()) {
+            match Self::new(gpu, model, shared, slots.clone(), keeps_last) {
                 Ok(runtime) => done.push(runtime),
                 Err(Error::Gpu(GpuError::Limit { limit: "maxStorageBufferBindingSize", .. }))
                     if slots.len() > 1 =>
@@ -78,7 +84,13 @@ impl Runtime {
         Ok(done)
     }
 
-    fn new(gpu: &Gpu, model: &Model, shared: &Shared, slots: Range<usize>) -> Result<Self, Error> {
+    fn new(
+        gpu: &Gpu,
+        model: &Model,
+        shared: &Shared,
+        slots: Range<usize>,
+        keeps_last: bool,
+    ) -> Result<Self, Error> {
         let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
         let crowd = Crowd::new(gpu, &shared.set, &vec![rest; slots.len()])?;
         let frame = GatedFrame::new(gpu, &model.skeleton, &shared.clips, &crowd, &shared.gate)?;
@@ -86,9 +98,10 @@ impl Runtime {
         let (mut skins, mut pagings, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (mesh, (buffers, clusters)) in model.meshes.iter().zip(&shared.meshes) {
             let of_levels = buffers.levels.iter().map(|level| level.clusters).collect();
-            let paging = Paging::new(of_levels, slots.len(), gpu.max_binding());
+            let paging = Paging::new(of_levels, slots.len(), gpu.max_binding(), keeps_last);
             let own = (buffers.clone(), clusters.clone());
-            let skin = PagedSkin::of_mesh(gpu, own, frame.model_matrices(), slots.len(), paging.initial())?;
+            let room = (slots.len(), paging.initial(), keeps_last);
+            let skin = PagedSkin::of_mesh(gpu, own, frame.model_matrices(), room)?;
             if !mesh.targets.is_empty() {
                 let keys = WeightSet::new(mesh, &shared.set, &every)?;
                 let pass = MorphWeightsPass::new(gpu)?;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::{Kind, Object};
 use crate::Error;
 use crate::animation::Frame;
-use crate::gpu::{Gpu, Staged, Upload as _};
-use crate::lod::SelectView;
+use crate::gpu::{Buffer, Gpu, Staged, Upload as _};
 use crate::lod::assign::AssignPass;
+use crate::lod::{SceneInstance, SelectView};
 use crate::scene::character::{Provided, Replaced};
 use crate::scene::chunk::{Chunk, common};
 use crate::scene::drawable::{Drawable, MeshDrawable};
@@ -34,7 +34,10 @@ impl Object {
         let Provided { coarsening, replaced } = character.provide(gpu, views, &lod, self.instances.all())?;
         match replaced {
             Replaced::Nothing => {}
-            Replaced::Pages => character.rebind(gpu, layouts, &mut self.chunks)?,
+            Replaced::Pages => {
+                character.rebind(gpu, layouts, &mut self.chunks)?;
+                self.is_rebound = true;
+            }
             Replaced::Chunks => {
                 let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
                 self.chunks = character.chunks(gpu, layouts, first)?;
@@ -51,13 +54,14 @@ impl Object {
         (staged, layout): (&mut Staged, &Layout),
         (frame, now): (&Frame, f64),
     ) -> Result<(), Error> {
+        for (at, last) in self.instances.take_last() {
+            stage_instances((staged, &layout.last_instances), &self.chunks, at, &last)?;
+        }
         for (at, changed) in self.instances.take_changed() {
-            for chunk in &self.chunks {
-                if let Some(own) = common(&(at..at + changed.len()), &chunk.slots) {
-                    let instances = &changed[own.start - at..own.end - at];
-                    staged.elements(&layout.instances, chunk.place(own.start), instances)?;
-                }
-            }
+            stage_instances((staged, &layout.instances), &self.chunks, at, changed)?;
+        }
+        if std::mem::take(&mut self.is_rebound) {
+            self.chunks.iter().try_for_each(|chunk| stage_params(staged, chunk, self.handle))?;
         }
         if std::mem::take(&mut self.is_retuned) {
             for chunk in &self.chunks {
@@ -91,11 +95,8 @@ impl Object {
             for drawable in &chunk.drawables {
                 chunk.lods.push(lod);
                 lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
-                if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                    let params = MeshParams { first_instance: chunk.range.first, clusters: *clusters };
-                    staged.uniform(&geometry.params, &params)?;
-                }
             }
+            stage_params(staged, chunk, self.handle)?;
         }
         let mesh_fraction = self.coarsening * self.mesh_fraction;
         match &mut self.kind {
@@ -108,23 +109,52 @@ impl Object {
     }
 }
 
-/// Lays out the chunks of objects, one after the other, and tells each its range.
+/// Stages a run of an object's instances, from the one with index `at` on.
+fn stage_instances(
+    (staged, to): (&mut Staged, &Buffer<SceneInstance>),
+    chunks: &[Chunk],
+    at: usize,
+    run: &[SceneInstance],
+) -> Result<(), Error> {
+    for chunk in chunks {
+        if let Some(own) = common(&(at..at + run.len()), &chunk.slots) {
+            staged.elements(to, chunk.place(own.start), &run[own.start - at..own.end - at])?;
+        }
+    }
+    Ok(())
+}
+
+/// Stages where the instances and vertices of a chunk lie.
+fn stage_params(staged: &mut Staged, chunk: &Chunk, object: u32) -> Result<(), Error> {
+    for drawable in &chunk.drawables {
+        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+            let (first_instance, last) = (chunk.range.first, geometry.last);
+            let params = MeshParams { first_instance, clusters: *clusters, object, last };
+            staged.uniform(&geometry.params, &params)?;
+        }
+    }
+    Ok(())
+}
+
+/// Lays out the chunks of objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
+/// last frame is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
 pub(in crate::scene) fn laid_out(
     gpu: &Gpu,
     objects: &mut Slots<Object>,
-    version: u64,
+    (version, keeps_last): (u64, bool),
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
-    let (mut all, mut draws) = (Vec::new(), Vec::new());
+    let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {
         let levels = object.errors.len() as u32;
         for at in 0..object.chunks.len() {
             let chunk = &mut object.chunks[at];
             chunk.range = range;
             chunk.number = all.len();
+            chunk.lay_out_singles(&mut singles);
             let instances = chunk.room();
             range.first += instances;
             range.first_list += 2 * levels * instances;
@@ -134,5 +164,5 @@ pub(in crate::scene) fn laid_out(
         }
     }
     let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws), range, (version, counted))
+    Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
 }

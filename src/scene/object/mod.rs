@@ -18,6 +18,7 @@ use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, Terrain, TerrainSource};
+use crate::scene::view::SeenTerrain;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
@@ -41,6 +42,10 @@ pub(crate) struct Object {
     pub(super) coarsening: f32,
     /// Whether the device does not know the factor yet.
     is_retuned: bool,
+    /// Whether the device does not know where the vertices of new pages lie.
+    is_rebound: bool,
+    /// The number that its handle tells.
+    pub(super) handle: u32,
     pub(super) is_shown: bool,
     /// The materials of a mesh or a character.
     pub(super) looks: Option<Looks>,
@@ -97,6 +102,8 @@ impl Object {
             mesh_fraction,
             coarsening: 1.0,
             is_retuned: false,
+            is_rebound: false,
+            handle: 0,
             is_shown: true,
             looks: None,
             draws,
@@ -153,12 +160,12 @@ impl Object {
         layouts: &SceneLayouts,
         model: &Model,
         capacity: usize,
-        shares: Shares,
+        (shares, keeps_last): (Shares, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let mut merged = mesh::moving_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
-        let character = Character::new(gpu, merged, instances.capacity())?;
+        let character = Character::new(gpu, merged, instances.capacity(), keeps_last)?;
         let first = character.drawables(gpu, layouts, &looks)?;
         let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
@@ -167,10 +174,10 @@ impl Object {
         Ok(Self { looks: Some(looks), ..object })
     }
 
-    /// World units between the samples of a terrain.
-    pub(super) fn spacing(&self) -> Option<f64> {
+    /// What views need to know of a terrain.
+    pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
-            Kind::Terrain(terrain) => Some(terrain.spacing),
+            Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
             Kind::Mesh(_) | Kind::Character(_) => None,
         }
     }
@@ -199,6 +206,14 @@ impl Object {
         }
         self.instances.grow((2 * capacity).min(MAX_CAPACITY));
         self.refresh(gpu, layouts)
+    }
+
+    /// Keeps the last frame, once it is refreshed, or does no longer.
+    pub(super) fn keep_last(&mut self, keeps: bool) {
+        self.instances.keep_last(keeps);
+        if let Kind::Character(character) = &mut self.kind {
+            character.keep_last(keeps);
+        }
     }
 
     /// Lets everything start afresh.
@@ -232,9 +247,12 @@ impl Object {
 
     /// The index of an instance in the buffers of all instances.
     pub(super) fn place(&self, index: u32) -> Option<usize> {
-        let index = index as usize;
-        let chunk = self.chunks.iter().find(|chunk| chunk.slots.contains(&index))?;
-        Some(chunk.place(index))
+        Some(self.chunk_of(index)?.place(index as usize))
+    }
+
+    /// The chunk in which an instance lies.
+    pub(super) fn chunk_of(&self, index: u32) -> Option<&Chunk> {
+        self.chunks.iter().find(|chunk| chunk.slots.contains(&(index as usize)))
     }
 
     /// What is drawn, chunk by chunk.

@@ -15,10 +15,13 @@ impl SeenAs<PageState> for u32 {}
 /// The pages of all instances of a mesh on the device.
 #[derive(Debug, Clone)]
 pub struct PageBuffers {
-    /// The skinned vertices, 64 a page.
+    /// The skinned vertices, 64 a page. If last positions are kept, they follow: four floats for each vertex, of which the
+    /// last is unused.
     pub skinned: Buffer<Vertex>,
     /// The same vertices before skinning, if the mesh has morph targets; else empty.
     pub morphed: Buffer<Vertex>,
+    /// If last positions are kept, the index of the first of them in pairs of floats; else 0.
+    pub last: u32,
     /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Buffer<u32>,
     /// For each instance the number of clusters, from the first on, that have a page.
@@ -42,11 +45,28 @@ impl PageBuffers {
         Ok(Self {
             skinned: Buffer::new(gpu, "pages of vertices", vertices)?,
             morphed: Buffer::new(gpu, "pages of morphed vertices", morphed)?,
+            last: 0,
             table: Buffer::from_slice(gpu, "page table", &vec![NO_PAGE; entries])?,
             held: Buffer::new(gpu, "pages held", crowd.instances)?,
             stack: Buffer::from_slice(gpu, "free pages", &stack)?,
             state: Buffer::from_slice(gpu, "page state", &[pages, 0])?,
         })
+    }
+
+    /// As [`PageBuffers::new`], with room for last positions.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn keeping(
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        pages: u32,
+    ) -> Result<Self, GpuError> {
+        let vertices = CLUSTER * pages as usize;
+        // Four floats a vertex, in vertices of ten.
+        let skinned = Buffer::new(gpu, "pages of vertices", vertices + (4 * vertices).div_ceil(10))?;
+        Ok(Self { skinned, last: 5 * vertices as u32, ..Self::new(gpu, mesh, crowd, pages)? })
     }
 
     /// Number of pages.
