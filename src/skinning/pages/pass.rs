@@ -38,12 +38,23 @@ impl PageBuffers {
     /// # Errors
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd, pages: u32) -> Result<Self, GpuError> {
+        let vertices = CLUSTER * pages as usize;
+        Self::with_room(gpu, mesh, crowd, pages, vertices)
+    }
+
+    /// With so many pages, and room for so many vertices in them and behind them.
+    fn with_room(
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        pages: u32,
+        room: usize,
+    ) -> Result<Self, GpuError> {
         let stack: Vec<u32> = (0..pages).rev().collect();
         let entries = crowd.instances * mesh.clusters();
-        let vertices = CLUSTER * pages as usize;
-        let morphed = if mesh.targets == 0 { 0 } else { vertices };
+        let morphed = if mesh.targets == 0 { 0 } else { CLUSTER * pages as usize };
         Ok(Self {
-            skinned: Buffer::new(gpu, "pages of vertices", vertices)?,
+            skinned: Buffer::new(gpu, "pages of vertices", room)?,
             morphed: Buffer::new(gpu, "pages of morphed vertices", morphed)?,
             last: 0,
             table: Buffer::from_slice(gpu, "page table", &vec![NO_PAGE; entries])?,
@@ -65,8 +76,8 @@ impl PageBuffers {
     ) -> Result<Self, GpuError> {
         let vertices = CLUSTER * pages as usize;
         // Four floats a vertex, in vertices of ten.
-        let skinned = Buffer::new(gpu, "pages of vertices", vertices + (4 * vertices).div_ceil(10))?;
-        Ok(Self { skinned, last: 5 * vertices as u32, ..Self::new(gpu, mesh, crowd, pages)? })
+        let room = vertices + (4 * vertices).div_ceil(10);
+        Ok(Self { last: 5 * vertices as u32, ..Self::with_room(gpu, mesh, crowd, pages, room)? })
     }
 
     /// Number of pages.
