@@ -26,6 +26,8 @@
 //! `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs, timing and errors. `render` has
 //! a camera, an off-screen target, and passes that draw in the caller's render pass. Both need the feature `gpu`.
 //!
+//! `scene_file` reads scenes from JSON, builds them and draws their frames; it needs the feature `gpu`.
+//!
 //! `samples` generates a creature with clips, and height maps with their colours. It needs the feature `samples`.
 //!
 //! `verify` compares every kernel with its reference (`relievo verify`), and `bench` measures it against a copy of
@@ -117,6 +119,8 @@ pub mod render;
 pub mod samples;
 #[cfg(feature = "gpu")]
 pub mod scene;
+#[cfg(feature = "gpu")]
+pub mod scene_file;
 mod shared;
 pub mod skinning;
 pub mod srgb;

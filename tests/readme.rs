@@ -18,6 +18,7 @@ use relievo::gpu::{Buffer, Gpu, shaders};
 use relievo::render::TerrainScene;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::samples::creature;
+use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
 use relievo::skinning::{morph, morph_weights, palette, skin};
@@ -82,10 +83,10 @@ fn every_command_has_the_options_that_it_is_shown_with() {
     }
 }
 
-/// Options that stand alone, as in "`--scene` times …", are those of `relievo crowd` or of all commands.
+/// Options that stand alone, as in "`--scene` times …", are those of `relievo crowd`, of `relievo scene` or of all commands.
 #[test]
 fn options_that_are_named_exist() {
-    let help = relievo(&["crowd", "--help"]).stdout + &relievo(&["terrain", "--help"]).stdout;
+    let help: String = ["crowd", "scene", "terrain"].map(|name| relievo(&[name, "--help"]).stdout).concat();
     for option in quoted(README).into_iter().filter(|text| text.starts_with("--")) {
         for word in option.split_whitespace().filter(|word| word.starts_with("--")) {
             assert!(help.split_whitespace().any(|other| other == word), "{option}");
@@ -125,6 +126,17 @@ fn the_configuration_has_the_fields_and_defaults_of_the_table() {
         assert_eq!(tiles, (plain.tiles_per_patch(), plain.clone()), "{name}");
     }
     assert_eq!(plain.zones.len(), 4);
+}
+
+#[test]
+fn the_scene_file_is_one() {
+    let blocks: Vec<_> =
+        README.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(!blocks.is_empty());
+    for text in blocks {
+        let scene = SceneFile::from_json(text).expect("valid");
+        assert_eq!(scene.files().len(), 2, "{text}");
+    }
 }
 
 #[test]
@@ -211,14 +223,19 @@ fn characters(
 #[test]
 fn rust_is_compiled_as_it_stands_there() {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-    let compiled =
-        squeezed(include_str!("readme.rs")) + &squeezed(include_str!("../examples/engine/main.rs"));
+    let compiled = [
+        include_str!("readme.rs"),
+        include_str!("../examples/engine/main.rs"),
+        include_str!("web/scene/src/lib.rs"),
+        include_str!("web/scene/src/picture.rs"),
+    ];
+    let compiled: String = compiled.map(squeezed).concat();
     let lines = code("rust", "//");
     assert!(!lines.is_empty());
     for line in lines {
         assert!(
             compiled.contains(&squeezed(line)),
-            "neither tests/readme.rs nor examples/engine holds `{line}`"
+            "neither tests/readme.rs nor examples/engine nor tests/web/scene holds `{line}`"
         );
     }
 }

@@ -11,12 +11,16 @@ mod albedo;
 mod camera;
 mod crowd;
 mod format;
+mod offscreen;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod picture;
 mod pipeline;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod posed;
 pub mod relief;
 mod renderer;
 pub mod skinned;
+#[cfg(not(target_arch = "wasm32"))]
 mod square;
 pub mod target;
 pub mod terrain;
@@ -25,10 +29,13 @@ pub use albedo::Albedo;
 pub use camera::Camera;
 pub use crowd::{Character, CrowdScene};
 pub use format::{DepthFormat, TargetFormat};
+pub use offscreen::Offscreen;
+#[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
 pub use renderer::{Layer, Renderer, ScenePass};
 pub use skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
+#[cfg(not(target_arch = "wasm32"))]
 pub use square::SquarePicture;
 pub use target::Target;
 pub use terrain::{FieldsId, Materials, Style, TerrainRenderer, TerrainScene};

@@ -72,9 +72,11 @@ impl Renderer {
     /// A renderer for targets of this format. It compiles nothing yet.
     ///
     /// # Errors
-    /// [`InputError`] for a format that the library cannot draw into; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a format that the library cannot draw into or the device does not have, which names the field;
+    /// [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, format: &TargetFormat) -> Result<Self, Error> {
         format.validate()?;
+        format.check_on(gpu.device())?;
         let layouts = SceneLayouts::new(gpu)?;
         Ok(Self { gpu: gpu.clone(), format: format.clone(), layouts, pipelines: HashMap::new() })
     }
@@ -112,19 +114,30 @@ impl Renderer {
     /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`InputError`] for a scene on another device; what the driver's compiler reports.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.check_device(scene)?;
         self.prepare_objects(scene.drawables())
+    }
+
+    /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    ///
+    /// # Errors
+    /// As [`Renderer::prepare`].
+    pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare(scene)?;
+        Ok(self.gpu.check_async().await?)
     }
 
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
     /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: viewport, scissor
-    /// and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format.
+    /// and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format,
+    /// which wgpu checks.
     ///
     /// # Errors
-    /// [`InputError`] for a view of another scene; one that was not recorded since objects were added, removed or grew, or
-    /// since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction of depth; a layer that the
-    /// format has no attachment for; and objects that were added since [`Renderer::prepare`].
+    /// [`InputError`] for a scene on another device; a view of another scene; one that was not recorded since objects were
+    /// added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
+    /// of depth; a layer that the format has no attachment for; and objects that were added since [`Renderer::prepare`].
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -132,8 +145,18 @@ impl Renderer {
         view: &'a View,
         layer: Layer,
     ) -> Result<(), InputError> {
-        let (drawn, objects) = scene.drawn(view)?;
-        self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
+        self.check_device(scene)?;
+        match scene.drawn(view)? {
+            Some((drawn, objects)) => self.draw_objects(pass, &drawn, objects.iter().copied(), layer),
+            None => Ok(()),
+        }
+    }
+
+    fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
+        match scene.gpu().device() == self.gpu.device() {
+            true => Ok(()),
+            false => Err(InputError::new("scene", "of another device", "must be of the renderer's device")),
+        }
     }
 
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {

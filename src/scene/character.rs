@@ -5,6 +5,8 @@ mod posed;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
 use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
+#[cfg(feature = "verify")]
+use crate::asset::Affine;
 use crate::asset::Model;
 use crate::asset::mesh::bone_radii;
 use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
@@ -166,6 +168,13 @@ impl Character {
             .clip(name)
             .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+    }
+
+    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
+    #[cfg(feature = "verify")]
+    pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
+        let matrices = self.runtime.frame.model_matrices().read_blocking(gpu)?;
+        Ok((matrices, self.merged.model.skeleton.len()))
     }
 
     /// The skinned vertices of an instance, mesh by mesh.

@@ -5,6 +5,7 @@ use crate::gpu::{Staged, Upload as _, compute_pass};
 use crate::lod::SelectView;
 use crate::scene::camera::Depth;
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::handles::foreign;
 use crate::scene::object::{self, Kind, Object};
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
@@ -89,7 +90,8 @@ impl Scene {
     ///
     /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
     /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
-    /// that: in a submission, or in [`wgpu::Device::poll`].
+    /// that: in a submission, or in [`wgpu::Device::poll`]. Of an empty scene nothing is recorded, and nothing
+    /// drawn.
     ///
     /// # Errors
     /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been
@@ -100,6 +102,10 @@ impl Scene {
         views: &mut [&mut View],
     ) -> Result<(), Error> {
         self.check(views)?;
+        if self.is_empty() {
+            self.uploaded = 0;
+            return Ok(());
+        }
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
@@ -162,19 +168,26 @@ impl Scene {
         self.objects.iter().flat_map(|object| &object.drawables)
     }
 
-    /// What a renderer needs of a view and of all objects that are shown.
+    fn is_empty(&self) -> bool {
+        self.objects.iter().next().is_none()
+    }
+
+    /// What a renderer needs of a view and of all objects that are shown; `None` for a scene without objects.
     pub(crate) fn drawn<'a>(
         &'a self,
         view: &'a View,
-    ) -> Result<(DrawnView<'a>, Vec<DrawnObject<'a>>), InputError> {
-        if !view.is_of(&self.token) {
-            return Err(InputError::new("view", "of another scene", "must be of this scene"));
+    ) -> Result<Option<(DrawnView<'a>, Vec<DrawnObject<'a>>)>, InputError> {
+        if !view.is_of(self.objects.scene()) {
+            return Err(foreign("view"));
         }
-        let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
+        if self.is_empty() {
+            return Ok(None);
+        }
+        let (Some(lists), Some(camera)) = (&view.lists, view.camera()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
-        if lists.version != layout.version {
-            let bound = "must be recorded again, since objects were added or grew";
+        if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
+            let bound = "must be recorded again, since objects were added, removed or grew, or the scene started afresh";
             return Err(InputError::new("view", "out of date", bound));
         }
         let drawn = DrawnView {
@@ -199,15 +212,18 @@ impl Scene {
                 }));
             }
         }
-        Ok((drawn, objects))
+        Ok(Some((drawn, objects)))
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
         }
-        if let Some(at) = views.iter().position(|view| !view.is_of(&self.token)) {
-            return Err(InputError::new(format!("views[{at}]"), "of another scene", "must be of this scene"));
+        if let Some(at) = views.iter().position(|view| !view.is_of(self.objects.scene())) {
+            return Err(foreign(&format!("views[{at}]")));
+        }
+        if views.iter().any(|view| view.camera().is_none()) {
+            return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
         }
         Ok(())
     }

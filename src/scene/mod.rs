@@ -5,6 +5,10 @@
 //! pass.
 //!
 #![doc = include_str!("overview.md")]
+//!
+//! In a browser, which forbids to wait and tells errors late, use the forms whose names end in `_async`, and
+//! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
+//! `Scene::add_terrain`, which waits, has the `_async` form alone.
 
 mod camera;
 mod character;
@@ -15,6 +19,8 @@ mod instances;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
+#[cfg(feature = "verify")]
+mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
@@ -31,8 +37,6 @@ mod terrain;
 mod view;
 mod watch;
 
-use std::sync::Arc;
-
 pub use camera::{Camera, Depth};
 pub use handles::{InstanceId, ObjectId};
 pub use pick::Bounds;
@@ -48,12 +52,12 @@ pub use view::View;
 pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
-use crate::gpu::{Gpu, Staged, StagingRing};
+use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::{Error, InputError};
-use handles::{Slots, stale};
+use handles::Slots;
 use layout::Layout;
 use layouts::SceneLayouts;
 use object::{Kind, Object};
@@ -96,8 +100,6 @@ pub const RECORDINGS: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Tells this scene's views from others'.
-    token: Arc<()>,
     objects: Slots<Object>,
     shares: Shares,
     light: Light,
@@ -140,7 +142,6 @@ impl Scene {
         };
         Ok(Self {
             gpu: gpu.clone(),
-            token: Arc::default(),
             objects: Slots::default(),
             shares: Shares::default(),
             light: Light::default(),
@@ -159,6 +160,25 @@ impl Scene {
             timer: None,
             watch: None,
         })
+    }
+
+    /// As [`Scene::new`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub async fn new_async(gpu: &Gpu) -> Result<Self, Error> {
+        let scene = Self::new(gpu)?;
+        gpu.check_async().await?;
+        Ok(scene)
+    }
+
+    /// Errors that the device reported later than in the call that caused them, as [`Gpu::check`] tells them. Ask once a
+    /// frame in a browser.
+    ///
+    /// # Errors
+    /// As [`Gpu::check`].
+    pub fn health(&self) -> Result<(), GpuError> {
+        self.gpu.check()
     }
 
     /// The device.
@@ -211,10 +231,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
-        let ObjectId { index, generation } = object;
-        let entry =
-            self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))?;
-        Ok(entry.coarsening)
+        Ok(self.object_at(object)?.coarsening)
     }
 
     /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
@@ -227,11 +244,11 @@ impl Scene {
         self.now
     }
 
-    /// A view into the scene.
+    /// A view into the scene. It needs a camera ([`View::set`]) before a frame is recorded.
     ///
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, &self.token, quality)
+        View::new(&self.gpu, self.objects.scene(), quality)
     }
 }

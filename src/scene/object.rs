@@ -108,8 +108,12 @@ impl Object {
     }
 
     /// Terrain.
-    pub(super) fn terrain(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Self, Error> {
-        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source)?;
+    pub(super) async fn terrain(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        source: &TerrainSource,
+    ) -> Result<Self, Error> {
+        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
         Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
     }

@@ -131,7 +131,8 @@ impl Placement {
 /// What a character plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Play<'a> {
-    /// The name of the clip, or its index in the model, counted from 0.
+    /// The name of the clip, or its index in the model, counted from 0. A clip without a name in its file is called
+    /// `animation_` and its index.
     pub clip: &'a str,
     /// The time of the scene, in seconds, at which the clip begins. It may lie in the past: then the clip is under way.
     pub start: f64,
@@ -142,7 +143,8 @@ pub struct Play<'a> {
 }
 
 impl<'a> Play<'a> {
-    /// A clip that began at time 0 of the scene, and repeats.
+    /// A clip that began at time 0 of the scene, and repeats. For one that begins now, `start` is
+    /// [`Scene::time`](crate::scene::Scene::time).
     pub fn new(clip: &'a str) -> Self {
         Self { clip, start: 0.0, rate: 1.0, wrap: Wrap::Loop }
     }

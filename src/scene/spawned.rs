@@ -47,19 +47,20 @@ impl Scene {
     /// Removes an instance. Its handle is stale from then on, also where another instance takes its place in memory.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more.
+    /// [`InputError`] for an instance that does not exist any more, and for a patch of terrain.
     pub fn despawn(&mut self, instance: InstanceId) -> Result<(), InputError> {
-        self.instance_mut(instance)?.instances.despawn(instance.index);
+        self.spawned_mut(instance)?.instances.despawn(instance.index);
         Ok(())
     }
 
     /// Moves, turns and scales an instance: replaces its placement.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, and as [`Placement::checked`].
+    /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and as
+    /// [`Placement::checked`].
     pub fn move_to(&mut self, instance: InstanceId, placement: Placement) -> Result<(), InputError> {
         let placement = placement.checked()?;
-        let object = self.instance_mut(instance)?;
+        let object = self.spawned_mut(instance)?;
         object.instances.change(instance.index, |instance| instances::place(instance, &placement));
         Ok(())
     }
@@ -72,7 +73,7 @@ impl Scene {
     pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
         let Kind::Character(character) = &mut object.kind else {
-            return Err(InputError::new("instance", "a mesh", "must be an instance of a character"));
+            return Err(InputError::new("instance", "no character", "must be an instance of a character"));
         };
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
@@ -83,13 +84,13 @@ impl Scene {
     /// first. It is kept in steps of 1/255. Alpha counts only where the material is cut out or dithered.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, and for values out of range.
+    /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and for values out of range.
     pub fn set_tint(&mut self, instance: InstanceId, tint: [f32; 4]) -> Result<(), InputError> {
         if let Some(at) = tint.iter().position(|value| !(0.0..=1.0).contains(value)) {
             return Err(InputError::new(format!("tint[{at}]"), tint[at], "must be in 0..=1"));
         }
         let packed = u32::from_le_bytes(tint.map(|value| (value * 255.0 + 0.5) as u8));
-        self.instance_mut(instance)?.instances.change(instance.index, |instance| instance.tint = packed);
+        self.spawned_mut(instance)?.instances.change(instance.index, |instance| instance.tint = packed);
         Ok(())
     }
 
@@ -112,6 +113,18 @@ impl Scene {
         let object = self.instance_mut(instance)?;
         object.instances.change(instance.index, |instance| instance.flags = instances::flags(mask, casts));
         Ok(())
+    }
+
+    /// As [`Self::instance_mut`], for what was spawned: patches of terrain stay where and what they are.
+    fn spawned_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
+        let object = self.instance_mut(instance)?;
+        match object.kind {
+            Kind::Terrain(_) => {
+                let bound = "must be an instance of a mesh or a character";
+                Err(InputError::new("instance", "a patch of terrain", bound))
+            }
+            Kind::Mesh(_) | Kind::Character(_) => Ok(object),
+        }
     }
 
     fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {

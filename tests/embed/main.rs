@@ -10,6 +10,7 @@ mod counts;
 mod frame;
 mod host;
 mod life;
+mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;

@@ -4,8 +4,6 @@ mod counted;
 pub(crate) mod lists;
 mod uniforms;
 
-use std::sync::Arc;
-
 use glam::IVec3;
 
 use crate::asset::Light;
@@ -16,6 +14,7 @@ use crate::lod::select::SelectPass;
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::camera::Camera;
+use crate::scene::handles::SceneNumber;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
@@ -72,7 +71,7 @@ use uniforms::{lod_camera, terrain_view};
 /// ```
 #[derive(Debug)]
 pub struct View {
-    scene: Arc<()>,
+    scene: SceneNumber,
     quality: Quality,
     camera: Option<Camera>,
     lod_cameras: Vec<Camera>,
@@ -85,12 +84,12 @@ pub struct View {
 }
 
 impl View {
-    pub(super) fn new(gpu: &Gpu, scene: &Arc<()>, quality: Quality) -> Result<Self, Error> {
+    pub(super) fn new(gpu: &Gpu, scene: SceneNumber, quality: Quality) -> Result<Self, Error> {
         quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
-            scene: scene.clone(),
+            scene,
             quality,
             camera: None,
             lod_cameras: Vec::new(),
@@ -172,8 +171,8 @@ impl View {
         flags & INSTANCE_ALIVE != 0 && is_in_mask && (!self.casters || flags & INSTANCE_CASTS != 0)
     }
 
-    pub(crate) fn is_of(&self, scene: &Arc<()>) -> bool {
-        Arc::ptr_eq(&self.scene, scene)
+    pub(in crate::scene) fn is_of(&self, scene: SceneNumber) -> bool {
+        self.scene == scene
     }
 
     /// Allocates what the view needs for a layout and so many terrains, unless it has it.
