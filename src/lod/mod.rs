@@ -1,5 +1,5 @@
 //! Level of detail in scenes: which instances a view sees and how fine ([`select`]), in which order it draws them
-//! ([`list`]), and what gates and skinning make of the displacement that the views of a frame allow ([`assign`]).
+//! ([`list`]), how it draws instances one by one ([`single`]), and what gates and skinning make of the displacement that the views of a frame allow ([`assign`]).
 //!
 //! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep instances and draws of their
 //! own: in a frame, record [`select`] and [`list`] for each view, the first of which says so
@@ -19,6 +19,7 @@ mod instance;
 pub mod list;
 mod object;
 pub mod select;
+pub mod single;
 
 pub use crate::shared::lod::instance::{
     CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance,

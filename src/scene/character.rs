@@ -20,6 +20,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
 use crate::scene::paging::{Needs, Paging, needs};
 use crate::scene::placement::Play;
+use crate::scene::playing::Playing;
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
@@ -54,16 +55,9 @@ pub(super) struct Character {
     changed: Changed,
     /// The time of the scene from which the device counts.
     epoch: f64,
+    /// Whether last positions are kept.
+    keeps_last: bool,
     runtime: Runtime,
-}
-
-/// What an instance plays.
-#[derive(Debug, Clone, Copy)]
-struct Playing {
-    clip: u32,
-    wrap: Wrap,
-    start: f64,
-    rate: f32,
 }
 
 /// What lies on the device, with room for all instances.
@@ -82,7 +76,7 @@ struct Runtime {
 
 impl Character {
     /// Prepares a model that has clips, with room for `capacity` instances.
-    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize, keeps_last: bool) -> Result<Self, Error> {
         let model = &merged.model;
         let clips: Vec<_> = model.clips.iter().collect();
         let set = ClipSet::new(&clips)?;
@@ -97,15 +91,35 @@ impl Character {
         let follows = radii.iter().zip(followed(model));
         let radii = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let plays = vec![Playing::REST; capacity];
-        let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
+        let runtime = Runtime::new(gpu, model, (&set, &gate), (capacity, keeps_last))?;
         let mut changed = Changed::default();
         changed.all(capacity);
-        Ok(Self { merged, set, gate, unit, stray, radii, spheres, plays, changed, epoch: 0.0, runtime })
+        let epoch = 0.0;
+        Ok(Self {
+            merged,
+            set,
+            gate,
+            unit,
+            stray,
+            radii,
+            spheres,
+            plays,
+            changed,
+            epoch,
+            keeps_last,
+            runtime,
+        })
+    }
+
+    /// Keeps last positions from the next [`Character::grow`] on, or does no longer.
+    pub fn keep_last(&mut self, keeps_last: bool) {
+        self.keeps_last = keeps_last;
     }
 
     /// Makes room for more instances. All of them start afresh.
     pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
+        let room = (capacity, self.keeps_last);
+        self.runtime = Runtime::new(gpu, &self.merged.model, (&self.set, &self.gate), room)?;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         // As in a scene that was made anew, whose starts are rounded alike.
@@ -263,7 +277,9 @@ impl Character {
             self.changed.all(self.plays.len());
         }
         for [from, to] in self.changed.take(self.plays.len()) {
-            let plays = self.plays[from..to].iter().map(|play| self.on_device(play));
+            let clips = &self.merged.model.clips;
+            let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
+            let plays = self.plays[from..to].iter().map(|play| play.on_device(duration(play), self.epoch));
             staged.elements(&self.runtime.crowd.instances, from, &plays.collect::<Vec<_>>())?;
         }
         let elapsed = (now - self.epoch) as f32;
@@ -272,19 +288,6 @@ impl Character {
             weights.set_through(staged, elapsed)?;
         }
         Ok(())
-    }
-
-    /// What an instance plays, with a start that is counted from the epoch. The start of a clip that repeats is moved by
-    /// whole repetitions, so that it stays near.
-    fn on_device(&self, play: &Playing) -> Instance {
-        let mut start = play.start - self.epoch;
-        let duration = f64::from(self.merged.model.clips[play.clip as usize].duration());
-        let period = duration / f64::from(play.rate.abs());
-        if play.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
-            start %= period;
-        }
-        // The device computes start + rate · elapsed inside the clip.
-        Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
     }
 
     /// Adds a stage to a compute pass.
@@ -306,13 +309,13 @@ impl Character {
     }
 }
 
-impl Playing {
-    /// The first clip, from time 0 on.
-    const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
-}
-
 impl Runtime {
-    fn new(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate, capacity: usize) -> Result<Self, Error> {
+    fn new(
+        gpu: &Gpu,
+        model: &Model,
+        (set, gate): (&ClipSet, &Gate),
+        (capacity, keeps_last): (usize, bool),
+    ) -> Result<Self, Error> {
         let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
         let crowd = Crowd::new(gpu, set, &vec![rest; capacity])?;
         let clips = ClipBuffers::new(gpu, set)?;
@@ -320,9 +323,12 @@ impl Runtime {
         let every: Vec<usize> = (0..model.clips.len()).collect();
         let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (index, mesh) in model.meshes.iter().enumerate() {
-            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            let mut skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            if keeps_last {
+                skin.keep_last(gpu)?;
+            }
             let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
-            paging.push(Paging::new(clusters, capacity, gpu.max_binding()));
+            paging.push(Paging::new(clusters, capacity, gpu.max_binding(), keeps_last));
             if !mesh.targets.is_empty() {
                 let keys = WeightSet::new(mesh, set, &every)?;
                 weights.push(MorphWeightsPass::new(gpu)?.prepare(

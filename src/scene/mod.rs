@@ -24,9 +24,11 @@ mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
+pub(crate) mod order;
 mod paging;
 mod pick;
 mod placement;
+mod playing;
 mod quality;
 pub(crate) mod query;
 mod ray;
@@ -56,6 +58,7 @@ use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 use crate::{Error, InputError};
 use handles::Slots;
 use layout::Layout;
@@ -106,6 +109,8 @@ pub struct Scene {
     /// Seconds since the scene began, and seconds since the last frame.
     now: f64,
     step: f32,
+    /// Whether the last frame's placements and vertices are kept.
+    keeps_last: bool,
     /// Number of frames that were recorded.
     frames: u64,
     layout: Option<Layout>,
@@ -126,6 +131,7 @@ pub struct Scene {
 struct Passes {
     select: SelectPass,
     list: ListPass,
+    single: SinglePass,
     assign: AssignPass,
 }
 
@@ -138,6 +144,7 @@ impl Scene {
         let passes = Passes {
             select: SelectPass::new(gpu)?,
             list: ListPass::new(gpu)?,
+            single: SinglePass::new(gpu)?,
             assign: AssignPass::new(gpu)?,
         };
         Ok(Self {
@@ -147,6 +154,7 @@ impl Scene {
             light: Light::default(),
             now: 0.0,
             step: 0.0,
+            keeps_last: false,
             frames: 0,
             layout: None,
             layouts: 0,

@@ -15,11 +15,13 @@ use crate::scene::instances::Instances;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
+use crate::scene::order::SinglePart;
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
 use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
+use crate::scene::view::SeenTerrain;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -40,6 +42,8 @@ pub(crate) struct Object {
     pub(super) coarsening: f32,
     /// Its number among the objects of the layout.
     pub(super) number: usize,
+    /// The number that its handle tells.
+    pub(super) handle: u32,
     pub(super) is_shown: bool,
     /// What is drawn, part by part.
     pub(crate) drawables: Vec<Drawable>,
@@ -49,6 +53,8 @@ pub(crate) struct Object {
     /// For each drawable, the object as kernels see it, with the draws of the drawable's parts, in the layout for which it
     /// was prepared.
     pub(crate) lods: Vec<LodObject>,
+    /// Its parts that are drawn instance by instance.
+    pub(super) singles: Vec<SinglePart>,
     pub(super) fitted: u64,
 }
 
@@ -98,11 +104,13 @@ impl Object {
             mesh_fraction,
             coarsening: 1.0,
             number: 0,
+            handle: 0,
             is_shown: true,
             drawables,
             draws,
             range: ObjectRange::default(),
             lods: Vec::new(),
+            singles: Vec::new(),
             fitted: 0,
         }
     }
@@ -151,20 +159,20 @@ impl Object {
         layouts: &SceneLayouts,
         model: &Model,
         capacity: usize,
-        shares: Shares,
+        (shares, keeps_last): (Shares, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
+        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity(), keeps_last)?;
         let drawn = (character.drawables(gpu, layouts)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
         Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
     }
 
-    /// World units between the samples of a terrain.
-    pub(super) fn spacing(&self) -> Option<f64> {
+    /// What views need to know of a terrain.
+    pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
-            Kind::Terrain(terrain) => Some(terrain.spacing),
+            Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
             Kind::Mesh(_) | Kind::Character(_) => None,
         }
     }
@@ -188,6 +196,14 @@ impl Object {
     pub(super) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         self.instances.grow(2 * self.instances.capacity());
         self.refresh(gpu, layouts)
+    }
+
+    /// Keeps the last frame, once it is refreshed, or does no longer.
+    pub(super) fn keep_last(&mut self, keeps: bool) {
+        self.instances.keep_last(keeps);
+        if let Kind::Character(character) = &mut self.kind {
+            character.keep_last(keeps);
+        }
     }
 
     /// Lets everything start afresh.
@@ -214,6 +230,7 @@ impl Object {
         let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
         if is_replaced {
             rebind(&mut self.drawables, gpu, layouts, character)?;
+            stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         }
         if coarsening != self.coarsening {
             self.coarsening = coarsening;
@@ -241,12 +258,7 @@ impl Object {
             self.lods.push(lod);
             lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
         }
-        for drawable in &self.drawables {
-            if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                let params = MeshParams { first_instance: self.range.first, clusters: *clusters };
-                staged.uniform(&geometry.params, &params)?;
-            }
-        }
+        stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         match &mut self.kind {
             Kind::Character(character) => {
                 character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
@@ -259,6 +271,22 @@ impl Object {
     pub(crate) fn capacity(&self) -> usize {
         self.instances.capacity()
     }
+}
+
+/// Stages where the instances and vertices of drawables lie.
+fn stage_params(
+    staged: &mut Staged,
+    drawables: &[Drawable],
+    first_instance: u32,
+    object: u32,
+) -> Result<(), Error> {
+    for drawable in drawables {
+        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+            let params = MeshParams { first_instance, clusters: *clusters, object, last: geometry.last };
+            staged.uniform(&geometry.params, &params)?;
+        }
+    }
+    Ok(())
 }
 
 /// Binds a character's pages, after they were replaced.
@@ -284,13 +312,18 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
     }
 }
 
-/// Lays out objects, one after the other, and tells each its range.
+/// Lays out objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
+/// last frame is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
-pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
+pub(super) fn laid_out(
+    gpu: &Gpu,
+    objects: &mut Slots<Object>,
+    (version, keeps_last): (u64, bool),
+) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
-    let (mut all, mut draws) = (Vec::new(), Vec::new());
+    let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {
         object.range = range;
         object.number = all.len();
@@ -298,10 +331,11 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
         let instances = object.instances.capacity() as u32;
         all.push(object.lod_object());
         draws.extend_from_slice(&object.draws);
+        object.lay_out_singles(&mut singles);
         range.first += instances;
         range.first_list += 2 * object.errors.len() as u32 * instances;
         range.first_draw += object.draws.len() as u32;
     }
     let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws), range, (version, counted))
+    Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
 }

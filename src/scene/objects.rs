@@ -98,7 +98,13 @@ impl Scene {
     fn character(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
         match model.clips.is_empty() {
             true => Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity),
-            false => Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares),
+            false => Object::character(
+                &self.gpu,
+                &self.layouts_of_groups,
+                model,
+                capacity,
+                (self.shares, self.keeps_last),
+            ),
         }
     }
 
@@ -132,7 +138,14 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { scene: self.objects.scene(), index, generation }
+        let (id, keeps_last) = (ObjectId { scene: self.objects.scene(), index, generation }, self.keeps_last);
+        if let Some(object) = self.objects.get_mut([index, generation]) {
+            object.handle = id.number();
+            if keeps_last {
+                object.instances.keep_last(true);
+            }
+        }
+        id
     }
 
     /// Removes an object with all of its instances, and releases its memory.

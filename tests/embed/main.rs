@@ -15,6 +15,12 @@ mod placements;
 #[cfg(feature = "verify")]
 mod promise;
 mod query;
+mod raw;
+mod rays;
+mod shading;
+mod surfaces;
 mod targets;
+mod transparent;
+mod velocity;
 mod views;
 mod world;
