@@ -37,6 +37,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 remedy: "split the batch",
             });
         }
+        gpu.memory().check(label, size)?;
         let usage = wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::VERTEX
             | wgpu::BufferUsages::INDEX
@@ -48,7 +49,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
             gpu.device().create_buffer(&descriptor)
         })?;
-        Ok(Self { raw, _held: Arc::new(gpu.memory().hold(size)), len, element: PhantomData })
+        Ok(Self { raw, _held: Arc::new(gpu.memory().hold(label, size)), len, element: PhantomData })
     }
 
     /// A buffer that holds `data`.

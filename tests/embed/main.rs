@@ -4,12 +4,14 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod chunks;
 #[cfg(unix)]
 mod cost;
 mod counts;
 mod frame;
 mod host;
 mod life;
+mod materials;
 mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
@@ -18,6 +20,8 @@ mod query;
 mod raw;
 mod rays;
 mod shading;
+mod sides;
+mod solids;
 mod surfaces;
 mod targets;
 mod transparent;

@@ -28,10 +28,13 @@ impl Character {
         })
     }
 
-    /// The model matrices of all instances.
-    pub fn model_matrices(&self) -> CharacterMatrices<'_> {
-        let raw = self.runtime.frame.model_matrices().raw();
-        CharacterMatrices { raw, bones: self.merged.model.skeleton.len() }
+    /// The model matrices of the chunk in which an instance lies, and the index of the instance in the chunk.
+    pub fn model_matrices(&self, index: u32) -> Option<(CharacterMatrices<'_>, usize)> {
+        let index = index as usize;
+        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
+        let raw = runtime.frame.model_matrices().raw();
+        let matrices = CharacterMatrices { raw, bones: self.merged.model.skeleton.len() };
+        Some((matrices, index - runtime.slots.start))
     }
 
     /// The clip that an instance plays, and the time in it at a time of the scene.
@@ -78,10 +81,17 @@ impl Character {
         Ok(model.meshes.iter().enumerate().map(of_mesh).collect())
     }
 
-    /// Arguments of the dispatches that sample bones and, for each mesh, skin clusters: the fourth word of each is their
-    /// number.
+    /// For each chunk the arguments of the dispatches that sample bones and, for each mesh, skin clusters: the fourth word of
+    /// each is their number.
     pub fn counters(&self) -> impl Iterator<Item = &Buffer<u32>> {
-        let clusters = self.runtime.skins.iter().map(PagedSkin::dispatched);
-        std::iter::once(&self.runtime.frame.active.pairs.dispatched).chain(clusters)
+        self.runtimes.iter().flat_map(|runtime| {
+            let clusters = runtime.skins.iter().map(PagedSkin::dispatched);
+            std::iter::once(&runtime.frame.active.pairs.dispatched).chain(clusters)
+        })
+    }
+
+    /// The number of meshes, and the number of chunks.
+    pub fn counted(&self) -> [usize; 2] {
+        [self.merged.model.meshes.len(), self.runtimes.len()]
     }
 }
