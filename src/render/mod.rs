@@ -13,7 +13,6 @@ mod contents;
 mod crowd;
 mod format;
 mod layer;
-#[cfg(not(target_arch = "wasm32"))]
 mod offscreen;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod picture;
@@ -35,7 +34,6 @@ pub use contents::Contents;
 pub use crowd::{Character, CrowdScene};
 pub use format::{DepthFormat, TargetFormat};
 pub use layer::Layer;
-#[cfg(not(target_arch = "wasm32"))]
 pub use offscreen::Offscreen;
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
