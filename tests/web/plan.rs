@@ -11,6 +11,7 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("animation/compact", "STAGE", &[0.0, 1.0, 2.0, 3.0]),
     ("animation/decide", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
+    ("lod/list", "STAGE", &[0.0, 1.0, 2.0]),
     ("render/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
     ("render/scene_relief", "relievo_METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
