@@ -3,11 +3,20 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::GpuError;
+
 /// The bytes of every [`super::Buffer`] of a device and its clones: the current number, and the peak.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Memory {
     now: AtomicU64,
     most: AtomicU64,
+    limit: AtomicU64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self { now: AtomicU64::new(0), most: AtomicU64::new(0), limit: AtomicU64::new(u64::MAX) }
+    }
 }
 
 impl Memory {
@@ -21,10 +30,22 @@ impl Memory {
         self.most.swap(self.now(), Ordering::SeqCst)
     }
 
-    pub(super) fn hold(self: &Arc<Self>, bytes: u64) -> Held {
-        let now = self.now.fetch_add(bytes, Ordering::SeqCst) + bytes;
-        self.most.fetch_max(now, Ordering::SeqCst);
-        Held { memory: self.clone(), bytes }
+    /// Sets the largest number of bytes; `None` is no limit, as at first. What is held already stays. A buffer that would
+    /// exceed it is refused with [`GpuError::OutOfMemory`], as if the device had no more memory.
+    pub fn set_limit(&self, bytes: Option<u64>) {
+        self.limit.store(bytes.unwrap_or(u64::MAX), Ordering::SeqCst);
+    }
+
+    pub(super) fn hold(self: &Arc<Self>, label: &str, bytes: u64) -> Result<Held, GpuError> {
+        let before = self.now.fetch_add(bytes, Ordering::SeqCst);
+        let held = Held { memory: self.clone(), bytes };
+        let limit = self.limit.load(Ordering::SeqCst);
+        if before.saturating_add(bytes) > limit {
+            let reason = format!("{label}: {bytes} bytes beside {before} exceed the limit of {limit}");
+            return Err(GpuError::OutOfMemory { reason });
+        }
+        self.most.fetch_max(before + bytes, Ordering::SeqCst);
+        Ok(held)
     }
 }
 

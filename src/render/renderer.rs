@@ -85,6 +85,18 @@ impl Renderer {
         self.prepare_objects(scene.drawables())
     }
 
+    /// Compiles its pipelines again on another device, after its own was lost; the scene is rebuilt there too
+    /// ([`Scene::rebuild`]).
+    ///
+    /// # Errors
+    /// What the driver's compiler reports; then the renderer is as it was.
+    pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        let mut fresh = Self::new(gpu, &self.format)?;
+        self.pipelines.keys().try_for_each(|key| fresh.compile(*key))?;
+        *self = fresh;
+        Ok(())
+    }
+
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`]. It sets pipelines, the bind groups 0 to 2,
     /// the first vertex buffer and the index buffer, and nothing else: viewport, scissor and stencil reference are the
     /// caller's.
@@ -100,6 +112,10 @@ impl Renderer {
         view: &'a View,
         layer: Layer,
     ) -> Result<(), InputError> {
+        if scene.gpu().device() != self.gpu.device() {
+            let bound = "must be rebuilt on the scene's device: Renderer::rebuild";
+            return Err(InputError::new("renderer", "of another device", bound));
+        }
         let (drawn, objects) = scene.drawn(view)?;
         self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
     }

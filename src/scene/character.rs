@@ -1,35 +1,38 @@
 //! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
 
+mod driven;
+mod layers;
 mod posed;
+mod runtime;
 
-use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::frame::GatedFrame;
-use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RotationPath, Wrap};
+use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RootMotion, RotationPath, Wrap};
 use crate::asset::Model;
 use crate::asset::mesh::bone_radii;
-use crate::gpu::{Gpu, Job, Staged, Uniform, Upload as _};
+use crate::gpu::{Gpu, Staged, Uniform, Upload as _};
 use crate::lod::assign::{AssignBuffers, AssignPass};
 use crate::lod::{LodObject, SceneDraw, SceneInstance, SelectView};
 use crate::scene::drawable::Drawable;
 use crate::scene::frame::Stage;
 use crate::scene::instances::Changed;
+use crate::scene::layers::{CharacterOptions, bone_of};
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
-use crate::scene::paging::{Needs, Paging, needs};
+use crate::scene::paging::{Needs, needs};
 use crate::scene::placement::Play;
 use crate::scene::quality::Shares;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
-use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
-use crate::skinning::paged::PagedSkin;
 use crate::skinning::pages::PageBuffers;
 #[cfg(feature = "verify")]
 use crate::skinning::vertex::Vertex;
 use crate::skinning::{Extent, poses_of};
 use crate::{Error, InputError};
+use driven::Driven;
+use layers::{CharacterLayer, Reach};
+pub(super) use runtime::Runtime;
 
 /// The time in seconds after which starts are counted from a later moment, because `f32` seconds lose precision.
 const EPOCH: f64 = 128.0;
@@ -52,6 +55,12 @@ pub(super) struct Character {
     changed: Changed,
     /// The time of the scene from which the device counts.
     epoch: f64,
+    driven: Driven,
+    layers: Vec<CharacterLayer>,
+    /// How far bones get in blends; `None` if there are no layers.
+    reach: Option<Reach>,
+    /// The motion that was taken out of each clip.
+    motions: Option<Vec<RootMotion>>,
     runtime: Runtime,
 }
 
@@ -64,23 +73,15 @@ struct Playing {
     rate: f32,
 }
 
-/// What lies on the device, with room for all instances.
-#[derive(Debug)]
-struct Runtime {
-    crowd: Crowd,
-    frame: GatedFrame,
-    skins: Vec<PagedSkin>,
-    /// One for each of `skins`.
-    paging: Vec<Paging>,
-    weights: Vec<MorphWeightsJob>,
-    assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
-    /// The layout for which `assign` was prepared.
-    version: u64,
-}
-
 impl Character {
     /// Prepares a model that has clips, with room for `capacity` instances.
-    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Gpu,
+        mut merged: Merged,
+        options: &CharacterOptions<'_>,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
         let model = &merged.model;
         let clips: Vec<_> = model.clips.iter().collect();
         let set = ClipSet::new(&clips)?;
@@ -93,20 +94,54 @@ impl Character {
         let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
         let gate = Gate::Bounded(table);
         let follows = radii.iter().zip(followed(model));
-        let radii = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
+        let radii: Vec<_> = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let plays = vec![Playing::REST; capacity];
-        let runtime = Runtime::new(gpu, model, &set, &gate, capacity)?;
+        let bone = |name: &str| bone_of(model, name);
+        let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
+        let reach = (!layers.is_empty()).then(|| Reach::new(model, &radii));
+        let runtime = Runtime::new(gpu, model, (&set, &layers), &gate, capacity)?;
         let mut changed = Changed::default();
         changed.all(capacity);
-        Ok(Self { merged, set, gate, unit, stray, radii, spheres, plays, changed, epoch: 0.0, runtime })
+        Ok(Self {
+            merged,
+            set,
+            gate,
+            unit,
+            stray,
+            radii,
+            spheres,
+            plays,
+            changed,
+            epoch: 0.0,
+            driven: Driven::default(),
+            layers,
+            reach,
+            motions,
+            runtime,
+        })
     }
 
-    /// Makes room for more instances. All of them start afresh.
-    pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        self.runtime = Runtime::new(gpu, &self.merged.model, &self.set, &self.gate, capacity)?;
+    /// Everything on a device, with room for `capacity` instances, and how it is drawn.
+    pub fn on(
+        &self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        capacity: usize,
+    ) -> Result<(Runtime, Vec<Drawable>), Error> {
+        let data = (&self.set, &self.layers[..]);
+        let runtime = Runtime::new(gpu, &self.merged.model, data, &self.gate, capacity)?;
+        let drawables = runtime.drawables(gpu, layouts, &self.merged)?;
+        Ok((runtime, drawables))
+    }
+
+    /// Takes what lies on a device. All instances start afresh.
+    pub fn adopt(&mut self, runtime: Runtime) {
+        let capacity = runtime.crowd.len();
+        self.runtime = runtime;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
-        Ok(())
+        self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
+        self.driven.forget_device();
     }
 
     /// A sphere around an instance that plays the first clip.
@@ -126,12 +161,7 @@ impl Character {
 
     /// What is drawn: each mesh, from the vertices of each instance.
     pub fn drawables(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Vec<Drawable>, Error> {
-        let skins = self.runtime.skins.iter().enumerate();
-        let drawable = |(index, skin): (usize, &PagedSkin)| {
-            let mesh = (&skin.mesh, &skin.clusters);
-            mesh::drawable((gpu, layouts), &self.merged, index, mesh, Some(&skin.pages))
-        };
-        skins.map(drawable).collect()
+        self.runtime.drawables(gpu, layouts, &self.merged)
     }
 
     /// The draws of all parts.
@@ -147,13 +177,14 @@ impl Character {
         self.plays[index as usize] =
             Playing { clip: clip as u32, wrap: play.wrap, start: play.start, rate: play.rate };
         self.changed.add(index, self.plays.len());
-        Ok(self.spheres[clip])
+        Ok(self.sphere_of(index))
     }
 
     /// Sets that an instance plays the first clip, and returns a sphere around it.
     pub fn play_first(&mut self, index: u32) -> BoundingSphere {
         self.plays[index as usize] = Playing::REST;
         self.changed.add(index, self.plays.len());
+        self.clear_layers(index);
         self.spheres[0]
     }
 
@@ -203,6 +234,7 @@ impl Character {
             let buffers = AssignBuffers {
                 params: &uniform,
                 allowed: &layout.allowed,
+                instances: &layout.instances,
                 lods: &runtime.frame.state.lods,
                 instance_lods: &skin.crowd.instance_lods,
             };
@@ -250,30 +282,20 @@ impl Character {
         if (now - self.epoch).abs() > EPOCH {
             self.epoch = now;
             self.changed.all(self.plays.len());
+            self.layers.iter_mut().for_each(|layer| layer.changed.all(self.plays.len()));
         }
         for [from, to] in self.changed.take(self.plays.len()) {
-            let plays = self.plays[from..to].iter().map(|play| self.on_device(play));
+            let plays =
+                self.plays[from..to].iter().map(|play| play.on_device(&self.merged.model, self.epoch));
             staged.elements(&self.runtime.crowd.instances, from, &plays.collect::<Vec<_>>())?;
         }
+        self.stage_layers(staged, now)?;
         let elapsed = (now - self.epoch) as f32;
         self.runtime.frame.set_through(staged, frame, elapsed)?;
         for weights in &self.runtime.weights {
             weights.set_through(staged, elapsed)?;
         }
         Ok(())
-    }
-
-    /// What an instance plays, with a start that is counted from the epoch. The start of a clip that repeats is moved by
-    /// whole repetitions, so that it stays near.
-    fn on_device(&self, play: &Playing) -> Instance {
-        let mut start = play.start - self.epoch;
-        let duration = f64::from(self.merged.model.clips[play.clip as usize].duration());
-        let period = duration / f64::from(play.rate.abs());
-        if play.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
-            start %= period;
-        }
-        // The device computes start + rate · elapsed inside the clip.
-        Instance::new(play.clip, play.wrap, (-start * f64::from(play.rate)) as f32, play.rate)
     }
 
     /// Adds a stage to a compute pass.
@@ -284,6 +306,7 @@ impl Character {
             Stage::Gate => {
                 runtime.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
                 runtime.frame.dispatch_gate(pass);
+                self.driven.dispatch(pass);
             }
             Stage::Sample => {
                 runtime.frame.dispatch_sample(pass);
@@ -298,34 +321,17 @@ impl Character {
 impl Playing {
     /// The first clip, from time 0 on.
     const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
-}
 
-impl Runtime {
-    fn new(gpu: &Gpu, model: &Model, set: &ClipSet, gate: &Gate, capacity: usize) -> Result<Self, Error> {
-        let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
-        let crowd = Crowd::new(gpu, set, &vec![rest; capacity])?;
-        let clips = ClipBuffers::new(gpu, set)?;
-        let frame = GatedFrame::new(gpu, &model.skeleton, &clips, &crowd, gate)?;
-        let every: Vec<usize> = (0..model.clips.len()).collect();
-        let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, mesh) in model.meshes.iter().enumerate() {
-            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
-            let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
-            paging.push(Paging::new(clusters, capacity, gpu.max_binding()));
-            if !mesh.targets.is_empty() {
-                let keys = WeightSet::new(mesh, set, &every)?;
-                weights.push(MorphWeightsPass::new(gpu)?.prepare(
-                    gpu,
-                    &keys,
-                    &crowd.instances,
-                    &skin.crowd,
-                )?);
-            }
-            skins.push(skin);
+    /// What an instance plays, with a start that is counted from an epoch. The start of a clip that repeats is moved by whole
+    /// repetitions, so that it stays near.
+    fn on_device(&self, model: &Model, epoch: f64) -> Instance {
+        let mut start = self.start - epoch;
+        let duration = f64::from(model.clips[self.clip as usize].duration());
+        let period = duration / f64::from(self.rate.abs());
+        if self.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
+            start %= period;
         }
-        for (skin, paging) in skins.iter_mut().zip(&paging) {
-            skin.set_pages(gpu, paging.initial())?;
-        }
-        Ok(Self { crowd, frame, skins, paging, weights, assign: Vec::new(), version: 0 })
+        // The device computes start + rate · elapsed inside the clip.
+        Instance::new(self.clip, self.wrap, (-start * f64::from(self.rate)) as f32, self.rate)
     }
 }

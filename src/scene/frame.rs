@@ -1,16 +1,21 @@
 //! A frame of a scene: what is recorded for it, and what is drawn of it.
 
 use crate::animation::Frame;
-use crate::gpu::{Staged, Upload as _, compute_pass};
+use crate::gpu::{Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::scene::camera::Depth;
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::drive::Poses;
 use crate::scene::object::{self, Kind, Object};
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
 use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
+
+/// What the caller records between sampling and model matrices.
+pub(super) type Between<'a> =
+    &'a mut dyn FnMut(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), InputError>;
 
 /// Number of stages of a frame.
 pub(super) const STAGES: usize = 5;
@@ -33,6 +38,17 @@ pub(super) enum Stage {
 impl Stage {
     /// All stages, in order.
     pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
+
+    /// All in one run.
+    const WHOLE: [&[Self]; 1] = [&Self::ALL];
+
+    /// Each in a run of its own.
+    const EACH: [&[Self]; STAGES] =
+        [&[Self::Select], &[Self::Gate], &[Self::Sample], &[Self::LocalToModel], &[Self::Skin]];
+
+    /// In two runs, between which the caller may write poses.
+    const HALVES: [&[Self]; 2] =
+        [&[Self::Select, Self::Gate, Self::Sample], &[Self::LocalToModel, Self::Skin]];
 
     fn label(self) -> &'static str {
         match self {
@@ -90,7 +106,18 @@ impl Scene {
         encoder: &mut wgpu::CommandEncoder,
         views: &mut [&mut View],
     ) -> Result<(), Error> {
+        self.record_frame(encoder, views, None)
+    }
+
+    /// Records a frame, with passes of the caller between sampling and model matrices.
+    pub(super) fn record_frame(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &mut [&mut View],
+        between: Option<Between<'_>>,
+    ) -> Result<(), Error> {
         self.check(views)?;
+        self.objects.iter_mut().for_each(|object| object.settle(self.now));
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
@@ -99,27 +126,41 @@ impl Scene {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
-        self.record_stages(encoder, views);
+        self.record_stages(encoder, views, between)?;
         self.count(encoder, views);
         self.frames += 1;
         Ok(())
     }
 
-    /// Records all stages: in one compute pass, or in one each if their time is taken.
-    fn record_stages(&mut self, encoder: &mut wgpu::CommandEncoder, views: &[&mut View]) {
+    /// Records all stages: in one compute pass, or in one each if their time is taken, or in two with the caller's between.
+    fn record_stages(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &[&mut View],
+        mut between: Option<Between<'_>>,
+    ) -> Result<(), InputError> {
         if let Some(timer) = &mut self.timer {
             timer.begin(encoder, self.frames);
         }
         let timed = |stage: Stage| self.timer.as_ref().and_then(|timer| timer.stage(stage as usize));
-        if timed(Stage::Select).is_none() {
-            let mut pass = compute_pass(encoder, "scene");
-            return Stage::ALL.into_iter().for_each(|stage| self.dispatch(stage, views, &mut pass));
-        }
-        for stage in Stage::ALL {
-            let (label, timestamp_writes) = (Some(stage.label()), timed(stage));
+        let runs: &[&[Stage]] = match (timed(Stage::Select).is_some(), between.is_some()) {
+            (true, _) => &Stage::EACH,
+            (false, true) => &Stage::HALVES,
+            (false, false) => &Stage::WHOLE,
+        };
+        for run in runs {
+            if run[0] == Stage::LocalToModel
+                && let Some(between) = between.take()
+            {
+                between(encoder, Poses { objects: &self.objects })?;
+            }
+            let timestamp_writes = if run.len() == 1 { timed(run[0]) } else { None };
+            let label = Some(if run.len() == 1 { run[0].label() } else { "scene" });
             let descriptor = wgpu::ComputePassDescriptor { label, timestamp_writes };
-            self.dispatch(stage, views, &mut encoder.begin_compute_pass(&descriptor));
+            let mut pass = encoder.begin_compute_pass(&descriptor);
+            run.iter().for_each(|stage| self.dispatch(*stage, views, &mut pass));
         }
+        Ok(())
     }
 
     fn dispatch(&self, stage: Stage, views: &[&mut View], pass: &mut wgpu::ComputePass<'_>) {
@@ -130,6 +171,9 @@ impl Scene {
             if let Kind::Character(character) = &object.kind {
                 character.dispatch(stage, pass);
             }
+        }
+        if stage == Stage::LocalToModel {
+            views.iter().for_each(|view| view.dispatch_attached(pass));
         }
     }
 
@@ -156,9 +200,7 @@ impl Scene {
         &'a self,
         view: &'a View,
     ) -> Result<(DrawnView<'a>, Vec<DrawnObject<'a>>), InputError> {
-        if !view.is_of(&self.token) {
-            return Err(InputError::new("view", "of another scene", "must be of this scene"));
-        }
+        view.check(self, "view")?;
         let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
@@ -195,10 +237,7 @@ impl Scene {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
         }
-        if let Some(at) = views.iter().position(|view| !view.is_of(&self.token)) {
-            return Err(InputError::new(format!("views[{at}]"), "of another scene", "must be of this scene"));
-        }
-        Ok(())
+        views.iter().enumerate().try_for_each(|(at, view)| view.check(self, &format!("views[{at}]")))
     }
 
     /// Allocates what objects and views need since something was added or grew.
@@ -213,10 +252,13 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
+        self.attachments.fit(&self.gpu, &self.objects, layout, &mut self.staged)?;
         let terrains = self.objects.iter().filter_map(Object::spacing).count();
         for view in views {
             let passes = (&self.passes.select, &self.passes.list);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
+            let attachments = (&self.attachments, &self.objects);
+            view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
             view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
         }
         if self.counted && self.counts.as_ref().is_none_or(|counts| counts.version != layout.version) {

@@ -7,12 +7,15 @@
 //! into an encoder of its own ([`Scene::record`]), and draws. Nothing is submitted, waited for or allocated in a frame,
 //! except where an object outgrows its capacity.
 
+mod attach;
 mod camera;
 mod character;
 pub(crate) mod drawable;
+mod drive;
 mod frame;
 mod handles;
 mod instances;
+mod layers;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
@@ -25,6 +28,7 @@ mod placement;
 mod quality;
 pub(crate) mod query;
 mod ray;
+mod rebuild;
 mod relief;
 mod spawned;
 mod statistics;
@@ -35,7 +39,9 @@ mod watch;
 use std::sync::Arc;
 
 pub use camera::{Camera, Depth};
+pub use drive::{PoseBuffers, Poses};
 pub use handles::{InstanceId, ObjectId};
+pub use layers::{CharacterOptions, LayerMask, RootOptions};
 pub use pick::Bounds;
 pub use placement::{ClipTime, Placement, Play};
 pub use quality::{Quality, Shares};
@@ -51,9 +57,11 @@ pub use watch::{WatchedBone, WatchedBones};
 use crate::asset::Light;
 use crate::gpu::{Gpu, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
+use crate::lod::attach::AttachPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::{Error, InputError};
+use attach::Attachments;
 use handles::{Slots, stale};
 use layout::Layout;
 use layouts::SceneLayouts;
@@ -70,6 +78,8 @@ pub struct Scene {
     gpu: Gpu,
     /// Tells this scene's views from others'.
     token: Arc<()>,
+    /// Counts the devices that it has had.
+    device: u32,
     objects: Slots<Object>,
     shares: Shares,
     light: Light,
@@ -90,6 +100,7 @@ pub struct Scene {
     counts: Option<SceneCounts>,
     timer: Option<StageTimer>,
     watch: Option<Watch>,
+    attachments: Attachments,
 }
 
 #[derive(Debug)]
@@ -97,6 +108,18 @@ struct Passes {
     select: SelectPass,
     list: ListPass,
     assign: AssignPass,
+    attach: AttachPass,
+}
+
+impl Passes {
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self {
+            select: SelectPass::new(gpu)?,
+            list: ListPass::new(gpu)?,
+            assign: AssignPass::new(gpu)?,
+            attach: AttachPass::new(gpu)?,
+        })
+    }
 }
 
 impl Scene {
@@ -105,14 +128,11 @@ impl Scene {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, Error> {
-        let passes = Passes {
-            select: SelectPass::new(gpu)?,
-            list: ListPass::new(gpu)?,
-            assign: AssignPass::new(gpu)?,
-        };
+        let passes = Passes::new(gpu)?;
         Ok(Self {
             gpu: gpu.clone(),
             token: Arc::default(),
+            device: 0,
             objects: Slots::default(),
             shares: Shares::default(),
             light: Light::default(),
@@ -130,6 +150,7 @@ impl Scene {
             counts: None,
             timer: None,
             watch: None,
+            attachments: Attachments::default(),
         })
     }
 
@@ -203,6 +224,6 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, &self.token, quality)
+        View::new(&self.gpu, (&self.token, self.device), quality)
     }
 }

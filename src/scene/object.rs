@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::asset::{Mesh, Model};
+use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
-use crate::scene::character::Character;
+use crate::scene::character::{Character, Runtime};
 use crate::scene::drawable::{Drawable, MeshDrawable};
 use crate::scene::handles::Slots;
-use crate::scene::instances::Instances;
+use crate::scene::instances::{self, Instances};
+use crate::scene::layers::CharacterOptions;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
@@ -20,10 +21,12 @@ use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
 use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
+use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
+use crate::skinning::pages::PageBuffers;
 use crate::{Error, InputError};
 
 /// An object of a scene.
@@ -54,24 +57,35 @@ pub(crate) struct Object {
 
 /// What the host keeps of a mesh that does not move by itself.
 #[derive(Debug)]
-pub(super) struct MeshOnHost {
-    /// Its triangles in full detail.
-    pub surfaces: Vec<Surface>,
+pub(super) enum MeshOnHost {
+    /// Merged meshes at rest.
+    Model(Box<Merged>),
+    /// A mesh with relief.
+    Relief(Box<Relief>),
 }
 
 impl MeshOnHost {
-    /// Of merged meshes at rest.
-    fn of_merged(merged: &Merged) -> Self {
-        let meshes = merged.model.meshes.iter().enumerate();
-        let surface = |(at, mesh): (usize, &Mesh)| Surface::of_merged(merged, at, mesh.positions.clone());
-        Self { surfaces: meshes.map(surface).collect() }
+    /// Its triangles in full detail.
+    pub fn surfaces(&self) -> Vec<Surface<'_>> {
+        match self {
+            Self::Model(merged) => {
+                let meshes = &merged.model.meshes;
+                let surface = |at: usize| Surface::of_merged(merged, at, &meshes[at].positions[..]);
+                (0..meshes.len()).map(surface).collect()
+            }
+            Self::Relief(relief) => {
+                let positions = relief.mesh.vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>();
+                vec![Surface::new(positions, &relief.mesh.indices, relief.double_sided)]
+            }
+        }
     }
+}
 
-    /// Of a mesh with relief.
-    fn of_relief(Relief { mesh, double_sided, .. }: &Relief) -> Self {
-        let positions = mesh.vertices.iter().map(|vertex| vertex.position).collect();
-        Self { surfaces: vec![Surface::new(positions, mesh.indices.clone(), *double_sided)] }
-    }
+/// What an object has on a device.
+#[derive(Debug)]
+pub(super) struct OnDevice {
+    drawables: Vec<Drawable>,
+    runtime: Option<Runtime>,
 }
 
 /// What an object is.
@@ -124,8 +138,9 @@ impl Object {
         let instances = room(capacity)?;
         let (merged, sphere) = mesh::at_rest_merged(model)?;
         let drawn = mesh::drawn(gpu, layouts, &merged)?;
-        let kind = Kind::Mesh(MeshOnHost::of_merged(&merged));
-        Ok(Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn))
+        let errors = mesh::errors(&merged);
+        let kind = Kind::Mesh(MeshOnHost::Model(Box::new(merged)));
+        Ok(Self::new(kind, (instances, sphere), (errors, 1.0), drawn))
     }
 
     /// A mesh with relief.
@@ -137,7 +152,7 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
-        let kind = Kind::Mesh(MeshOnHost::of_relief(relief));
+        let kind = Kind::Mesh(MeshOnHost::Relief(Box::new(relief.clone())));
         Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
@@ -145,12 +160,13 @@ impl Object {
     pub(super) fn character(
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        model: &Model,
+        (model, options): (&Model, &CharacterOptions<'_>),
         capacity: usize,
         shares: Shares,
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let character = Character::new(gpu, mesh::moving_merged(model)?, instances.capacity())?;
+        let merged = mesh::moving_merged(model)?;
+        let character = Character::new(gpu, merged, options, instances.capacity())?;
         let drawn = (character.drawables(gpu, layouts)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
@@ -180,20 +196,72 @@ impl Object {
         }
     }
 
-    /// Makes room for twice as many instances.
+    /// Makes room for twice as many instances. If it fails, nothing has changed.
     pub(super) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        self.instances.grow(2 * self.instances.capacity());
-        self.refresh(gpu, layouts)
+        let capacity = 2 * self.instances.capacity();
+        self.renew(gpu, layouts, capacity)?;
+        self.instances.grow(capacity);
+        Ok(())
+    }
+
+    /// Sets the sphere of an instance that plays something else.
+    pub(super) fn bound_again(&mut self, index: u32) {
+        if let Kind::Character(character) = &self.kind {
+            let sphere = character.sphere_of(index);
+            self.instances.change(index, |instance| instances::bound(instance, &sphere));
+        }
+    }
+
+    /// Ends fades that have reached their weight.
+    pub(super) fn settle(&mut self, now: f64) {
+        let Kind::Character(character) = &mut self.kind else { return };
+        let settled = character.settle(now);
+        for index in settled {
+            // What carries a mesh keeps the larger sphere until it plays something else.
+            if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
+                self.bound_again(index);
+            }
+        }
     }
 
     /// Lets everything start afresh.
     pub(super) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
+        self.renew(gpu, layouts, self.instances.capacity())?;
         self.instances.change_all();
+        Ok(())
+    }
+
+    fn renew(&mut self, gpu: &Gpu, layouts: &SceneLayouts, capacity: usize) -> Result<(), Error> {
         if let Kind::Character(character) = &mut self.kind {
-            character.grow(gpu, self.instances.capacity())?;
-            rebind(&mut self.drawables, gpu, layouts, character)?;
+            let (runtime, drawables) = character.on(gpu, layouts, capacity)?;
+            character.adopt(runtime);
+            self.drawables = drawables;
         }
         Ok(())
+    }
+
+    /// Everything on another device.
+    pub(super) fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
+        let drawables = match &self.kind {
+            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source)?.2.0,
+            Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, merged)?.0,
+            Kind::Mesh(MeshOnHost::Relief(relief)) => relief::drawn(gpu, layouts, relief)?.1.0,
+            Kind::Character(character) => {
+                let (runtime, drawables) = character.on(gpu, layouts, self.instances.capacity())?;
+                return Ok(OnDevice { drawables, runtime: Some(runtime) });
+            }
+        };
+        Ok(OnDevice { drawables, runtime: None })
+    }
+
+    /// Takes everything on another device. Everything starts afresh.
+    pub(super) fn adopt(&mut self, OnDevice { drawables, runtime }: OnDevice) {
+        if let (Kind::Character(character), Some(runtime)) = (&mut self.kind, runtime) {
+            character.adopt(runtime);
+        }
+        self.drawables = drawables;
+        self.instances.change_all();
+        self.fitted = 0;
     }
 
     /// Provides what the views of a frame need of a character. Where a binding is too small for it, its levels of detail
@@ -207,10 +275,12 @@ impl Object {
     ) -> Result<(), Error> {
         let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object() };
         let Kind::Character(character) = &mut self.kind else { return Ok(()) };
-        let (coarsening, is_replaced) = character.provide(gpu, views, &lod, self.instances.all())?;
-        if is_replaced {
-            rebind(&mut self.drawables, gpu, layouts, character)?;
+        let provided = character.provide(gpu, views, &lod, self.instances.all());
+        // One mesh may have got its pages before another failed to.
+        if provided.as_ref().map_or(true, |(_, is_replaced)| *is_replaced) {
+            self.drawables = rebound(&self.drawables, gpu, layouts, character)?;
         }
+        let (coarsening, _) = provided?;
         if coarsening != self.coarsening {
             self.coarsening = coarsening;
             character.stage_mesh_fraction(staged, coarsening * self.mesh_fraction)?;
@@ -227,10 +297,12 @@ impl Object {
         (pass, shares): (&AssignPass, Shares),
         staged: &mut Staged,
     ) -> Result<(), Error> {
+        if let Kind::Character(character) = &mut self.kind {
+            character.fit_driven(gpu, staged)?;
+        }
         if self.fitted == layout.version {
             return Ok(());
         }
-        self.fitted = layout.version;
         let mut lod = self.lod_object();
         self.lods.clear();
         for drawable in &self.drawables {
@@ -243,12 +315,11 @@ impl Object {
                 staged.uniform(&geometry.params, &params)?;
             }
         }
-        match &mut self.kind {
-            Kind::Character(character) => {
-                character.fit(gpu, layout, pass, (self.range, &self.errors, shares))
-            }
-            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
+        if let Kind::Character(character) = &mut self.kind {
+            character.fit(gpu, layout, pass, (self.range, &self.errors, shares))?;
         }
+        self.fitted = layout.version;
+        Ok(())
     }
 
     /// Number of instances that there is room for.
@@ -257,19 +328,18 @@ impl Object {
     }
 }
 
-/// Binds a character's pages, after they were replaced.
-fn rebind(
-    drawables: &mut [Drawable],
+/// The same drawables over a character's pages, after these were replaced.
+fn rebound(
+    drawables: &[Drawable],
     gpu: &Gpu,
     layouts: &SceneLayouts,
     character: &Character,
-) -> Result<(), Error> {
-    for (drawable, pages) in drawables.iter_mut().zip(character.pages()) {
-        if let Drawable::Mesh(mesh) = drawable {
-            *mesh = mesh.with_pages(gpu, layouts, pages)?;
-        }
-    }
-    Ok(())
+) -> Result<Vec<Drawable>, Error> {
+    let with_pages = |(drawable, pages): (&Drawable, &PageBuffers)| match drawable {
+        Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.with_pages(gpu, layouts, pages)?)),
+        Drawable::Terrain(_) => Ok(drawable.clone()),
+    };
+    drawables.iter().zip(character.pages()).map(with_pages).collect()
 }
 
 /// Room for at least `capacity` instances.

@@ -4,6 +4,7 @@ use crate::asset::Model;
 use crate::gpu::Upload as _;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, stale};
+use crate::scene::layers::CharacterOptions;
 use crate::scene::object::{Kind, Object};
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
@@ -54,10 +55,26 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
+        self.add_character_with(model, capacity, &CharacterOptions::default())
+    }
+
+    /// As [`Scene::add_character`], with layers of animation above the base, or with the motion of its root taken out of its
+    /// clips. A model without clips has neither.
+    ///
+    /// # Errors
+    /// As [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and for
+    /// motion that cannot be taken out ([`RootMotion::extract`](crate::animation::RootMotion::extract)).
+    pub fn add_character_with(
+        &mut self,
+        model: &Model,
+        capacity: usize,
+        options: &CharacterOptions<'_>,
+    ) -> Result<ObjectId, Error> {
         if model.clips.is_empty() {
             return self.add_mesh(model, capacity);
         }
-        let object = Object::character(&self.gpu, &self.layouts_of_groups, model, capacity, self.shares)?;
+        let layouts = &self.layouts_of_groups;
+        let object = Object::character(&self.gpu, layouts, (model, options), capacity, self.shares)?;
         Ok(self.add(object))
     }
 
@@ -83,6 +100,9 @@ impl Scene {
     /// [`InputError`] for an object that is not of this scene.
     pub fn remove(&mut self, object: ObjectId) -> Result<(), InputError> {
         let ObjectId { index, generation } = object;
+        for instance in self.instances(object)? {
+            self.let_go(instance)?;
+        }
         self.objects.remove([index, generation]).ok_or_else(|| stale("object", index, generation))?;
         self.layout = None;
         Ok(())

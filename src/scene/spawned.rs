@@ -45,19 +45,29 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn despawn(&mut self, instance: InstanceId) -> Result<(), InputError> {
-        self.instance_mut(instance)?.instances.despawn(instance.index);
+        self.instance_mut(instance)?;
+        self.let_go(instance)?;
+        let object = self.instance_mut(instance)?;
+        if let Kind::Character(character) = &mut object.kind {
+            character.let_go(instance.index);
+        }
+        object.instances.despawn(instance.index);
         Ok(())
     }
 
-    /// Moves an instance.
+    /// Moves an instance. One that is attached to a bone stays there, and takes the placement when it is detached.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, and as [`Placement::checked`].
     pub fn move_to(&mut self, instance: InstanceId, placement: Placement) -> Result<(), InputError> {
         let placement = placement.checked()?;
+        self.instance_mut(instance)?;
+        if self.move_detached(instance, placement) {
+            return Ok(());
+        }
         let object = self.instance_mut(instance)?;
         object.instances.change(instance.index, |instance| instances::place(instance, &placement));
-        Ok(())
+        self.carry(instance)
     }
 
     /// Lets a character play a clip.
@@ -72,7 +82,7 @@ impl Scene {
         };
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
-        Ok(())
+        self.carry(instance)
     }
 
     /// Sets the colour by which an instance's colours are multiplied: linear red, green, blue and alpha, each 0 to 1.
@@ -103,11 +113,13 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more.
     pub fn set_visibility(&mut self, instance: InstanceId, mask: u16, casts: bool) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
-        object.instances.change(instance.index, |instance| instance.flags = instances::flags(mask, casts));
+        object.instances.change(instance.index, |instance| {
+            instances::set_visibility(instance, mask, casts);
+        });
         Ok(())
     }
 
-    fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
+    pub(super) fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
         let InstanceId { index, generation, .. } = instance;
         let object = self.object_mut(instance.object)?;
         match object.instances.contains([index, generation]) {

@@ -82,20 +82,23 @@ impl PagedSkin {
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
-        self.pages = PageBuffers::new(gpu, &self.mesh, &self.crowd, pages)?;
-        self.before[0] = PagesPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &self.pages)?;
+        let pages = PageBuffers::new(gpu, &self.mesh, &self.crowd, pages)?;
+        let dealt = PagesPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &pages)?;
         // A new record of what was skinned: frames that are recorded already go on with the old one.
         let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
-        self.select = SelectBuffers { skinned, ..self.select.clone() };
-        self.selections =
-            SelectPass::new(gpu)?.prepare_both(gpu, &self.mesh, &self.crowd, &self.select, &self.active)?;
+        let select = SelectBuffers { skinned, ..self.select.clone() };
+        let selections =
+            SelectPass::new(gpu)?.prepare_both(gpu, &self.mesh, &self.crowd, &select, &self.active)?;
         let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(
             gpu,
             &self.mesh,
             &self.crowd,
-            &self.pages,
+            &pages,
             &self.active,
         )?;
+        // From here on nothing fails: an error has changed nothing.
+        self.before[0] = dealt;
+        (self.pages, self.select, self.selections) = (pages, select, selections);
         if let Some(last) = self.after.last_mut() {
             *last = skin;
         }

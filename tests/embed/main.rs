@@ -4,14 +4,17 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod bones;
 mod counts;
 mod frame;
 mod host;
+mod layers;
 mod life;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;
 mod query;
+mod rebuild;
 mod targets;
 mod views;
 mod world;

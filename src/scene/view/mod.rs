@@ -1,5 +1,6 @@
 //! Views: a camera into a scene, with what it sees and how fine.
 
+mod attached;
 mod counted;
 pub(crate) mod lists;
 mod uniforms;
@@ -15,6 +16,7 @@ use crate::lod::select::SelectPass;
 #[cfg(feature = "verify")]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
+use crate::scene::Scene;
 use crate::scene::camera::Camera;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
@@ -29,6 +31,8 @@ use uniforms::{lod_camera, terrain_view};
 #[derive(Debug)]
 pub struct View {
     scene: Arc<()>,
+    /// The number of the scene's device on which it was made.
+    device: u32,
     quality: Quality,
     camera: Option<Camera>,
     lod_cameras: Vec<Camera>,
@@ -41,12 +45,13 @@ pub struct View {
 }
 
 impl View {
-    pub(super) fn new(gpu: &Gpu, scene: &Arc<()>, quality: Quality) -> Result<Self, Error> {
+    pub(super) fn new(gpu: &Gpu, (scene, device): (&Arc<()>, u32), quality: Quality) -> Result<Self, Error> {
         quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
             scene: scene.clone(),
+            device,
             quality,
             camera: None,
             lod_cameras: Vec::new(),
@@ -124,6 +129,34 @@ impl View {
     pub(super) fn may_show(&self, flags: u32) -> bool {
         let is_in_mask = flags >> INSTANCE_MASK_SHIFT & u32::from(self.mask) != 0;
         flags & INSTANCE_ALIVE != 0 && is_in_mask && (!self.casters || flags & INSTANCE_CASTS != 0)
+    }
+
+    /// Creates everything that the view has on the device again, after its scene was rebuilt on another one
+    /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)). Cameras, quality and mask stay.
+    ///
+    /// # Errors
+    /// [`InputError`] for another scene; [`crate::gpu::GpuError`].
+    pub fn rebuild(&mut self, scene: &Scene) -> Result<(), Error> {
+        if !self.is_of(&scene.token) {
+            return Err(InputError::new("scene", "another", "must be the one that the view is of").into());
+        }
+        let fresh = Self::new(&scene.gpu, (&scene.token, scene.device), self.quality)?;
+        let Self { device, select, drawn, .. } = fresh;
+        (self.device, self.select, self.drawn) = (device, select, drawn);
+        (self.lists, self.counts) = (None, None);
+        Ok(())
+    }
+
+    /// Refuses a view that is not of a scene on its present device; `path` names the view.
+    pub(super) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
+        if !self.is_of(&scene.token) {
+            return Err(InputError::new(path, "of another scene", "must be of this scene"));
+        }
+        if self.device != scene.device {
+            let bound = "must be rebuilt after its scene: View::rebuild";
+            return Err(InputError::new(path, "of a device that was lost", bound));
+        }
+        Ok(())
     }
 
     pub(crate) fn is_of(&self, scene: &Arc<()>) -> bool {
